@@ -1,0 +1,56 @@
+r"""Computes are observers. One compute, one file; each is a plain class whose methods take a `asemd.engine.Snapshot`.
+
+``needs`` says what the force evaluation must provide on the steps it is used: any of ``energy``, ``virial``, ``energies`` (per atom),
+``virials`` (per atom). A compute that builds on another one takes it as an argument (pressure takes a temperature compute).
+"""
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from asemd.errors import InputError
+
+
+class Compute:
+    """Base class of computes.
+
+    Parameters
+    ----------
+    group : str
+        Name of the group it looks at.
+    """
+
+    style: ClassVar[str] = ""
+    needs: frozenset[str] = frozenset()
+    id: str = ""
+
+    def __init__(self, group: str = "all"):
+        self.group = group
+
+    @classmethod
+    def from_lammps(cls, group: str, words: list[str], session) -> Compute:
+        """Build from the words after the style's name in ``compute ID group style words...``."""
+        if words:
+            raise InputError(f"compute {cls.style} takes no arguments, got {' '.join(words)}")
+        return cls(group=group)
+
+    def to_lammps(self) -> list[str]:
+        return []
+
+    def scalar(self, state) -> float:
+        raise InputError(f"compute {self.id} (style {self.style}) has no global scalar")
+
+    def vector(self, state) -> np.ndarray:
+        raise InputError(f"compute {self.id} (style {self.style}) has no global vector")
+
+    def array(self, state) -> np.ndarray:
+        raise InputError(f"compute {self.id} (style {self.style}) has no global array")
+
+    def per_atom(self, state) -> np.ndarray:
+        """(n,) or (n, k), by atom row; zero outside the group."""
+        raise InputError(f"compute {self.id} (style {self.style}) has no per-atom values")
+
+    def modify(self, words: list[str], session) -> None:
+        """``compute_modify`` words."""
+        raise InputError(f"compute_modify: compute {self.id} (style {self.style}) does not take {words[0]!r}")

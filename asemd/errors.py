@@ -1,0 +1,58 @@
+"""Errors that name the place in the user's file, and the nearest match for a misspelt word."""
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Where:
+    """A place in a text file: path, line number (from 1) and the text of the line."""
+
+    file: str
+    line: int
+    text: str = ""
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}" if self.file else f"line {self.line}"
+        return f"{place}: {self.text.strip()}" if self.text.strip() else place
+
+
+class AsemdError(Exception):
+    """Base class of everything asemd raises on purpose."""
+
+
+class InputError(AsemdError):
+    """A mistake in the user's input; knows its place once a reader has added it.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what to do, one line.
+    where : Where, optional
+        The place in the user's file.
+    """
+
+    def __init__(self, message: str, where: Where | None = None):
+        super().__init__(message)
+        self.message, self.where = message, where
+
+    def __str__(self) -> str:
+        return f"{self.message} ({self.where})" if self.where else self.message
+
+    def at(self, where: Where) -> InputError:
+        """The same error with a place; a place that is already there stays."""
+        if self.where is None:
+            self.where = where
+        return self
+
+
+class SimulationError(AsemdError):
+    """The physics went wrong: an atom lost, a bond past its limit, NaN; the message names atom ids."""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """` (did you mean X?)` for the closest known word, or an empty string."""
+    match = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f" (did you mean {match[0]}?)" if match else ""

@@ -1,0 +1,116 @@
+r"""Fixes are dynamics. One fix, one file; a fix is a plain class with keyword arguments, usable from Python and from a script.
+
+A fix acts through hooks with LAMMPS's names and order. A hook is either *compiled* (a plain function marked `hook`, pasted into the
+time loop) or a Python method of the same name that takes the live `asemd.loop.Loop`. With compiled hooks only, whole stretches of steps
+run without Python.
+
+A compiled hook has the signature ``f(th, s, p, a)``:
+
+- ``th`` (`asemd.kernels.state.Thread`): ``tid, nth, lo, hi`` (this thread's slots are ``lo..hi-1``), ``step`` (this timestep), ``begin, end``
+  (first and last step of the run or of ``run start/stop``, for ramps), ``dt``, ``sync``, ``scratch``;
+- ``s`` (`asemd.kernels.state.State`): slot arrays ``x v f (3, cap)``, ``mass inverse_mass q (cap,)`` (inverse_mass is ftm2v / m; 0 for empty slots),
+  ``type mask row (cap,)`` (mask: group bits; row: index of the atom, -1 for an empty slot, whose mask is 0);
+- ``p (k,) float64``: the fix's own numbers, made by `parameters`, shared by all threads and kept between steps (``p[0]`` is the group bit as a float);
+- ``a (m, n) float64``: the fix's own per-atom numbers by row, made by `atom_arrays` (a (1, 1) dummy if it has none).
+
+Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0 only, with
+``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from asemd.errors import InputError
+
+if TYPE_CHECKING:
+    from asemd.loop import Loop
+
+HOOKS = ("initial_integrate", "post_integrate", "pre_exchange", "pre_neighbor", "post_neighbor", "pre_force", "post_force",
+         "final_integrate", "end_of_step")
+
+
+def hook(function: Callable) -> staticmethod:
+    """Mark a plain function as a compiled hook."""
+    function.compiled = True
+    return staticmethod(function)
+
+
+class Fix:
+    """Base class of fixes.
+
+    Parameters
+    ----------
+    group : str
+        Name of the group it acts on.
+
+    Attributes
+    ----------
+    style : str
+        LAMMPS name, set by each class.
+    integrates : bool
+        True if it moves atoms (two of these on one atom are warned about).
+    every : int
+        `end_of_step` is called on multiples of this.
+    id : str
+        Set by the session.
+    """
+
+    style: ClassVar[str] = ""
+    integrates: ClassVar[bool] = False
+    every: int = 1
+    id: str = ""
+
+    def __init__(self, group: str = "all"):
+        self.group = group
+
+    @classmethod
+    def from_lammps(cls, group: str, words: list[str], session) -> Fix:
+        """Build from the words after the style's name in ``fix ID group style words...``."""
+        if words:
+            raise InputError(f"fix {cls.style} takes no arguments, got {' '.join(words)}")
+        return cls(group=group)
+
+    def to_lammps(self) -> list[str]:
+        """Words after the style's name that make this fix again."""
+        return []
+
+    def hooks(self) -> dict[str, bool]:
+        """Hooks this instance has now -> whether each is compiled. Override where it depends on the arguments."""
+        return {name: bool(getattr(getattr(self, name), "compiled", False)) for name in HOOKS if getattr(self, name, None)}
+
+    def parameters(self, loop: Loop) -> np.ndarray:
+        """The numbers ``p`` of the compiled hooks; called at the start of every run. ``p[0]`` is the group bit."""
+        return np.array([float(loop.group_bit(self.group))])
+
+    def atom_arrays(self, loop: Loop) -> np.ndarray | None:
+        """Per-atom numbers ``a (m, n)`` by atom row, or None."""
+        return None
+
+    def setup(self, loop: Loop) -> None:
+        """Called at the start of every run, after the first forces; compiled post_force hooks are applied to those forces by the loop."""
+
+    def finish(self, loop: Loop) -> None:
+        """Called after every run; read results back from ``p`` here."""
+
+    # outputs: f_ID, f_ID[i]
+    def scalar(self) -> float:
+        raise InputError(f"fix {self.id} (style {self.style}) has no global scalar")
+
+    def vector(self, i: int) -> float:
+        """Component `i`, counted from 1."""
+        raise InputError(f"fix {self.id} (style {self.style}) has no global vector")
+
+    def modify(self, words: list[str], session) -> None:
+        """``fix_modify`` words."""
+        raise InputError(f"fix_modify: fix {self.id} (style {self.style}) does not take {words[0]!r}")
+
+    def removed_dof(self, mask: np.ndarray) -> float:
+        """Degrees of freedom this fix removes from the atoms of `mask`."""
+        return 0.0
+
+    def state(self) -> dict[str, Any]:
+        """What a restart needs."""
+        return {}
