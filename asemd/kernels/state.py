@@ -33,3 +33,33 @@ class Thread(NamedTuple):
     dt: float
     sync: np.ndarray          # (8,) int64 barrier counter and generation
     scratch: np.ndarray       # (nth, 8) float64
+
+
+class Cell(NamedTuple):
+    """The periodic cell as compiled code sees it, in the user's frame. A non-periodic direction has inverse length and inverse row zero."""
+
+    vectors: np.ndarray          # (3, 3) rows a b c
+    inverse: np.ndarray          # (3, 3), fractional = d @ inverse, columns of non-periodic directions are zero
+    lengths: np.ndarray          # (3,) edge lengths along x y z (axis-aligned cells)
+    inverse_lengths: np.ndarray  # (3,) their inverses, 0 if not periodic
+    reduced: np.ndarray          # (3, 3) Minkowski-reduced vectors of the periodic directions, for closest images in skewed cells
+    reduced_inverse: np.ndarray  # (3, 3)
+    safe2: float                 # squared distance below which the rounded image is surely the closest
+
+
+def cell_arrays(vectors: np.ndarray, periodic: np.ndarray) -> Cell:
+    """`Cell` of three edge vectors (rows) and three flags; vectors of non-periodic directions may be anything non-degenerate."""
+    vectors = np.ascontiguousarray(vectors, dtype=float)
+    periodic = np.asarray(periodic, dtype=bool)
+    inverse = np.linalg.inv(vectors)
+    reduced = vectors.copy()
+    if periodic.any() and np.count_nonzero(vectors - np.diag(np.diag(vectors))):
+        from ase.geometry import minkowski_reduce
+        reduced = np.ascontiguousarray(minkowski_reduce(vectors, periodic)[0])
+    widths = 1.0 / np.linalg.norm(np.linalg.inv(reduced), axis=0)
+    safe = 0.5 * widths[periodic].min() if periodic.any() else np.inf
+    diagonal = np.diag(vectors).copy()
+    with np.errstate(divide="ignore"):
+        inverse_lengths = np.where(periodic & (diagonal != 0), 1.0 / diagonal, 0.0)
+    return Cell(vectors, np.ascontiguousarray(inverse * periodic), diagonal, inverse_lengths, reduced,
+                np.ascontiguousarray(np.linalg.inv(reduced) * periodic), float(safe * safe))

@@ -1,0 +1,204 @@
+"""Generated kernel modules: plain functions of asemd, pasted together as text, compiled once and cached on disk.
+
+Why text: numba's disk cache never hits for closures over a style, and it looks only at a function's own file, so an edited helper in another
+file would run stale. A module that holds all its source and is named by the hash of that source has neither problem: the same scene finds the
+same file in every process, and an edited style makes a new one. A kernel that calls another generated kernel imports it by its hashed name.
+"""
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.util
+import inspect
+import os
+import sys
+import tempfile
+import textwrap
+import types
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+PACKAGE = "asemd_kernels"
+FAST = "{'contract', 'reassoc', 'nsz', 'arcp'}"
+LIMIT_BYTES = 512 * 2**20
+_HEADER = "import math\nimport numpy as np\nfrom numba import njit\n"
+
+
+def cache_dir() -> Path:
+    """The folder of generated modules: ``ASEMD_CACHE_DIR``, else the user's cache folder, else (unwritable) a temporary one."""
+    global _dir
+    if _dir is None or not _dir.is_dir():
+        wanted = os.environ.get("ASEMD_CACHE_DIR")
+        if not wanted:
+            home = os.environ.get("XDG_CACHE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None) \
+                or (Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache"))
+            wanted = Path(home) / "asemd"
+        path = Path(wanted) / PACKAGE
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile(dir=path):
+                _dir = path
+        except OSError:
+            _dir = Path(tempfile.mkdtemp(prefix="asemd-")) / PACKAGE
+            _dir.mkdir()
+        package = sys.modules.setdefault(PACKAGE, types.ModuleType(PACKAGE))
+        package.__path__ = [str(_dir)]
+    return _dir
+
+
+_dir: Path | None = None
+
+
+class _Plain(ast.NodeTransformer):
+    """Strip what compiled code does not need; optionally make every number literal a `real` of the working precision and
+    map ``math.exp`` to the vectorised twin."""
+
+    def __init__(self, real: bool, vector: bool):
+        self.real, self.vector = real, vector
+
+    def visit_FunctionDef(self, node):
+        node.decorator_list, node.returns = [], None
+        for a in node.args.args:
+            a.annotation = None
+        if node.body and isinstance(node.body[0], ast.Expr) and isinstance(node.body[0].value, ast.Constant):
+            node.body = node.body[1:]
+        self.generic_visit(node)
+        return node
+
+    def visit_BinOp(self, node):
+        if isinstance(node.op, ast.Pow) and isinstance(node.right, ast.Constant):
+            node.left = self.visit(node.left)      # the exponent stays an integer
+            return node
+        self.generic_visit(node)
+        return node
+
+    def visit_Constant(self, node):
+        if self.real and isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
+            return ast.Call(ast.Name("real", ast.Load()), [ast.Constant(float(node.value))], [])
+        return node
+
+    def visit_Call(self, node):
+        self.generic_visit(node)
+        if self.vector and isinstance(node.func, ast.Attribute) and node.func.attr in ("exp", "log", "erfc", "pow"):
+            node.func = ast.Name("vector_" + node.func.attr, ast.Load())
+        return node
+
+
+def plain_source(function: Callable, name: str | None = None, real: bool = False, vector: bool = False) -> str:
+    """Source of a function without decorators, annotations and docstring, under another name if asked for.
+
+    Parameters
+    ----------
+    real : bool
+        Wrap number literals as ``real(...)``, so that single-precision kernels stay in single precision.
+    vector : bool
+        Replace ``math.exp`` and relatives by branch-free versions that vectorise (`asemd.kernels.vector_math`).
+    """
+    tree = ast.parse(textwrap.dedent(inspect.getsource(inspect.unwrap(function))))
+    tree = ast.fix_missing_locations(_Plain(real, vector).visit(tree))
+    node = tree.body[0]
+    if name:
+        node.name = name
+    return ast.unparse(node)
+
+
+class Builder:
+    """Collects the text of one kernel module.
+
+    Examples
+    --------
+    >>> b = Builder("demo")
+    >>> b.constant("SCALE", 2.0)
+    >>> b.text("def twice(x):\\n    return SCALE * x")
+    >>> b.build().twice(4.0)
+    8.0
+    """
+
+    def __init__(self, title: str):
+        self.lines = [f'"""{title}"""', _HEADER]
+        self._have: set[str] = set()
+
+    def line(self, text: str) -> None:
+        self.lines.append(text)
+
+    def constant(self, name: str, value) -> None:
+        """A module constant, frozen into the machine code; branches on it vanish."""
+        self.lines.append(f"{name} = {value!r}" if isinstance(value, (bool, int, float, str)) else f"{name} = {value}")
+
+    def text(self, source: str, options: str = "", cache: bool = True, jit: bool = True) -> None:
+        """A function given as text, compiled with strict IEEE arithmetic unless `options` says otherwise."""
+        if jit:
+            words = ["cache=True"] * cache + ["nogil=True", "error_model='numpy'"] + [options] * bool(options)
+            self.lines.append(f"@njit({', '.join(words)})")
+        self.lines.append(source)
+
+    def function(self, function: Callable, name: str | None = None, *, fast: bool = False, real: bool = False, vector: bool = False) -> str:
+        """Paste a Python function; returns its name there. The same name is pasted once."""
+        name = name or function.__name__
+        if name not in self._have:
+            self._have.add(name)
+            self.text(plain_source(function, name, real, vector), f"fastmath={FAST}" if fast else "")
+        return name
+
+    def use(self, module: types.ModuleType, name: str, alias: str | None = None) -> None:
+        """Call a kernel of another generated module; its hashed name makes this module's hash follow."""
+        self.lines.append(f"from {module.__name__} import {name}" + (f" as {alias}" if alias else ""))
+
+    def source(self) -> str:
+        return "\n".join(self.lines) + "\n"
+
+    def build(self) -> types.ModuleType:
+        return load(self.source())
+
+
+def load(text: str) -> types.ModuleType:
+    """The module with that text, written to the cache folder unless it is there."""
+    import numba
+
+    import asemd
+    key = f"{asemd.__version__}|{numba.__version__}|{np.__version__}|{sys.version_info[:2]}|{text}"
+    stem = "k_" + hashlib.sha256(key.encode()).hexdigest()[:24]
+    name = f"{PACKAGE}.{stem}"
+    if name in sys.modules:
+        return sys.modules[name]
+    folder = cache_dir()
+    path = folder / f"{stem}.py"
+    if not path.exists():
+        _trim(folder)
+        fd, tmp = tempfile.mkstemp(dir=folder, suffix=".tmp")
+        with os.fdopen(fd, "w") as f:
+            f.write(text)
+        os.utime(tmp, (1_600_000_000, 1_600_000_000))   # numba's index compares the time: two writers must agree
+        os.replace(tmp, path)
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
+
+
+def _trim(folder: Path) -> None:
+    """Keep the cache bounded: drop the oldest compiled code first."""
+    files = []
+    for f in (folder / "__pycache__").glob("*"):
+        try:
+            files.append((f.stat().st_mtime, f.stat().st_size, f))
+        except OSError:
+            continue
+    total = sum(size for _, size, _ in files)
+    for _, size, f in sorted(files):
+        if total <= LIMIT_BYTES:
+            break
+        f.unlink(missing_ok=True)
+        total -= size
+
+
+def digest(constants: Mapping[str, object]) -> str:
+    """A short stable name for a set of constants."""
+    return hashlib.sha256(repr(sorted(constants.items())).encode()).hexdigest()[:12]
