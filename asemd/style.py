@@ -453,3 +453,50 @@ def find(category: str, name: str) -> Style:
         if (category, name) not in _registry:
             raise InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
     return _registry[category, name]
+
+
+def class_of(category: str, name: str, base: type) -> type:
+    """The class of a fix, compute, dump ... of that LAMMPS name; imports its one file.
+
+    Raises
+    ------
+    InputError
+        Unknown style; the message offers the nearest match.
+    """
+    for suffix in ACCELERATED:
+        name = name.removesuffix(suffix)
+    module = module_of(category, name)
+    try:
+        found = _styled(importlib.import_module(module), base)
+    except ModuleNotFoundError as e:
+        if e.name != module:
+            raise
+        found = None
+    if found is None or found.style != name:
+        raise InputError(f"unknown {category} style {name!r}{nearest(name, class_names(category, base))}")
+    return found
+
+
+def class_names(category: str, base: type) -> list[str]:
+    """LAMMPS names of all classes of a category that exist (imports them)."""
+    package = importlib.import_module(f"asemd.{category}")
+    found = (_styled(importlib.import_module(f"asemd.{category}.{m.name}"), base) for m in pkgutil.iter_modules(package.__path__))
+    return sorted(c.style for c in found if c)
+
+
+def class_called(category: str, name: str, base: type) -> type:
+    """The class with that Python name: `TempCSVR` of the style ``temp/csvr``, for a package's ``__getattr__``."""
+    if not name.startswith("_"):
+        package = importlib.import_module(f"asemd.{category}")
+        for m in pkgutil.iter_modules(package.__path__):
+            if m.name.replace("_", "") == name.lower():
+                found = _styled(importlib.import_module(f"asemd.{category}.{m.name}"), base)
+                if found and found.__name__ == name:
+                    return found
+    raise AttributeError(f"asemd.{category} has no class {name}")
+
+
+def _styled(module, base: type) -> type | None:
+    """The style class that a module defines."""
+    own = (c for c in vars(module).values() if isinstance(c, type) and issubclass(c, base) and c.__module__ == module.__name__)
+    return next((c for c in own if c.style), None)

@@ -2,6 +2,8 @@ r"""Computes are observers. One compute, one file; each is a plain class whose m
 
 ``needs`` says what the force evaluation must provide on the steps it is used: any of ``energy``, ``virial``, ``energies`` (per atom),
 ``virials`` (per atom). A compute that builds on another one takes it as an argument (pressure takes a temperature compute).
+
+``asemd.compute.PEAtom`` is the class in ``asemd/compute/pe_atom.py``, imported when asked for; `find` goes by the LAMMPS name.
 """
 from __future__ import annotations
 
@@ -10,6 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.style import class_called, class_of
 
 
 class Compute:
@@ -54,3 +57,12 @@ class Compute:
     def modify(self, words: list[str], session) -> None:
         """``compute_modify`` words."""
         raise InputError(f"compute_modify: compute {self.id} (style {self.style}) does not take {words[0]!r}")
+
+
+def find(name: str) -> type[Compute]:
+    """The class of a LAMMPS compute style; raises `InputError` with the nearest match."""
+    return class_of("compute", name, Compute)
+
+
+def __getattr__(name: str) -> type[Compute]:
+    return class_called("compute", name, Compute)

@@ -14,16 +14,22 @@ A compiled hook has the signature ``f(th, s, p, a)``:
 - ``a (m, n) float64``: the fix's own per-atom numbers by row, made by `atom_arrays` (a (1, 1) dummy if it has none).
 
 Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0 only, with
-``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`.
+``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own that several
+hooks share is named with ``@hook(uses=[function])`` and pasted beside them.
+
+The array that `parameters` returns is the one the hooks work on, so a fix that keeps it sees its numbers live; the same holds for `atom_arrays`.
+
+``asemd.fix.NVT`` is the class in ``asemd/fix/nvt.py``, imported when asked for; `find` goes by the LAMMPS name.
 """
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.style import class_called, class_of
 
 if TYPE_CHECKING:
     from asemd.loop import Loop
@@ -32,9 +38,11 @@ HOOKS = ("initial_integrate", "post_integrate", "pre_exchange", "pre_neighbor", 
          "final_integrate", "end_of_step")
 
 
-def hook(function: Callable) -> staticmethod:
-    """Mark a plain function as a compiled hook."""
-    function.compiled = True
+def hook(function: Callable | None = None, *, uses: Sequence[Callable] = ()):
+    """Mark a plain function as a compiled hook; `uses` are the functions it calls beside those of `asemd.kernels`."""
+    if function is None:
+        return lambda f: hook(f, uses=uses)
+    function.compiled, function.uses = True, tuple(uses)
     return staticmethod(function)
 
 
@@ -52,16 +60,26 @@ class Fix:
         LAMMPS name, set by each class.
     integrates : bool
         True if it moves atoms (two of these on one atom are warned about).
+    minimizes : bool
+        True if its post_force acts during minimisation too.
+    ecouple : bool
+        True if `scalar` is the energy of a heat bath, counted by the thermo keywords ecouple and econserve.
     every : int
         `end_of_step` is called on multiples of this.
+    thermo_energy, thermo_virial : bool
+        ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, ``virial(state)`` as virial.
     id : str
         Set by the session.
     """
 
     style: ClassVar[str] = ""
     integrates: ClassVar[bool] = False
+    minimizes: ClassVar[bool] = False
+    ecouple: ClassVar[bool] = False
     every: int = 1
     id: str = ""
+    thermo_energy: bool = False
+    thermo_virial: bool = False
 
     def __init__(self, group: str = "all"):
         self.group = group
@@ -104,8 +122,16 @@ class Fix:
         raise InputError(f"fix {self.id} (style {self.style}) has no global vector")
 
     def modify(self, words: list[str], session) -> None:
-        """``fix_modify`` words."""
-        raise InputError(f"fix_modify: fix {self.id} (style {self.style}) does not take {words[0]!r}")
+        """``fix_modify`` words: pairs of keyword and value."""
+        if len(words) % 2 or not words:
+            raise InputError(f"fix_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
+        for keyword, value in zip(words[::2], words[1::2]):
+            if not self.modify_option(keyword, value, session):
+                raise InputError(f"fix_modify: fix {self.id} (style {self.style}) does not support {keyword} {value}")
+
+    def modify_option(self, keyword: str, value: str, session) -> bool:
+        """Take one pair of ``fix_modify`` words; False if this style has no such option."""
+        return keyword in ("energy", "virial") and value in ("no", "off", "false")
 
     def removed_dof(self, mask: np.ndarray) -> float:
         """Degrees of freedom this fix removes from the atoms of `mask`."""
@@ -114,3 +140,12 @@ class Fix:
     def state(self) -> dict[str, Any]:
         """What a restart needs."""
         return {}
+
+
+def find(name: str) -> type[Fix]:
+    """The class of a LAMMPS fix style; raises `InputError` with the nearest match."""
+    return class_of("fix", name, Fix)
+
+
+def __getattr__(name: str) -> type[Fix]:
+    return class_called("fix", name, Fix)
