@@ -1,0 +1,27 @@
+"""``region ID block xlo xhi ylo yhi zlo zhi``: an axis-aligned box."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.region import Region, limits
+
+
+class Block(Region):
+    """An axis-aligned box from `lo` to `hi`, both (3,)."""
+
+    style = "block"
+    arguments = 6
+
+    def __init__(self, lo, hi, side: str = "in"):
+        super().__init__(side)
+        self.lo, self.hi = np.array(lo, dtype=float), np.array(hi, dtype=float)
+
+    def contains(self, x):
+        return ((x >= self.lo) & (x <= self.hi)).all(axis=1)
+
+    def bounds(self):
+        return self.lo, self.hi
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        return cls(*limits(words, range(3), spacings, session, "region block"), side=side)

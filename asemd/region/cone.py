@@ -1,0 +1,53 @@
+"""``region ID cone dim c1 c2 radlo radhi lo hi``: a cone or a part of one, along an axis."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.region import Region, limits, radius
+from asemd.words import choice, number
+
+
+def across(axis: int) -> tuple[int, int]:
+    """The two other directions, in the order x y z."""
+    return ((1, 2), (0, 2), (0, 1))[axis]
+
+
+class Cone(Region):
+    """A cone along `axis` (0, 1, 2) with radii `low` at `lo` and `high` at `hi`; `center` (2,) is its place in the two other directions."""
+
+    style = "cone"
+    arguments = 7
+
+    def __init__(self, axis: int, center, low: float, high: float, lo: float, hi: float, side: str = "in"):
+        super().__init__(side)
+        self.axis, self.center, self.radii = axis, np.array(center, dtype=float), (float(low), float(high))
+        self.lo, self.hi = float(lo), float(hi)
+
+    def radius_at(self, along):
+        return self.radii[0] + (along - self.lo) * (self.radii[1] - self.radii[0]) / (self.hi - self.lo)
+
+    def contains(self, x):
+        a, b = across(self.axis)
+        along, d1, d2 = x[:, self.axis], x[:, a] - self.center[0], x[:, b] - self.center[1]
+        return (np.sqrt(d1 * d1 + d2 * d2) <= self.radius_at(along)) & (along >= self.lo) & (along <= self.hi)
+
+    def bounds(self):
+        largest = max(self.radii)
+        lo, hi = np.empty(3), np.empty(3)
+        lo[self.axis], hi[self.axis] = self.lo, self.hi
+        for k, c in zip(across(self.axis), self.center):
+            lo[k], hi[k] = c - largest, c + largest
+        return lo, hi
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        what = "region cone"
+        axis = "xyz".index(choice(words[0], ("x", "y", "z"), what))
+        a, b = across(axis)
+        center = number(words[1], what) * spacings[a], number(words[2], what) * spacings[b]
+        (lo,), (hi,) = limits(words[5:7], [axis], spacings, session, what)
+        radii = [radius(w, spacings[a], what) for w in words[3:5]]
+        if radii == [0.0, 0.0] or lo == hi:
+            raise InputError("region cone: one radius must be positive and lo must be below hi")
+        return cls(axis, center, *radii, lo, hi, side=side)

@@ -1,0 +1,30 @@
+"""``region ID cylinder dim c1 c2 radius lo hi``: a cylinder along an axis."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.region import limits, radius
+from asemd.region.cone import Cone, across
+from asemd.words import choice, number
+
+
+class Cylinder(Cone):
+    """A cylinder along `axis` (0, 1, 2) from `lo` to `hi`; `center` (2,) holds its place in the two other directions."""
+
+    style = "cylinder"
+    arguments = 6
+
+    def __init__(self, axis: int, center, radius: float, lo: float, hi: float, side: str = "in"):
+        super().__init__(axis, center, radius, radius, lo, hi, side)
+
+    def radius_at(self, along):
+        return np.full_like(along, self.radii[0])
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        what = "region cylinder"
+        axis = "xyz".index(choice(words[0], ("x", "y", "z"), what))
+        a, b = across(axis)
+        center = number(words[1], what) * spacings[a], number(words[2], what) * spacings[b]
+        (lo,), (hi,) = limits(words[4:6], [axis], spacings, session, what)
+        return cls(axis, center, radius(words[3], spacings[a], what), lo, hi, side=side)

@@ -1,0 +1,36 @@
+"""``region ID plane px py pz nx ny nz``: the half space a normal points into."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.region import Region
+from asemd.words import number
+
+
+class Plane(Region):
+    """The half space in the direction of `normal` (3,) from `point` (3,)."""
+
+    style = "plane"
+    arguments = 6
+
+    def __init__(self, point, normal, side: str = "in"):
+        super().__init__(side)
+        self.point, self.normal = np.array(point, dtype=float), np.array(normal, dtype=float)
+        length = np.sqrt(self.normal @ self.normal)
+        if length == 0.0:
+            raise InputError("region plane: the normal must not be zero")
+        self.normal /= length
+
+    def contains(self, x):
+        dx, dy, dz = (x - self.point).T
+        nx, ny, nz = self.normal
+        return dx * nx + dy * ny + dz * nz >= 0.0
+
+    def bounds(self):
+        return None
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        values = [number(w, "region plane") for w in words]
+        return cls(values[:3] * spacings, values[3:] * spacings, side=side)

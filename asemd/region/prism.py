@@ -1,0 +1,45 @@
+"""``region ID prism xlo xhi ylo yhi zlo zhi xy xz yz``: a tilted box."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.region import Region, limits
+from asemd.words import BIG, number
+
+
+class Prism(Region):
+    """A parallelepiped with edges (xhi - xlo, 0, 0), (xy, yhi - ylo, 0), (xz, yz, zhi - zlo) from `lo` (3,); `tilt` is (xy, xz, yz)."""
+
+    style = "prism"
+    arguments = 9
+
+    def __init__(self, lo, hi, tilt, side: str = "in"):
+        super().__init__(side)
+        self.lo, self.hi, self.tilt = (np.array(v, dtype=float) for v in (lo, hi, tilt))
+        if np.any(self.hi <= self.lo):
+            raise InputError("region prism: every lower bound must be below its upper bound")
+        xy, xz, yz = self.tilt
+        for tilt_, name, axes in ((xy, "xy", (0, 1)), (xz, "xz", (0, 2)), (yz, "yz", (1, 2))):
+            if tilt_ != 0.0 and any(self.lo[k] == -BIG and self.hi[k] == BIG for k in axes):
+                raise InputError(f"region prism: with tilt {name} both directions need bounds other than INF")
+        length = self.hi - self.lo
+        self.cell = np.array([[length[0], 0.0, 0.0], [xy, length[1], 0.0], [xz, yz, length[2]]])
+
+    def contains(self, x):
+        (a, _, _), (xy, b, _), (xz, yz, c) = self.cell
+        dx, dy, dz = (x - self.lo).T
+        s2 = dz / c
+        s1 = dy / b - yz * dz / (b * c)
+        s0 = dx / a - xy * dy / (a * b) + (xy * yz - b * xz) * dz / (a * b * c)
+        return (s0 >= 0.0) & (s0 <= 1.0) & (s1 >= 0.0) & (s1 <= 1.0) & (s2 >= 0.0) & (s2 <= 1.0)
+
+    def bounds(self):
+        corners = self.lo + np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ self.cell
+        return corners.min(axis=0), corners.max(axis=0)
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        lo, hi = limits(words, range(3), spacings, session, "region prism")
+        xy, xz, yz = (number(w, "region prism") for w in words[6:9])
+        return cls(lo, hi, (xy * spacings[0], xz * spacings[0], yz * spacings[1]), side=side)

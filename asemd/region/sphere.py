@@ -1,0 +1,30 @@
+"""``region ID sphere x y z radius``"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.region import Region, radius
+from asemd.words import number
+
+
+class Sphere(Region):
+    """A ball around `center` (3,)."""
+
+    style = "sphere"
+    arguments = 4
+
+    def __init__(self, center, radius: float, side: str = "in"):
+        super().__init__(side)
+        self.center, self.radius = np.array(center, dtype=float), float(radius)
+
+    def contains(self, x):
+        dx, dy, dz = (x - self.center).T
+        return np.sqrt(dx * dx + dy * dy + dz * dz) <= self.radius
+
+    def bounds(self):
+        return self.center - self.radius, self.center + self.radius
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        center = [number(w, "region sphere") * s for w, s in zip(words, spacings)]
+        return cls(center, radius(words[3], spacings[0], "region sphere"), side=side)

@@ -1,0 +1,42 @@
+"""``region ID union N reg-ID1 reg-ID2 ...``: what lies in any of several regions."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError, nearest
+from asemd.region import Region, options
+from asemd.words import take, whole
+
+
+class Union(Region):
+    """Points inside any of `regions`."""
+
+    style = "union"
+    join = staticmethod(np.logical_or)
+
+    def __init__(self, regions, side: str = "in"):
+        super().__init__(side)
+        self.regions = list(regions)
+
+    def contains(self, x):
+        return self.join.reduce([r.inside(x) for r in self.regions])
+
+    def bounds(self):
+        boxes = [r.extent() for r in self.regions]
+        if any(b is None for b in boxes):
+            return None
+        return np.min([lo for lo, _ in boxes], axis=0), np.max([hi for _, hi in boxes], axis=0)
+
+    @classmethod
+    def from_lammps(cls, words, session):
+        what = f"region {cls.style}"
+        n = whole(take(words, 1, what)[0], what)
+        if n < 2:
+            raise InputError(f"{what} needs two regions at least, got {n}")
+        known = session.scene.regions
+        regions = []
+        for name in take(words[1:], n, what):
+            if name not in known:
+                raise InputError(f"{what}: unknown region {name!r}{nearest(name, known)}")
+            regions.append(known[name])
+        return cls(regions, side=options(words[1 + n:], cls.style)[1])
