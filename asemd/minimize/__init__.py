@@ -1,10 +1,10 @@
 r"""Energy minimisers on a plain function of positions. One minimiser, one file: ``cg``, ``sd``, ``fire``.
 
-A minimiser is a module with one function::
+A minimiser is a class with one static method::
 
     minimize(problem, etol, ftol, maxiter, maxeval, options, callback) -> Result
 
-`find` gives it by its LAMMPS name. It works for anything that can be evaluated::
+`find` gives the class by its LAMMPS name. It works for anything that can be evaluated::
 
     from asemd.minimize import Options, Problem, find
     problem = Problem(x0=atoms.positions, evaluate=energy_and_forces)
@@ -20,7 +20,6 @@ import math
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -183,15 +182,16 @@ class Result(NamedTuple):
             f"  Iterations, force evaluations = {self.iterations} {self.evaluations}"])
 
 
-def find(style: str) -> ModuleType:
-    """The module of a minimiser by its LAMMPS name; it has ``minimize``.
+def find(style: str) -> type:
+    """The class of a minimiser by its LAMMPS name.
 
     Raises
     ------
     InputError
         Unknown style; the message offers the nearest match.
     """
-    known = [m.name for m in pkgutil.iter_modules(__path__) if m.name != "state"]
+    known = [m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_")]
     if style not in known:
         raise InputError(f"unknown min_style {style!r}{nearest(style, known)}; there are {' '.join(sorted(known))}")
-    return importlib.import_module(f"asemd.minimize.{style}")
+    module = importlib.import_module(f"asemd.minimize.{style}")
+    return next(c for c in vars(module).values() if getattr(c, "style", "") == style)
