@@ -1,0 +1,484 @@
+"""The engine: atom data in slots, neighbour list, terms; energy, forces and virial of a `System`."""
+from __future__ import annotations
+
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from asemd import units as unit_styles
+from asemd.errors import InputError, SimulationError
+from asemd.kernels.state import State, cell_arrays
+from asemd.neighbor import SMALL, BinCell, ClusterList, PlainList, kernels, partner_table
+from asemd.term import BONDED_KEY, BondedTerm, PairListTerm, PairTerm
+
+CATEGORIES = ("pair", "bond", "angle", "dihedral", "improper")
+ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
+PLURAL = {"bond": "bonds", "angle": "angles", "dihedral": "dihedrals", "improper": "impropers"}
+
+
+@dataclass
+class Settings:
+    """How lists are built and forces computed.
+
+    Parameters
+    ----------
+    skin : float
+        Extra distance of the neighbour list.
+    every, delay, check
+        When to rebuild, as in ``neigh_modify``.
+    exclude : list
+        ``("type", i, j)``, ``("group", mask_i, mask_j)``, ``("molecule/intra", mask)``, ``("molecule/inter", mask)``; masks (n,) bool.
+    threads : int
+    precision : str
+        ``double``, or ``mixed``: pair arithmetic in single precision, sums in double.
+    """
+
+    skin: float = 0.3
+    every: int = 1
+    delay: int = 0
+    check: bool = True
+    exclude: list = field(default_factory=list)
+    threads: int = 1
+    precision: str = "double"
+
+
+@dataclass
+class Result:
+    """Energies, forces, virial of one configuration, in the units of the system.
+
+    `virial` (6,): xx yy zz xy xz yz, sum of r_i f_i over all terms (energy units, without tail corrections);
+    `virial_of` and `energies_of`, `virials_of`: the same by category.
+    """
+
+    energy: dict[str, float]
+    virial: np.ndarray
+    virial_of: dict[str, np.ndarray]
+    forces: np.ndarray
+    energies: np.ndarray | None = None
+    virials: np.ndarray | None = None
+    energies_of: dict[str, np.ndarray] = field(default_factory=dict)
+    virials_of: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def potential(self) -> float:
+        return float(sum(self.energy.values()))
+
+
+@dataclass
+class Snapshot:
+    """What computes, thermo output and dumps see of a step."""
+
+    system: object
+    result: Result
+    groups: dict[str, np.ndarray]
+    dt: float
+    step: int = 0
+    fixes: list = field(default_factory=list)
+
+    @property
+    def units(self):
+        return unit_styles.get(self.system.units)
+
+    @property
+    def dimension(self) -> int:
+        return self.system.dimension
+
+    def mask(self, group: str) -> np.ndarray:
+        return self.groups[group]
+
+
+class Engine:
+    """Compiled forces of a system.
+
+    Parameters
+    ----------
+    system : asemd.system.System
+    interactions : asemd.forcefield.Interactions
+    settings : Settings
+
+    Attributes
+    ----------
+    mode : str
+        ``cluster``, ``plain`` or ``none``: which neighbour list the scene needs; `why` says why.
+    """
+
+    def __init__(self, system, interactions, settings: Settings | None = None):
+        self.system, self.interactions, self.settings = system, interactions, settings or Settings()
+        self.threads = max(1, self.settings.threads)
+        self.builds = self.dangerous = 0
+        self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
+        self._pool = None
+        self.groups: dict[str, np.ndarray] = {}
+        self.bits: dict[str, int] = {"all": 1}
+        self.result: Result | None = None
+        self.units = unit_styles.get(system.units)
+        self.qqr2e = self.units.qqr2e / interactions.dielectric
+        self.update(system)
+
+    # ---- set-up -------------------------------------------------------------------------------------------------------------------------
+    def update(self, system) -> None:
+        """Take over types, charges, topology, box and groups after they changed; coefficients too."""
+        self.system = system
+        n = system.n
+        self._set_box()
+        s = self.settings
+        inter = self.interactions
+        nt = system.counts["ntypes"]
+        self.pair_terms = [t for t in inter.pair_terms(nt, self.units) if t.style.parts]
+        single = s.precision == "mixed"
+        for kind, *pair in s.exclude:
+            if kind == "type":
+                for t in self.pair_terms:
+                    row = 0
+                    for part in t.style.parts:
+                        t.tables.rows[row, pair[0], pair[1]] = t.tables.rows[row, pair[1], pair[0]] = 0.0
+                        row += 2 + len(part.rows)
+        self.cutoff = max((float(t.tables.rows[r].max()) for t in self.pair_terms for r in self._cut_rows(t)), default=0.0) ** 0.5
+        self.reach = self.cutoff + s.skin
+        self._set_special()
+        rules = [e for e in s.exclude if e[0] != "type"]
+        self._set_rules(rules, n)
+        table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
+        widths = 1.0 / np.linalg.norm(np.linalg.inv(self.vectors), axis=0)
+        if not self.pair_terms:
+            self.mode, self.why = "none", "no pair interactions"
+        elif n < SMALL:
+            self.mode, self.why = "plain", f"fewer than {SMALL} atoms"
+        elif (widths[self.periodic] < 2 * self.reach).any():
+            self.mode, self.why = "plain", "a periodic cell width is below twice cutoff plus skin"
+        else:
+            self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
+        self.expanded = self.mode == "cluster" and (table or bool(len(self.rules)))
+        terms: list = []
+        weighted = bool(len(self.special_kept))
+        for t in self.pair_terms:
+            if self.mode == "cluster" and not self.expanded:
+                terms.append(PairTerm(t, single))
+                if weighted:
+                    terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special"))
+            else:
+                terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all"))
+        for category in CATEGORIES[1:]:
+            items = getattr(system.topology, PLURAL[category])
+            types = getattr(system.topology, f"{category}_types")
+            for use in inter.uses.get(category, []):
+                if use.style.function is None or not len(items):
+                    continue
+                mine = np.isin(types, list(use.coeff))
+                if mine.any():
+                    terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], self.units))
+                    self._one_four(use, items[mine], types[mine], terms)
+        for k, t in enumerate(terms):
+            t.index = k
+        self.terms = terms
+        self.acc = np.zeros((self.threads, max(1, len(terms)), 8))
+        self.bad = np.zeros((self.threads, max(1, len(terms)), 4))
+        self._rows(n)
+        self.list = ClusterList(self.threads, self.reach) if self.mode == "cluster" else PlainList(self.reach)
+        self.state = None
+        self.ns = 0
+
+    @staticmethod
+    def _cut_rows(term):
+        row = 0
+        for part in term.style.parts:
+            yield row
+            row += 2 + len(part.rows)
+
+    def _set_box(self) -> None:
+        box = self.system.box
+        self.vectors = np.ascontiguousarray(box.cell, float)
+        self.origin = np.asarray(box.origin, float).copy()
+        self.periodic = np.array(box.periodic, bool)
+        if self.system.dimension == 2:
+            self.periodic[2] = False
+        off = self.vectors - np.diag(np.diag(self.vectors))
+        self.ortho = not np.count_nonzero(off) and bool((np.diag(self.vectors) > 0).all())
+        self.inverse = np.ascontiguousarray(np.linalg.inv(self.vectors))
+        self.cell = cell_arrays(self.vectors, self.periodic)
+        codes = np.array([(a, b, c) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1)], float)
+        self.shifts27 = codes @ self.cell.reduced
+        self.periodic27 = (codes[:, ~self.periodic] == 0).all(axis=1)
+        self.k = kernels(self.ortho)
+
+    def _set_special(self) -> None:
+        inter, system = self.interactions, self.system
+        self.weight_lj = np.array([1.0, *inter.special_lj])
+        self.weight_coul = np.array([1.0, *inter.special_coul])
+        self.special_kept = np.zeros((0, 2), np.int32)
+        self.special_kinds = np.zeros(0, np.int32)
+        self.partners = None
+        if not self.pair_terms or system.topology.is_empty:
+            return
+        pairs, kinds = inter.special_pairs(system)
+        changed = (self.weight_lj[kinds] != 1.0) | (self.weight_coul[kinds] != 1.0)
+        pairs, kinds = pairs[changed], kinds[changed].astype(np.int32)
+        if not len(pairs):
+            return
+        self.partners = partner_table(system.n, pairs, kinds)
+        self.keep = np.array([True] + [bool(a != 0 or b != 0) for a, b in zip(self.weight_lj[1:], self.weight_coul[1:])])
+        kept = self.keep[kinds]
+        self.special_kept, self.special_kinds = np.ascontiguousarray(pairs[kept], np.int32), np.ascontiguousarray(kinds[kept])
+
+    def _set_rules(self, rules, n: int) -> None:
+        self.rules = np.zeros((len(rules), 3), np.int64)
+        self.rule_mask = np.zeros(n, np.int64)
+        bit = 1
+        for k, (kind, *masks) in enumerate(rules):
+            self.rules[k, 0] = {"group": 0, "molecule/intra": 1, "molecule/inter": 2}[kind]
+            for m, mask in enumerate(masks):
+                self.rule_mask[mask] |= bit
+                self.rules[k, 1 + m] = bit
+                bit <<= 1
+        self.molecule = np.asarray(self.system.molecule, np.int64) if self.system.molecule is not None else np.zeros(n, np.int64)
+
+    def _one_four(self, use, items, types, terms) -> None:
+        """Weighted 1-4 pairs of dihedral style charmm, computed with the pair style's 1-4 coefficients."""
+        weight = getattr(use.style, "weight_14", "")
+        if not weight:
+            return
+        weights = np.array([0.0] + [float(use.coeff.get(t, {}).get(weight, 0.0)) for t in range(1, int(types.max()) + 1)])
+        w = weights[types]
+        used = w != 0.0
+        if not used.any():
+            return
+        owner = next((t for t in self.pair_terms if hasattr(t.style, "one_four")), None)
+        if owner is None:
+            raise InputError("dihedral style charmm with a nonzero weight needs a pair style with 1-4 coefficients, such as lj/charmm/coul/charmm")
+        tables = owner.style.one_four(owner.use.settings, owner.filled, self.system.counts["ntypes"], self.units)
+        for value in np.unique(w[used]):
+            pairs = np.ascontiguousarray(items[w == value][:, [0, 3]], np.int32)
+            term = PairListTerm(owner.style, tables, owner.style.one_four_parts, "one_four",
+                                (pairs, np.full(len(pairs), 1, np.int32), np.array([1.0, value, value, value])))
+            terms.append(term)
+
+    def _rows(self, n: int) -> None:
+        """Per-atom constants by row, from which slots are filled at each build."""
+        s = self.system
+        self.type_row = np.ascontiguousarray(s.type, np.int32)
+        self.mass_row = np.ascontiguousarray(np.nan_to_num(s.atom_masses(), nan=1.0), float)
+        self.inverse_row = self.units.ftm2v / self.mass_row
+        self.q_row = np.ascontiguousarray(s.q, float) if s.q is not None else np.zeros(n)
+        self.mask_row = np.ones(n, np.int32)
+        for name, mask in self.groups.items():
+            if name != "all":
+                self.mask_row[mask] |= np.array(self.bits[name]).astype(np.int32)
+        self.slot_of = np.zeros(n, np.int32)
+
+    def _allocate(self, capacity: int) -> None:
+        old = self.state
+        new = State(np.zeros((3, capacity)), np.zeros((3, capacity)), np.zeros((3, capacity)), np.full(capacity, -1, np.int32),
+                    np.zeros(capacity, np.int32), np.ones(capacity), np.zeros(capacity), np.zeros(capacity), np.zeros(capacity, np.int32))
+        if old is not None:
+            m = self.ns
+            for a, b in zip(new, old):
+                a[..., :m] = b[..., :m]
+        self.buffers = np.zeros((self.threads, 3, capacity))
+        self.state = new._replace(f=self.buffers[0])
+        self.held = np.zeros((3, capacity))
+        self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
+
+    def parallel(self, work) -> None:
+        """Run ``work(tid)`` on every thread; kernels release the interpreter lock."""
+        if self.threads == 1:
+            work(0)
+            return
+        if self._pool is None:
+            self._pool = ThreadPoolExecutor(self.threads - 1)
+        futures = [self._pool.submit(work, t) for t in range(1, self.threads)]
+        work(0)
+        for f in futures:
+            f.result()
+
+    def __getstate__(self):
+        raise TypeError("an Engine holds compiled code and is made anew from its scene")
+
+    # ---- lists --------------------------------------------------------------------------------------------------------------------------
+    def load(self) -> None:
+        """Positions and velocities of the system into slots, and a fresh list."""
+        n = self.system.n
+        if self.state is None or self.state.x.shape[1] < n + 8:
+            self.ns = 0
+            self.state = None
+            self._allocate(n + 8)
+        self.ns = n
+        s = self.state
+        s.row[:] = -1
+        s.row[:n] = np.arange(n, dtype=np.int32)
+        s.x[:, :n] = self.system.x.T
+        s.v[:, :n] = self.system.v.T
+        self.image0 = self.system.image.copy()
+        self.rebuild()
+
+    def rebuild(self) -> None:
+        """Wrap, sort, list: the slots keep their atoms' data but change order."""
+        began = time.perf_counter()
+        k, s = self.k, self.state
+        bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
+        if bad >= 0:
+            raise SimulationError(f"atom {self.system.id[s.row[bad]]}: position is not finite")
+        if self.mode == "cluster":
+            bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
+            if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
+                self._allocate(self.list.capacity)
+                s = self.state
+            self.ns = self.list.sort(k, s, self.ns, bins)
+        k.gather(self.ns, s.row, self.slot_of, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row, s.type, s.mass,
+                 s.inverse_mass, s.q, s.mask, s.x, self.held)
+        if self.mode == "cluster":
+            hide = None if self.expanded else self.partners
+            self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel)
+            if self.expanded:
+                self._mark(*self.list.expand(k, s, self.reach), self.list.shifts)
+            elif len(self.special_kept):
+                self.special = [np.empty(len(self.special_kept), np.int32) for _ in range(3)]
+                k.special_pairs(self.special_kept, self.special_kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
+        elif self.mode == "plain":
+            bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
+            self._mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
+        for t in self.terms:
+            t.rebuild(self)
+        self._arguments = None
+        self.builds += 1
+        self.timings["Neigh"] += time.perf_counter() - began
+
+    def _mark(self, i, j, code, shifts) -> None:
+        """Special pairs and exclusions of a plain list."""
+        n = len(i)
+        if len(self.rules):
+            n = self.k.drop_excluded(self.state.row, i, j, code, n, self.rule_mask, self.molecule, self.rules)
+        if self.partners is not None:
+            n = self.k.mark_special(self.state.x, self.state.row, i, j, code, n, shifts, *self.partners, self.keep, self.cell.reduced * self.periodic[:, None],
+                                    self.cell.reduced_inverse)
+        self.plain, self.plain_shifts = [i[:n], j[:n], code[:n]], shifts
+
+    @property
+    def pairs(self) -> int:
+        """Neighbours in the list."""
+        if self.mode == "cluster":
+            return int(sum(self.list.first[t, self.list.bounds[t + 1]] for t in range(self.threads)))
+        return len(self.plain[0]) if self.mode == "plain" else 0
+
+    def arguments(self, tid: int) -> tuple:
+        """Arguments of all terms for a thread."""
+        if self._arguments is None:
+            self._arguments = [tuple(t.arguments(self, i) for t in self.terms) for i in range(self.threads)]
+        return self._arguments[tid]
+
+    # ---- forces -------------------------------------------------------------------------------------------------------------------------
+    def forces(self, energy: bool = True) -> None:
+        """Forces of the present slots into ``state.f``; energies and virials into `acc`."""
+        if energy:
+            self.acc[:] = 0.0
+        calls = [t.kernel(energy, False) for t in self.terms]
+        spent = np.zeros(len(calls))
+
+        def work(tid):
+            self.k.clear(self.buffers[tid], self.ns)
+            for n, (f, a) in enumerate(zip(calls, self.arguments(tid))):
+                began = time.perf_counter()
+                f(*a)
+                if tid == 0:
+                    spent[n] += time.perf_counter() - began
+        self.parallel(work)
+        if self.threads > 1:
+            self.k.add_buffers(self.buffers, self.ns)
+        for t, dt in zip(self.terms, spent):
+            self.timings["Pair" if t.category == "pair" else "Bond"] += dt
+        self.check()
+
+    def check(self) -> None:
+        """Raise for the first item outside its style's domain."""
+        if self.bad[:, :, 0].any():
+            for tid in range(self.threads):
+                for t in self.terms:
+                    if self.bad[tid, t.index, 0]:
+                        item, value = int(self.bad[tid, t.index, 1]), float(self.bad[tid, t.index, 2])
+                        self.bad[:] = 0.0
+                        raise t.describe(self, item, value)
+
+    def collect(self) -> Result:
+        """The result of the last evaluation with energies."""
+        acc = self.acc.sum(axis=0)
+        energy = dict.fromkeys(ENERGIES, 0.0)
+        virial_of = {}
+        for t in self.terms:
+            a = acc[t.index]
+            if t.category == "pair":
+                energy["evdwl"] += float(a[0])
+                energy["ecoul"] += float(a[1])
+            else:
+                energy[BONDED_KEY[t.category]] += float(a[0])
+            virial_of[t.category] = virial_of.get(t.category, 0.0) + a[2:8]
+        virial = sum(virial_of.values(), np.zeros(6))
+        if self.interactions.tail and self.pair_terms:
+            e, p = self.interactions.tail_correction(self.system, self.units)
+            energy["etail"] = e
+            virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])
+        self.store()
+        if not np.isfinite(acc).all() or not np.isfinite(self.system.f).all():
+            raise self._not_finite()
+        self.result = Result(energy, virial, virial_of, self.system.f)
+        return self.result
+
+    def _not_finite(self) -> SimulationError:
+        """Find who is to blame: coincident atoms, else the first atom with a bad force."""
+        s, bad = self.system, np.flatnonzero(~np.isfinite(self.system.f).all(axis=1))
+        if self.mode == "cluster":
+            i, j, code = self.list.expand(self.k, self.state, 1e-3 * max(self.cutoff, 1e-300))
+            if len(i):
+                d = self.state.x[:, i] - self.state.x[:, j] - self.list.shifts[code >> 2].T
+                m = int(np.argmin((d * d).sum(0)))
+                a, b = sorted(int(s.id[self.state.row[t[m]]]) for t in (i, j))
+                return SimulationError(f"atoms {a} and {b} overlap (distance {np.sqrt((d[:, m]**2).sum()):.3g}): energy or force is not finite")
+        who = f"atom {s.id[bad[0]]}: force is not finite (NaN or infinite)" if len(bad) else "the energy is not finite"
+        return SimulationError(who + "; atoms overlap, or the time step is too long")
+
+    def store(self) -> None:
+        """Slots back into the system: positions, velocities, forces."""
+        s, y = self.state, self.system
+        self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
+
+    def per_atom(self, result: Result) -> Result:
+        """Add each atom's share of energy and virial to `result`; runs the per-atom kernels, once."""
+        n, capacity = self.system.n, self.state.x.shape[1]
+        if self.mode == "cluster" and not self.expanded:
+            self._mark(*self.list.expand(self.k, self.state, self.cutoff), self.list.shifts)
+        keep = (self.acc.copy(), self.buffers.copy())
+        self.atom_energy, self.atom_virial = np.zeros((self.threads, capacity)), np.zeros((self.threads, 6, capacity))
+        rows, slots = self.state.row[:self.ns], np.flatnonzero(self.state.row[:self.ns] >= 0)
+        for t in self.terms:
+            if isinstance(t, PairListTerm) and t.pairs == "special":
+                continue
+            if isinstance(t, PairTerm):
+                t, index = PairListTerm(t.style, t.tables, t.style.parts, "all"), t.index
+                t.index = index
+                t.rebuild(self)
+            self.atom_energy[:] = 0.0
+            self.atom_virial[:] = 0.0
+            f = t.kernel(True, True)
+            for tid in range(self.threads):
+                f(*t.arguments(self, tid))
+            e, v = np.zeros(n), np.zeros((n, 6))
+            e[rows[slots]] = self.atom_energy.sum(0)[slots]
+            v[rows[slots]] = self.atom_virial.sum(0)[:, slots].T
+            result.energies_of[t.category] = result.energies_of.get(t.category, 0.0) + e
+            result.virials_of[t.category] = result.virials_of.get(t.category, 0.0) + v
+        self.acc[:], self.buffers[:] = keep
+        self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
+        self._arguments = None
+        result.energies = sum(result.energies_of.values(), np.zeros(n))
+        result.virials = sum(result.virials_of.values(), np.zeros((n, 6)))
+        return result
+
+    def compute(self, virial: bool = True, energies: bool = False, virials: bool = False) -> Result:
+        """Energy, forces and virial at the system's positions; per-atom shares when asked for."""
+        self.load()
+        self.forces(True)
+        result = self.collect()
+        return self.per_atom(result) if energies or virials else result
+
+
+__all__ = ["Engine", "Result", "Settings", "Snapshot"]

@@ -1,0 +1,309 @@
+"""Sorting atoms into clusters and listing which clusters' atoms come near each other.
+
+Atoms stand in columns along the third cell vector, ordered along it by fine cells; `CLUSTER` consecutive ones form a cluster; empty slots pad the
+last cluster of a column. The list is half: cluster i holds single atoms j of later clusters (all images), and of its own cluster the images on the
+positive side. An entry is slot number + (shift code << 26); the code counts image -1, 0, 1 in base three, 13 is no shift, so no ghost atoms exist.
+
+These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the generated module.
+"""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+CLUSTER = 8
+ORTHO = True
+SLOT_BITS = 0x3FFFFFF
+
+
+def wrap(x, image, row, ns, origin, vectors, inverse, periodic):
+    """Fold slots into the cell, counting images; returns the first slot that is not finite, or -1."""
+    for i in range(ns):
+        r = row[i]
+        if r < 0:
+            continue
+        if not (abs(x[0, i]) + abs(x[1, i]) + abs(x[2, i]) < np.inf):
+            return i
+        for a in range(2, -1, -1):
+            if not periodic[a]:
+                continue
+            if ORTHO:
+                d = x[a, i] - origin[a]
+                if d < 0.0 or x[a, i] >= origin[a] + vectors[a, a]:
+                    n = math.floor(d / vectors[a, a])
+                    x[a, i] -= n * vectors[a, a]
+                    image[r, a] += int(n)
+                    if x[a, i] >= origin[a] + vectors[a, a]:     # rounding at the upper face
+                        x[a, i] = origin[a]
+                        image[r, a] += 1
+            else:
+                s = ((x[0, i] - origin[0]) * inverse[0, a] + (x[1, i] - origin[1]) * inverse[1, a]
+                     + (x[2, i] - origin[2]) * inverse[2, a])
+                n = math.floor(s)
+                if n != 0.0:
+                    for d in range(3):
+                        x[d, i] -= n * vectors[a, d]
+                    image[r, a] += int(n)
+    return -1
+
+
+def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step):
+    """Counting sort into columns and cells, in place; returns the new number of slots. Empty slots stand at `far` plus steps, at rest."""
+    ncol = nx * ny
+    for c in range(ncol):
+        for z in range(nz + 1):
+            cell_start[c, z] = 0
+    n = 0
+    for i in range(ns):
+        if row[i] < 0:
+            continue
+        dx = x[0, i] - origin[0]
+        dy = x[1, i] - origin[1]
+        dz = x[2, i] - origin[2]
+        a = min(max(int((dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]) * nx), 0), nx - 1)
+        b = min(max(int((dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]) * ny), 0), ny - 1)
+        c = min(max(int((dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]) * nz), 0), nz - 1)
+        for d in range(3):
+            x2[d, n] = x[d, i]
+            v2[d, n] = v[d, i]
+        row2[n] = row[i]
+        key[n] = (a * ny + b) * nz + c
+        cell_start[a * ny + b, c] += 1
+        n += 1
+    p = 0
+    for c in range(ncol):
+        column_start[c] = p
+        for z in range(nz):
+            t = cell_start[c, z]
+            cell_start[c, z] = p
+            p += t
+        cell_start[c, nz] = p
+        q = ((p + CLUSTER - 1) // CLUSTER) * CLUSTER
+        for k in range(p, q):
+            for d in range(3):
+                x[d, k] = far[d]
+                v[d, k] = 0.0
+            x[0, k] += (k % CLUSTER) * far_step
+            row[k] = -1
+        for k in range(column_start[c] // CLUSTER, q // CLUSTER):
+            column_of[k] = c
+        p = q
+    column_start[ncol] = p
+    for i in range(n):
+        c = key[i] // nz
+        z = key[i] - c * nz
+        k = cell_start[c, z]
+        cell_start[c, z] += 1
+        for d in range(3):
+            x[d, k] = x2[d, i]
+            v[d, k] = v2[d, i]
+        row[k] = row2[i]
+    for c in range(ncol):            # the starts have moved to the ends: shift back
+        for z in range(nz - 1, 0, -1):
+            cell_start[c, z] = cell_start[c, z - 1]
+        cell_start[c, 0] = column_start[c]
+    return p
+
+
+def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
+          first, entries, unshifted, work, codes):
+    """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
+
+    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (4, w)`, `codes (w,)`: candidates of one cluster;
+    `unshifted[c]` is set if no entry of cluster c needs a shift.
+    """
+    n = 0
+    r2 = reach * reach
+    tx, ty, tz, td = work[0], work[1], work[2], work[3]
+    wa = widths[0] / nx
+    wb = widths[1] / ny
+    ra = int(reach / wa) + 1
+    rb = int(reach / wb) + 1
+    capacity = codes.shape[0]
+    for ci in range(c0, c1):
+        first[ci] = n
+        column = column_of[ci]
+        ca = column // ny
+        cb = column % ny
+        lo0, lo1, lo2, hi0, hi1, hi2 = 1e300, 1e300, 1e300, -1e300, -1e300, -1e300
+        m = 0
+        for k in range(ci * CLUSTER, ci * CLUSTER + CLUSTER):
+            if row[k] >= 0:
+                m += 1
+                dx = x[0, k] - origin[0]
+                dy = x[1, k] - origin[1]
+                dz = x[2, k] - origin[2]
+                s0 = dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]
+                s1 = dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]
+                s2 = dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]
+                lo0 = min(lo0, s0)
+                hi0 = max(hi0, s0)
+                lo1 = min(lo1, s1)
+                hi1 = max(hi1, s1)
+                lo2 = min(lo2, s2)
+                hi2 = max(hi2, s2)
+        nt = 0
+        all_in = True
+        for da in range(-ra, ra + 1):
+            ia = ca + da
+            sa = 0
+            if ia < 0:
+                ia += nx
+                sa = -1
+            elif ia >= nx:
+                ia -= nx
+                sa = 1
+            if (sa != 0 and not periodic[0]) or ia < 0 or ia >= nx:
+                continue
+            left = (ia + sa * nx) / nx
+            d0 = max(left - hi0, max(lo0 - (left + 1.0 / nx), 0.0)) * widths[0]
+            if d0 > reach:
+                continue
+            for db in range(-rb, rb + 1):
+                ib = cb + db
+                sb = 0
+                if ib < 0:
+                    ib += ny
+                    sb = -1
+                elif ib >= ny:
+                    ib -= ny
+                    sb = 1
+                if (sb != 0 and not periodic[1]) or ib < 0 or ib >= ny:
+                    continue
+                c2 = ia * ny + ib
+                if column_start[c2 + 1] <= ci * CLUSTER:
+                    continue
+                left = (ib + sb * ny) / ny
+                d1 = max(left - hi1, max(lo1 - (left + 1.0 / ny), 0.0)) * widths[1]
+                if ORTHO:
+                    rz = r2 - d0 * d0 - d1 * d1
+                    if rz <= 0.0:
+                        continue
+                    rz = math.sqrt(rz) / widths[2]
+                else:
+                    if d1 > reach:
+                        continue
+                    rz = reach / widths[2]
+                z0 = int(math.floor((lo2 - rz) * nz))
+                z1 = int(math.floor((hi2 + rz) * nz))
+                for sc in range(-1, 2):
+                    if sc != 0 and not periodic[2]:
+                        continue
+                    a0 = max(z0, sc * nz)
+                    a1 = min(z1, sc * nz + nz - 1)
+                    if a1 < a0:
+                        continue
+                    code = (sa + 1) * 9 + (sb + 1) * 3 + sc + 1
+                    start = (ci + 1) * CLUSTER if code <= 13 else ci * CLUSTER
+                    k0 = max(cell_start[c2, a0 - sc * nz], start)
+                    k1 = cell_start[c2, a1 - sc * nz + 1]
+                    count = k1 - k0
+                    if count <= 0:
+                        continue
+                    if nt + count > capacity:
+                        return -2
+                    if code != 13:
+                        all_in = False
+                    px = shifts[code, 0]
+                    py = shifts[code, 1]
+                    pz = shifts[code, 2]
+                    high = np.int32(code << 26)
+                    for q in range(count):
+                        tx[nt + q] = x[0, k0 + q] + px
+                        ty[nt + q] = x[1, k0 + q] + py
+                        tz[nt + q] = x[2, k0 + q] + pz
+                        codes[nt + q] = np.int32(k0 + q) | high
+                    nt += count
+        unshifted[ci] = all_in
+        for t in range(nt):
+            td[t] = 1e300
+        for k in range(ci * CLUSTER, ci * CLUSTER + m, 2):
+            k2 = min(k + 1, ci * CLUSTER + m - 1)
+            xi, yi, zi = x[0, k], x[1, k], x[2, k]
+            xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
+            for t in range(nt):
+                a = tx[t] - xi
+                b = ty[t] - yi
+                c = tz[t] - zi
+                e = tx[t] - xj
+                f = ty[t] - yj
+                g = tz[t] - zj
+                td[t] = min(td[t], min(a * a + b * b + c * c, e * e + f * f + g * g))
+        if n + nt > entries.shape[0]:
+            return -1
+        for t in range(nt):
+            entries[n] = codes[t]
+            n += td[t] < r2
+    first[c1] = n
+    return n
+
+
+def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, excluded_first, excluded, where):
+    """Entries of the list that special pairs take out, per cluster as (atom in cluster << 16) + place in the kernel's buffer.
+
+    Returns the number, or -1 if `excluded` is too small. `partner_start, partners`: for each atom row the rows it must not meet.
+    """
+    n = 0
+    for ci in range(c0, c1):
+        excluded_first[ci] = n
+        f0 = first[ci]
+        f1 = first[ci + 1]
+        s = ci * CLUSTER
+        for k in range(f0, f1):
+            where[entries[k] & SLOT_BITS] = k - f0
+        for a in range(CLUSTER):
+            r = row[s + a]
+            if r < 0:
+                break
+            for q in range(partner_start[r], partner_start[r + 1]):
+                j = slot_of[partners[q]]
+                if n + 2 > excluded.shape[0]:
+                    return -1
+                if j // CLUSTER == ci and j > s + a:
+                    excluded[n] = np.int32((a << 16) | (j - s))
+                    n += 1
+                w = where[j]
+                if w >= 0 and w < f1 - f0 and (entries[f0 + w] & SLOT_BITS) == j:
+                    excluded[n] = np.int32((a << 16) | (w + CLUSTER))
+                    n += 1
+    excluded_first[c1] = n
+    return n
+
+
+def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_code):
+    """The cluster list as plain pairs (slots i, j and shift code) within `reach2`; returns the number, or -1 if the arrays are too small."""
+    n = 0
+    for ci in range(c0, c1):
+        s = ci * CLUSTER
+        for a in range(CLUSTER):
+            if row[s + a] < 0:
+                break
+            for b in range(a + 1, CLUSTER):
+                if row[s + b] < 0:
+                    break
+                dx = x[0, s + a] - x[0, s + b]
+                dy = x[1, s + a] - x[1, s + b]
+                dz = x[2, s + a] - x[2, s + b]
+                if dx * dx + dy * dy + dz * dz < reach2:
+                    if n >= out_i.shape[0]:
+                        return -1
+                    out_i[n] = s + a
+                    out_j[n] = s + b
+                    out_code[n] = 13 * 4
+                    n += 1
+            for k in range(first[ci], first[ci + 1]):
+                e = entries[k]
+                j = e & SLOT_BITS
+                c = e >> 26
+                dx = x[0, s + a] - (x[0, j] + shifts[c, 0])
+                dy = x[1, s + a] - (x[1, j] + shifts[c, 1])
+                dz = x[2, s + a] - (x[2, j] + shifts[c, 2])
+                if dx * dx + dy * dy + dz * dz < reach2:
+                    if n >= out_i.shape[0]:
+                        return -1
+                    out_i[n] = s + a
+                    out_j[n] = j
+                    out_code[n] = c * 4
+                    n += 1
+    return n

@@ -1,0 +1,148 @@
+"""Compiled pair kernels of a style: one for the cluster list, one for plain pair lists, made for exactly the variant a scene needs."""
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from asemd.kernels import pair_cluster, pair_list
+from asemd.kernels.generate import Builder
+from asemd.style import PairStyle
+
+ROWS = (536, 1048, 2072, 4120, 8216, 16408, 32792)
+
+
+def row_length(neighbours: int) -> int:
+    """Buffer row for clusters with that many neighbours; not a power of two, to spare the cache's sets."""
+    for r in ROWS:
+        if neighbours + 2 * pair_cluster.CLUSTER + 16 <= r:
+            return r
+    raise ValueError(f"{neighbours} neighbours per cluster exceed the largest buffer")
+
+
+def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
+    names = []
+    for k, part in enumerate(parts):
+        name = f"part{k}_{re.sub(r'[^0-9a-zA-Z]', '_', part.function.__name__)}"
+        b.function(part.function, name, fast=vector, real=real, vector=vector)
+        names.append(name)
+    return names
+
+
+def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool) -> str:
+    """``pair_force`` or ``pair_energy``: every part masked by its cutoff. Uniform rows come from the tuple `p`, others from the buffer."""
+    where: list[str] = []
+    for u in uniform:
+        where.append(f"p[{sum(1 for w in where if w[0] == 'p')}]" if u else f"b[o + {sum(1 for w in where if w[0] == 'b')} * ROW]")
+    at_constant = sum(uniform)
+    lines = ["def pair_energy(r2, qq, p, b, o):" if energy else "def pair_force(r2, qq, p, b, o):"]
+    if any(part.coordinate == "r" for part in parts):
+        lines.append("    r = math.sqrt(r2)")
+    row, total, vdwl, coul = 0, [], [], []
+    for k, (part, name) in enumerate(zip(parts, names)):
+        cut2, offset = where[row], where[row + 1]
+        args = [part.coordinate] + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
+        args += [f"p[{at_constant + i}]" for i in range(len(part.constants))]
+        at_constant += len(part.constants)
+        row += 2 + len(part.rows)
+        lines.append(f"    e{k}, d{k} = {name}({', '.join(args)})")
+        lines.append(f"    m{k} = r2 < {cut2}")
+        lines.append(f"    f{k} = {'real(-2) * d%d' % k if part.coordinate == 'r2' else '-d%d / r' % k}")
+        lines.append(f"    f{k} = f{k} if m{k} else real(0)")
+        total.append(f"f{k}")
+        if energy:
+            lines.append(f"    e{k} = e{k} - {offset} if m{k} else real(0)")
+            (coul if part.charged else vdwl).append(f"e{k}")
+    force = " + ".join(total) or "real(0)"
+    if energy:
+        lines.append(f"    return {force}, {' + '.join(vdwl) or 'real(0)'}, {' + '.join(coul) or 'real(0)'}")
+    else:
+        lines.append(f"    return {force}")
+    return "\n".join(lines)
+
+
+def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool):
+    """The kernel over cluster lists.
+
+    Parameters
+    ----------
+    uniform : tuple of bool
+        For each coefficient row whether it is the same for all type pairs; such rows become scalars.
+    row : int
+        Buffer row length, from `row_length`.
+    single : bool
+        Pair arithmetic in single precision (sums stay in double).
+    """
+    varying = [k for k, u in enumerate(uniform) if not u]
+    b = Builder(f"pair {style.name}: cluster list")
+    b.line("real = np.float32" if single else "real = np.float64")
+    for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
+                            CHARGED=style.charged, VARYING=bool(varying), EXCLUDE=exclude, SLOT_BITS=pair_cluster.SLOT_BITS).items():
+        b.constant(name, value)
+    if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(_source, style.functions())):
+        from asemd.kernels import vector_math
+        vector_math.paste(b, single)
+    names = _paste_style(b, style.parts, single, True)
+    b.text(_adapter(style.parts, names, uniform, energy), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
+    if varying:
+        lines = ["def fill_rows(b, full, rows, t, types, base):"]
+        for v, r in enumerate(varying):
+            lines += ["    for k in range(full):", f"        b[k + base + {v} * ROW] = rows[{r}, t, types[k]]"]
+        b.text("\n".join(lines))
+    b.function(pair_cluster.inner_two, fast=True)
+    if exclude:
+        b.function(pair_cluster.inner_one, fast=True)
+    b.function(pair_cluster.cluster_forces, fast=True)
+    module = b.build()
+    return module.cluster_forces, module
+
+
+def _source(function) -> str:
+    import inspect
+    return inspect.getsource(function)
+
+
+def cluster_tuple(rows: np.ndarray, constants: np.ndarray, uniform: Sequence[bool], single: bool) -> tuple:
+    """The scalars ``p`` of a cluster kernel: uniform rows, then constants, in the working precision."""
+    real = np.float32 if single else np.float64
+    values = [rows[k, 1, 1] for k, u in enumerate(uniform) if u] + list(constants)
+    return tuple(real(v) for v in values) or (real(0),)
+
+
+def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
+    """Which rows hold one value for all type pairs (type 0 is unused)."""
+    return tuple(bool(np.all(r[1:, 1:] == r[1, 1])) for r in rows)
+
+
+def list_kernel(style, parts, *, energy: bool, per_atom: bool):
+    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts."""
+    b = Builder(f"pair {style.name}: plain list")
+    b.line("real = np.float64")
+    charged = any(p.charged for p in parts)
+    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, CHARGED=charged).items():
+        b.constant(name, value)
+    names = _paste_style(b, parts, False, False)
+    lines = ["def pair_energy_one(r2, qq, lj, coul, rows, constants, arrays, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
+    if any(p.coordinate == "r" for p in parts):
+        lines.append("    r = math.sqrt(r2)")
+    row = constant = array = 0
+    for k, (part, name) in enumerate(zip(parts, names)):
+        args = [part.coordinate] + ["qq"] * part.charged
+        args += [f"rows[{row + 2 + i}, ti, tj]" for i in range(len(part.rows))]
+        args += [f"constants[{constant + i}]" for i in range(len(part.constants))]
+        args += [f"arrays[{array + i}]" for i in range(len(part.arrays))]
+        w = "coul" if part.charged else "lj"
+        slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
+        lines += [f"    if r2 < rows[{row}, ti, tj]:",
+                  f"        e{k}, d{k} = {name}({', '.join(args)})",
+                  f"        fp += {w} * {slope}",
+                  f"        {'ec' if part.charged else 'ev'} += {w} * (e{k} - rows[{row + 1}, ti, tj])"]
+        row += 2 + len(part.rows)
+        constant += len(part.constants)
+        array += len(part.arrays)
+    lines.append("    return fp, ev, ec")
+    b.text("\n".join(lines))
+    b.function(pair_list.list_forces)
+    module = b.build()
+    return module.list_forces, module

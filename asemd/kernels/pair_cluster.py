@@ -1,0 +1,275 @@
+"""Pair forces over the cluster list: the hot loop.
+
+For each cluster the neighbours are packed, relative to the cluster's first atom, into one flat buffer whose rows are `ROW` apart (a constant, so that
+the compiler sees no aliasing): x y z, force x y z, charge, then the coefficient rows of the two atoms i in hand. Two atoms i at a time run over the buffer
+in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
+
+Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient differs between
+type pairs), EXCLUDE; `real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+CLUSTER = 8
+ROW = 1048
+WIDTH = 8
+NROWS = 0
+ENERGY = CHARGED = VARYING = EXCLUDE = False
+SLOT_BITS = 0x3FFFFFF
+real = np.float64
+pair_force = pair_energy = fill_rows = None
+
+
+def inner_two(b, n, xa, ya, za, qa, xb, yb, zb, qb, p):
+    """Two atoms a, b against the n packed ones; adds to their forces in the buffer and returns the forces on a and b, energies and virial."""
+    zero = real(0)
+    fxa, fya, fza, fxb, fyb, fzb = zero, zero, zero, zero, zero, zero
+    ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
+    for k in range(n):
+        xk = b[k]
+        yk = b[k + ROW]
+        zk = b[k + 2 * ROW]
+        dxa = xa - xk
+        dya = ya - yk
+        dza = za - zk
+        dxb = xb - xk
+        dyb = yb - yk
+        dzb = zb - zk
+        if CHARGED:
+            qk = b[k + 6 * ROW]
+            qka = qa * qk
+            qkb = qb * qk
+        else:
+            qka = zero
+            qkb = zero
+        if ENERGY:
+            pa, eva, eca = pair_energy(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + 7 * ROW)
+            pb, evb, ecb = pair_energy(dxb * dxb + dyb * dyb + dzb * dzb, qkb, p, b, k + (7 + NROWS) * ROW)
+            ev += eva + evb
+            ec += eca + ecb
+        else:
+            pa = pair_force(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + 7 * ROW)
+            pb = pair_force(dxb * dxb + dyb * dyb + dzb * dzb, qkb, p, b, k + (7 + NROWS) * ROW)
+        gx = dxa * pa
+        gy = dya * pa
+        gz = dza * pa
+        hx = dxb * pb
+        hy = dyb * pb
+        hz = dzb * pb
+        fxa += gx
+        fya += gy
+        fza += gz
+        fxb += hx
+        fyb += hy
+        fzb += hz
+        if ENERGY:
+            v0 += dxa * gx + dxb * hx
+            v1 += dya * gy + dyb * hy
+            v2 += dza * gz + dzb * hz
+            v3 += dxa * gy + dxb * hy
+            v4 += dxa * gz + dxb * hz
+            v5 += dya * gz + dyb * hz
+        b[k + 3 * ROW] -= gx + hx
+        b[k + 4 * ROW] -= gy + hy
+        b[k + 5 * ROW] -= gz + hz
+    return fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5
+
+
+def inner_one(b, n, xa, ya, za, qa, p, o):
+    """One atom against the n packed ones; `o` is the offset of its coefficient rows."""
+    zero = real(0)
+    fxa, fya, fza = zero, zero, zero
+    ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
+    for k in range(n):
+        dxa = xa - b[k]
+        dya = ya - b[k + ROW]
+        dza = za - b[k + 2 * ROW]
+        qka = qa * b[k + 6 * ROW] if CHARGED else zero
+        if ENERGY:
+            pa, eva, eca = pair_energy(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + o)
+            ev += eva
+            ec += eca
+        else:
+            pa = pair_force(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + o)
+        gx = dxa * pa
+        gy = dya * pa
+        gz = dza * pa
+        fxa += gx
+        fya += gy
+        fza += gz
+        if ENERGY:
+            v0 += dxa * gx
+            v1 += dya * gy
+            v2 += dza * gz
+            v3 += dxa * gy
+            v4 += dxa * gz
+            v5 += dya * gz
+        b[k + 3 * ROW] -= gx
+        b[k + 4 * ROW] -= gy
+        b[k + 5 * ROW] -= gz
+    return fxa, fya, fza, ev, ec, v0, v1, v2, v3, v4, v5
+
+
+def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_, qqr2e, b, types, saved, acc):
+    """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz)."""
+    far = real(far_)
+    done = real(2) * far      # atoms of the cluster that have had their turn
+    for ci in range(c0, c1):
+        s = ci * CLUSTER
+        ox = x[0, s]
+        oy = x[1, s]
+        oz = x[2, s]
+        f0 = first[ci]
+        nj = first[ci + 1] - f0
+        n = nj + CLUSTER
+        full = ((n + WIDTH - 1) // WIDTH) * WIDTH
+        for k in range(CLUSTER):
+            b[k] = x[0, s + k] - ox
+            b[k + ROW] = x[1, s + k] - oy
+            b[k + 2 * ROW] = x[2, s + k] - oz
+        if unshifted[ci]:
+            for k in range(nj):
+                j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
+                b[k + CLUSTER] = x[0, j] - ox
+                b[k + ROW + CLUSTER] = x[1, j] - oy
+                b[k + 2 * ROW + CLUSTER] = x[2, j] - oz
+        else:
+            for k in range(nj):
+                e = entries[f0 + k]
+                j = np.uint32(e & np.int32(SLOT_BITS))
+                c = np.uint32(e >> 26)
+                b[k + CLUSTER] = (x[0, j] + shifts[c, 0]) - ox
+                b[k + ROW + CLUSTER] = (x[1, j] + shifts[c, 1]) - oy
+                b[k + 2 * ROW + CLUSTER] = (x[2, j] + shifts[c, 2]) - oz
+        for k in range(n, full):
+            b[k] = far
+            b[k + ROW] = far
+            b[k + 2 * ROW] = far
+        for k in range(full):
+            b[k + 3 * ROW] = real(0)
+            b[k + 4 * ROW] = real(0)
+            b[k + 5 * ROW] = real(0)
+        if CHARGED:
+            for k in range(CLUSTER):
+                b[k + 6 * ROW] = q[s + k]
+            for k in range(nj):
+                b[k + 6 * ROW + CLUSTER] = q[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
+            for k in range(n, full):
+                b[k + 6 * ROW] = real(0)
+        if VARYING:
+            for k in range(CLUSTER):
+                types[k] = type_of[s + k]
+            for k in range(nj):
+                types[k + CLUSTER] = type_of[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
+            for k in range(n, full):
+                types[k] = 0
+            last0 = np.uint32(1 << 30)
+            last1 = np.uint32(1 << 30)
+        if EXCLUDE:
+            xp = excluded_first[ci]
+            xe = excluded_first[ci + 1]
+        for a in range(0, CLUSTER, 2):
+            xa, ya, za = b[a], b[a + ROW], b[a + 2 * ROW]
+            xb, yb, zb = b[a + 1], b[a + 1 + ROW], b[a + 1 + 2 * ROW]
+            qa = real(0)
+            qb = real(0)
+            if CHARGED:
+                qa = b[a + 6 * ROW] * real(qqr2e)
+                qb = b[a + 1 + 6 * ROW] * real(qqr2e)
+            if VARYING:
+                t0 = types[a]
+                t1 = types[a + 1]
+                if t0 != last0:
+                    last0 = t0
+                    fill_rows(b, full, rows, t0, types, 7 * ROW)
+                if t1 != last1:
+                    last1 = t1
+                    fill_rows(b, full, rows, t1, types, (7 + NROWS) * ROW)
+            alone = False
+            if EXCLUDE:
+                alone = xp < xe and (excluded[xp] >> 16) <= a + 1
+            b[a] = done
+            if alone:
+                # an excluded partner is hidden from one atom only: one at a time
+                x0 = xp
+                while xp < xe and (excluded[xp] >> 16) == a:
+                    k = np.uint32(excluded[xp] & np.int32(0xFFFF))
+                    saved[xp - x0] = b[k]
+                    b[k] = far
+                    xp += 1
+                fxa, fya, fza, ev, ec, v0, v1, v2, v3, v4, v5 = inner_one(b, full, xa, ya, za, qa, p, 7 * ROW)
+                for y in range(xp - 1, x0 - 1, -1):
+                    b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
+                b[a + 1] = done
+                x0 = xp
+                while xp < xe and (excluded[xp] >> 16) == a + 1:
+                    k = np.uint32(excluded[xp] & np.int32(0xFFFF))
+                    saved[xp - x0] = b[k]
+                    b[k] = far
+                    xp += 1
+                fxb, fyb, fzb, ev1, ec1, w0, w1, w2, w3, w4, w5 = inner_one(b, full, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
+                for y in range(xp - 1, x0 - 1, -1):
+                    b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
+                if ENERGY:
+                    ev += ev1
+                    ec += ec1
+                    v0 += w0
+                    v1 += w1
+                    v2 += w2
+                    v3 += w3
+                    v4 += w4
+                    v5 += w5
+            else:
+                # a meets b inside the packed loop of a; b must not meet a again: both are moved away and the pair is done by hand
+                b[a + 1] = done
+                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(b, full, xa, ya, za, qa, xb, yb, zb, qb, p)
+                dx = xa - xb
+                dy = ya - yb
+                dz = za - zb
+                qk = real(0)
+                if CHARGED:
+                    qk = qa * b[a + 1 + 6 * ROW]
+                # the coefficients of the pair (a, b) stand in a's rows at b's place
+                if ENERGY:
+                    pa, eva, eca = pair_energy(dx * dx + dy * dy + dz * dz, qk, p, b, a + 1 + 7 * ROW)
+                    ev += eva
+                    ec += eca
+                    v0 += dx * dx * pa
+                    v1 += dy * dy * pa
+                    v2 += dz * dz * pa
+                    v3 += dx * dy * pa
+                    v4 += dx * dz * pa
+                    v5 += dy * dz * pa
+                else:
+                    pa = pair_force(dx * dx + dy * dy + dz * dz, qk, p, b, a + 1 + 7 * ROW)
+                fxa += dx * pa
+                fya += dy * pa
+                fza += dz * pa
+                fxb -= dx * pa
+                fyb -= dy * pa
+                fzb -= dz * pa
+            b[a + 3 * ROW] += fxa
+            b[a + 4 * ROW] += fya
+            b[a + 5 * ROW] += fza
+            b[a + 1 + 3 * ROW] += fxb
+            b[a + 1 + 4 * ROW] += fyb
+            b[a + 1 + 5 * ROW] += fzb
+            if ENERGY:
+                acc[0] += ev
+                acc[1] += ec
+                acc[2] += v0
+                acc[3] += v1
+                acc[4] += v2
+                acc[5] += v3
+                acc[6] += v4
+                acc[7] += v5
+        for k in range(CLUSTER):
+            f[0, s + k] += b[k + 3 * ROW]
+            f[1, s + k] += b[k + 4 * ROW]
+            f[2, s + k] += b[k + 5 * ROW]
+        for k in range(nj):
+            j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
+            f[0, j] += b[k + 3 * ROW + CLUSTER]
+            f[1, j] += b[k + 4 * ROW + CLUSTER]
+            f[2, j] += b[k + 5 * ROW + CLUSTER]

@@ -1,0 +1,140 @@
+"""Pair forces over a plain list of pairs: small systems and cells below twice the cutoff, special pairs with a weight, and per-atom energies.
+
+An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4 partners.
+Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
+Constants: ENERGY, PER_ATOM, CHARGED; `pair_energy_one(r2, qq, lj, coul, rows, ti, tj)` -> force/r, E_vdwl, E_coul is made from the style.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+ENERGY = PER_ATOM = CHARGED = False
+pair_energy_one = None
+
+
+def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
+                atom_energy, atom_virial, bad):
+    """Pairs lo..hi-1: forces added to `f`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and `atom_virial (6, cap)`.
+
+    `bad (4,)`: 1, the first pair whose energy is not finite, its distance.
+    """
+    for m in range(lo, hi):
+        i = pair_i[m]
+        j = pair_j[m]
+        kind = code[m] & 3
+        image = code[m] >> 2
+        dx = x[0, i] - x[0, j] - shifts[image, 0]
+        dy = x[1, i] - x[1, j] - shifts[image, 1]
+        dz = x[2, i] - x[2, j] - shifts[image, 2]
+        r2 = dx * dx + dy * dy + dz * dz
+        qq = 0.0
+        if CHARGED:
+            qq = qqr2e * q[i] * q[j]
+        fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], rows, constants, arrays, type_of[i], type_of[j])
+        if not abs(ev + ec) < np.inf or not abs(fp) < np.inf:
+            if bad[0] == 0.0:
+                bad[0] = 1.0
+                bad[1] = m
+                bad[2] = np.sqrt(r2)
+            continue
+        gx = dx * fp
+        gy = dy * fp
+        gz = dz * fp
+        f[0, i] += gx
+        f[1, i] += gy
+        f[2, i] += gz
+        f[0, j] -= gx
+        f[1, j] -= gy
+        f[2, j] -= gz
+        if ENERGY:
+            acc[0] += ev
+            acc[1] += ec
+            acc[2] += dx * gx
+            acc[3] += dy * gy
+            acc[4] += dz * gz
+            acc[5] += dx * gy
+            acc[6] += dx * gz
+            acc[7] += dy * gz
+        if PER_ATOM:
+            h = 0.5 * (ev + ec)
+            atom_energy[i] += h
+            atom_energy[j] += h
+            for s in (i, j):
+                atom_virial[0, s] += 0.5 * dx * gx
+                atom_virial[1, s] += 0.5 * dy * gy
+                atom_virial[2, s] += 0.5 * dz * gz
+                atom_virial[3, s] += 0.5 * dx * gy
+                atom_virial[4, s] += 0.5 * dx * gz
+                atom_virial[5, s] += 0.5 * dy * gz
+
+
+def ghosts(x, ns, origin, inverse, widths, shifts, reach, out_slot, out_image, out_x):
+    """Copies of atoms that stand within `reach` of the cell, for every shift but the first (which is none); returns the number or -1."""
+    n = 0
+    for s in range(1, shifts.shape[0]):
+        for i in range(ns):
+            px = x[0, i] + shifts[s, 0]
+            py = x[1, i] + shifts[s, 1]
+            pz = x[2, i] + shifts[s, 2]
+            near = True
+            for a in range(3):
+                u = ((px - origin[0]) * inverse[0, a] + (py - origin[1]) * inverse[1, a] + (pz - origin[2]) * inverse[2, a]) * widths[a]
+                if u < -reach or u > widths[a] + reach:
+                    near = False
+            if near:
+                if n >= out_slot.shape[0]:
+                    return -1
+                out_slot[n] = i
+                out_image[n] = s
+                out_x[0, n] = px
+                out_x[1, n] = py
+                out_x[2, n] = pz
+                n += 1
+    return n
+
+
+def pairs(x, ns, gx, g_slot, g_image, ng, opposite, cell_n, cell_low, cell_width, head, following, reach, pair_i, pair_j, code):
+    """All pairs within `reach`, each once, from linked cells over atoms (0..ns-1) and their copies (ns..); returns the number or -1.
+
+    A pair of an atom with a copy is kept for i < j, and for copies of the atom itself for the first of two opposite shifts.
+    """
+    n = 0
+    r2 = reach * reach
+    for c in range(head.shape[0]):
+        head[c] = -1
+    for t in range(ns + ng):
+        a0 = _cell(gx[0, t], cell_low[0], cell_width[0], cell_n[0])
+        a1 = _cell(gx[1, t], cell_low[1], cell_width[1], cell_n[1])
+        a2 = _cell(gx[2, t], cell_low[2], cell_width[2], cell_n[2])
+        c = (a0 * cell_n[1] + a1) * cell_n[2] + a2
+        following[t] = head[c]
+        head[c] = t
+    for i in range(ns):
+        a0 = _cell(x[0, i], cell_low[0], cell_width[0], cell_n[0])
+        a1 = _cell(x[1, i], cell_low[1], cell_width[1], cell_n[1])
+        a2 = _cell(x[2, i], cell_low[2], cell_width[2], cell_n[2])
+        for b0 in range(max(a0 - 1, 0), min(a0 + 2, cell_n[0])):
+            for b1 in range(max(a1 - 1, 0), min(a1 + 2, cell_n[1])):
+                for b2 in range(max(a2 - 1, 0), min(a2 + 2, cell_n[2])):
+                    t = head[(b0 * cell_n[1] + b1) * cell_n[2] + b2]
+                    while t >= 0:
+                        j = t if t < ns else g_slot[t - ns]
+                        s = 0 if t < ns else g_image[t - ns]
+                        if j > i or (j == i and s < opposite[s]):
+                            dx = x[0, i] - gx[0, t]
+                            dy = x[1, i] - gx[1, t]
+                            dz = x[2, i] - gx[2, t]
+                            if dx * dx + dy * dy + dz * dz < r2:
+                                if n >= pair_i.shape[0]:
+                                    return -1
+                                pair_i[n] = i
+                                pair_j[n] = j
+                                code[n] = s * 4
+                                n += 1
+                        t = following[t]
+    return n
+
+
+def _cell(u, low, width, count):
+    """Cell number along one axis, clamped."""
+    return min(max(int((u - low) / width), 0), count - 1)

@@ -1,0 +1,166 @@
+"""Compiled steps of a neighbour-list rebuild that are not the list itself: atom data into slots, special pairs, displacement checks."""
+from __future__ import annotations
+
+
+def gather(ns, row, slot_of, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
+    """Per-atom constants into slot order, the inverse of `row`, and the positions from which displacements count."""
+    for i in range(ns):
+        r = row[i]
+        if r >= 0:
+            slot_of[r] = i
+            type_s[i] = type_row[r]
+            mass_s[i] = mass_row[r]
+            inverse_s[i] = inverse_row[r]
+            q_s[i] = q_row[r]
+            mask_s[i] = mask_row[r]
+        else:
+            type_s[i] = 0
+            mass_s[i] = 1.0
+            inverse_s[i] = 0.0
+            q_s[i] = 0.0
+            mask_s[i] = 0
+        for d in range(3):
+            held[d, i] = x[d, i]
+
+
+def to_slots(items, slot_of, out):
+    """Topology items (atom rows) as slots."""
+    for m in range(items.shape[0]):
+        for k in range(items.shape[1]):
+            out[m, k] = slot_of[items[m, k]]
+
+
+def load(xr, vr, offset, x, v, row, ns, origin_shift):
+    """Atom arrays (n, 3) into slots, `offset (n, 3)` subtracted if `origin_shift`."""
+    for i in range(ns):
+        r = row[i]
+        if r >= 0:
+            for d in range(3):
+                x[d, i] = xr[r, d] - offset[r, d] if origin_shift else xr[r, d]
+                v[d, i] = vr[r, d]
+
+
+def store(x, v, f, row, ns, xr, vr, fr):
+    """Slots back into atom arrays (n, 3)."""
+    for i in range(ns):
+        r = row[i]
+        if r >= 0:
+            for d in range(3):
+                xr[r, d] = x[d, i]
+                vr[r, d] = v[d, i]
+                fr[r, d] = f[d, i]
+
+
+def moved(x, held, ns):
+    """Largest squared displacement since the list was built; NaN if a position is not a number."""
+    m = 0.0
+    for i in range(ns):
+        a = x[0, i] - held[0, i]
+        b = x[1, i] - held[1, i]
+        c = x[2, i] - held[2, i]
+        d = a * a + b * b + c * c
+        m = d if not d <= m else m
+        if m != m:
+            return m
+    return m
+
+
+def add_buffers(buffers, ns):
+    """Sum the threads' force buffers into the first."""
+    for t in range(1, buffers.shape[0]):
+        for d in range(3):
+            for i in range(ns):
+                buffers[0, d, i] += buffers[t, d, i]
+
+
+def clear(buffer, ns):
+    for d in range(3):
+        for i in range(ns):
+            buffer[d, i] = 0.0
+
+
+def mark_special(x, row, pair_i, pair_j, code, n, shifts, start, partner, kind, keep, reduced, reduced_inverse):
+    """Write the kind of special pairs into `code`; pairs whose weights are all zero (`keep[kind]` false) leave the list. Returns its length.
+
+    Only the closest image of a partner is special (larger images interact fully), as in LAMMPS.
+    """
+    m = 0
+    for p in range(n):
+        i = pair_i[p]
+        j = pair_j[p]
+        ri = row[i]
+        rj = row[j]
+        found = 0
+        for q in range(start[ri], start[ri + 1]):
+            if partner[q] == rj:
+                found = kind[q]
+        if found != 0:
+            s = code[p] >> 2
+            dx = x[0, i] - x[0, j] - shifts[s, 0]
+            dy = x[1, i] - x[1, j] - shifts[s, 1]
+            dz = x[2, i] - x[2, j] - shifts[s, 2]
+            r2 = dx * dx + dy * dy + dz * dz
+            # another image is closer: this one is an ordinary neighbour
+            for a in range(-1, 2):
+                for b in range(-1, 2):
+                    for c in range(-1, 2):
+                        ux = dx + a * reduced[0, 0] + b * reduced[1, 0] + c * reduced[2, 0]
+                        uy = dy + a * reduced[0, 1] + b * reduced[1, 1] + c * reduced[2, 1]
+                        uz = dz + a * reduced[0, 2] + b * reduced[1, 2] + c * reduced[2, 2]
+                        if ux * ux + uy * uy + uz * uz < r2 * (1.0 - 1e-12):
+                            found = 0
+            if found != 0 and not keep[found]:
+                continue
+        pair_i[m] = i
+        pair_j[m] = j
+        code[m] = (code[p] & ~3) | found
+        m += 1
+    return m
+
+
+def drop_excluded(row, pair_i, pair_j, code, n, mask_row, molecule_row, rules):
+    """Take out pairs by ``neigh_modify exclude``; `rules (k, 3)`: 0 group-group (bits), 1 same molecule in a group, 2 different molecules in a group."""
+    m = 0
+    for p in range(n):
+        ri = row[pair_i[p]]
+        rj = row[pair_j[p]]
+        out = False
+        for k in range(rules.shape[0]):
+            a = rules[k, 1]
+            b = rules[k, 2]
+            mi = mask_row[ri]
+            mj = mask_row[rj]
+            if rules[k, 0] == 0:
+                out = out or ((mi & a) != 0 and (mj & b) != 0) or ((mi & b) != 0 and (mj & a) != 0)
+            elif (mi & a) != 0 and (mj & a) != 0:
+                same = molecule_row[ri] == molecule_row[rj]
+                out = out or (same if rules[k, 0] == 1 else not same)
+        if not out:
+            pair_i[m] = pair_i[p]
+            pair_j[m] = pair_j[p]
+            code[m] = code[p]
+            m += 1
+    return m
+
+
+def special_pairs(pairs, kinds, slot_of, x, shifts, periodic_shifts, out_i, out_j, out_code):
+    """Special pairs that keep a weight, as a plain list with the closest image; returns the number."""
+    for p in range(pairs.shape[0]):
+        i = slot_of[pairs[p, 0]]
+        j = slot_of[pairs[p, 1]]
+        best = 1e300
+        at = 13
+        for s in range(27):
+            if not periodic_shifts[s]:
+                continue
+            dx = x[0, i] - x[0, j] - shifts[s, 0]
+            dy = x[1, i] - x[1, j] - shifts[s, 1]
+            dz = x[2, i] - x[2, j] - shifts[s, 2]
+            d = dx * dx + dy * dy + dz * dz
+            if d < best:
+                best = d
+                at = s
+        out_i[p] = i
+        out_j[p] = j
+        out_code[p] = at * 4 + kinds[p]
+    return pairs.shape[0]

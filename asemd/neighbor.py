@@ -1,0 +1,236 @@
+"""Neighbour lists: the cluster list for ordinary systems, a plain pair list for small systems and cells below twice the reach."""
+from __future__ import annotations
+
+import itertools
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from asemd.kernels import cluster, pair_list, rebuild
+from asemd.kernels.cluster import CLUSTER
+from asemd.kernels.generate import Builder
+
+SMALL = 256            # below this many atoms a plain list is cheaper than clusters
+CENTRE = 13            # code of "no shift" among the 27
+
+
+@lru_cache(maxsize=None)
+def kernels(ortho: bool):
+    """The compiled list module for axis-aligned (`ortho`) or general cells."""
+    b = Builder("neighbour lists")
+    b.constant("CLUSTER", CLUSTER)
+    b.constant("ORTHO", ortho)
+    b.constant("SLOT_BITS", cluster.SLOT_BITS)
+    for f in (cluster.wrap, cluster.sort, cluster.build, cluster.exclude, cluster.expand, pair_list._cell, pair_list.ghosts, pair_list.pairs,
+              rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.add_buffers, rebuild.clear,
+              rebuild.mark_special, rebuild.drop_excluded, rebuild.special_pairs):
+        b.function(f, fast=f is cluster.build)
+    return b.build()
+
+
+def grow(array: np.ndarray, size: int) -> np.ndarray:
+    """The array with room for at least `size` in its last axis, contents kept."""
+    if array.shape[-1] >= size:
+        return array
+    new = np.zeros(array.shape[:-1] + (int(size * 1.2) + 64,), array.dtype)
+    new[..., :array.shape[-1]] = array
+    return new
+
+
+class BinCell:
+    """The cell that bins cover: the periodic cell, and along other directions the extent of the atoms."""
+
+    def __init__(self, vectors: np.ndarray, origin: np.ndarray, periodic: np.ndarray, x: np.ndarray, row: np.ndarray, ns: int):
+        v, o = vectors.copy(), origin.copy()
+        if not periodic.all():
+            inside = x[:, :ns][:, row[:ns] >= 0].T
+            s = (inside - origin) @ np.linalg.inv(vectors)
+            for a in np.flatnonzero(~periodic):
+                low, high = (s[:, a].min(), s[:, a].max()) if len(s) else (0.0, 1.0)
+                length = np.linalg.norm(vectors[a])
+                margin = max(1e-3 * (high - low), 1e-9, 1e-6 / max(length, 1e-300))
+                o = o + (low - margin) * vectors[a]
+                v[a] = vectors[a] * (high - low + 2 * margin)
+        self.vectors, self.origin = v, o
+        self.inverse = np.ascontiguousarray(np.linalg.inv(v))
+        self.widths = 1.0 / np.linalg.norm(self.inverse, axis=0)
+        self.volume = abs(np.linalg.det(v))
+
+
+def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """All image shifts that may bring an atom within `reach`: vectors (m, 3), no shift first, and the index of each one's opposite."""
+    widths = 1.0 / np.linalg.norm(np.linalg.inv(vectors), axis=0)
+    counts = [int(math.floor(reach / w)) + 1 if p else 0 for w, p in zip(widths, periodic)]
+    cells = sorted(itertools.product(*(range(-c, c + 1) for c in counts)), key=lambda s: (s != (0, 0, 0), s))
+    at = {s: k for k, s in enumerate(cells)}
+    opposite = np.array([at[tuple(-u for u in s)] for s in cells], np.int32)
+    return np.array(cells, float) @ vectors, opposite
+
+
+class ClusterList:
+    """Half list of single atoms near clusters of `CLUSTER` consecutive atoms, built by several threads.
+
+    Attributes
+    ----------
+    first (nth, ncluster+1), entries (nth, m), unshifted (ncluster,), shifts (27, 3), bounds (nth+1,)
+        See `asemd.kernels.cluster`.
+    """
+
+    def __init__(self, threads: int, reach: float):
+        self.threads, self.reach = threads, reach
+        self.codes = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
+        self.capacity = 0
+        self.nx = self.ny = self.nz = 0
+        self.entries = np.zeros((threads, 0), np.int32)
+        self.excluded = np.zeros((threads, 64), np.int32)
+        self.candidates = 2048
+        self.shares = None
+
+    def shape(self, bins: BinCell, n: int) -> bool:
+        """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
+        h = (CLUSTER * bins.volume / max(n, 1)) ** (1 / 3)
+        wa, wb, wc = bins.widths
+        nx, ny = max(1, round(wa / h)), max(1, round(wb / h))
+        nz = max(1, int(wc / (0.166 * h)))
+        while nx * ny * nz > 16 * n + 4096:
+            nx, ny, nz = max(1, nx * 3 // 4), max(1, ny * 3 // 4), max(1, nz * 3 // 4)
+        if (nx, ny, nz) == (self.nx, self.ny, self.nz) and self.capacity >= n + nx * ny * CLUSTER + CLUSTER:
+            return False
+        self.nx, self.ny, self.nz = nx, ny, nz
+        self.capacity = n + nx * ny * CLUSTER + CLUSTER
+        ncl, ncol = self.capacity // CLUSTER + 2, nx * ny
+        self.cell_start = np.zeros((ncol, nz + 1), np.int32)
+        self.column_start = np.zeros(ncol + 1, np.int32)
+        self.column_of = np.zeros(ncl, np.int32)
+        self.key = np.zeros(self.capacity, np.int32)
+        self.x2, self.v2 = np.zeros((3, self.capacity)), np.zeros((3, self.capacity))
+        self.row2 = np.zeros(self.capacity, np.int32)
+        self.first = np.zeros((self.threads, ncl), np.int32)
+        self.excluded_first = np.zeros((self.threads, ncl), np.int32)
+        self.unshifted = np.zeros(ncl, np.bool_)
+        self.where = np.zeros((self.threads, self.capacity), np.int32)
+        self.work = np.zeros((self.threads, 4, self.candidates))
+        self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
+        self.bounds = np.zeros(self.threads + 1, np.int64)
+        self.shares = None
+        if not self.entries.shape[1]:
+            around = 4.2 * self.reach**3 * n / max(bins.volume, 1e-300)
+            self.entries = np.zeros((self.threads, int(self.capacity / CLUSTER * (1.5 * around + 64) / self.threads) + 1024), np.int32)
+        return True
+
+    def sort(self, k, state, ns: int, bins: BinCell) -> int:
+        """Sort the slots; returns their number."""
+        self.bins = bins
+        far = bins.origin + bins.vectors.sum(0) + 10 * self.reach + np.abs(bins.vectors).sum(0)
+        return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
+                      self.cell_start, self.column_start, self.column_of, self.key, far, 4 * self.reach)
+
+    def build(self, k, state, ns: int, cell_vectors: np.ndarray, periodic: np.ndarray, partners, slot_of, parallel) -> None:
+        """Build the list and its exclusions in the sorted slots."""
+        ncl = ns // CLUSTER
+        self.shifts = self.codes @ cell_vectors
+        again = self.shares is None and self.threads > 1
+        while True:
+            self._split(ncl)
+            results = [0] * self.threads
+
+            def work(t, results=results):
+                c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
+                results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin, self.bins.inverse,
+                                     self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach, c0, c1, self.first[t],
+                                     self.entries[t], self.unshifted, self.work[t], self.work_codes[t])
+                if results[t] >= 0 and partners is not None:
+                    done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t],
+                                     self.excluded_first[t], self.excluded[t], self.where[t])
+                    results[t] = -3 if done < 0 else results[t]
+            parallel(work)
+            if -1 in results:
+                self.entries = np.zeros((self.threads, int(self.entries.shape[1] * 1.5) + 1024), np.int32)
+            elif -2 in results:
+                self.candidates *= 2
+                self.work = np.zeros((self.threads, 4, self.candidates))
+                self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
+            elif -3 in results:
+                self.excluded = np.zeros((self.threads, 2 * self.excluded.shape[1]), np.int32)
+            else:
+                self._balance(results)
+                if not again:
+                    return
+                again = False
+
+    def _split(self, ncl: int) -> None:
+        shares = self.shares if self.shares is not None else np.arange(self.threads + 1) / self.threads
+        self.bounds[:] = np.rint(shares * ncl)
+
+    def _balance(self, lengths: list[int]) -> None:
+        """Thread bounds for the next build, so that each gets the same number of entries."""
+        if self.threads == 1:
+            self.shares = np.array([0.0, 1.0])
+            return
+        ncl = self.bounds[-1]
+        edges = self.bounds / max(ncl, 1)
+        # an entry costs about as much as the own-cluster work of a sixteenth of a cluster
+        weights = np.array(lengths, float) + 16.0 * np.diff(self.bounds)
+        total = np.concatenate([[0.0], np.cumsum(weights)])
+        self.shares = np.interp(np.linspace(0, total[-1], self.threads + 1), total, edges)
+
+    def longest(self) -> int:
+        """Most neighbours of one cluster."""
+        return max((int(np.diff(self.first[t, self.bounds[t]:self.bounds[t + 1] + 1]).max(initial=0)) for t in range(self.threads)), default=0)
+
+    def expand(self, k, state, reach: float, room: int = 0):
+        """The same pairs as plain arrays (i, j, code), closer than `reach`."""
+        parts = []
+        for t in range(self.threads):
+            c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
+            size = max(room, 4 * int(self.first[t, c1]) + 1024)
+            while True:
+                out = [np.empty(size, np.int32) for _ in range(3)]
+                n = k.expand(state.x, state.row, self.first[t], self.entries[t], c0, c1, self.shifts, reach * reach, *out)
+                if n >= 0:
+                    break
+                size *= 2
+            parts.append([a[:n] for a in out])
+        return [np.concatenate([p[a] for p in parts]) for a in range(3)]
+
+
+class PlainList:
+    """All pairs within reach, each with its image, found in linked cells over atoms and copies. Any cell, any size."""
+
+    def __init__(self, reach: float):
+        self.reach = reach
+        self.size, self.copies = 1024, 1024
+
+    def build(self, k, state, ns: int, bins: BinCell, cell_vectors: np.ndarray, periodic: np.ndarray):
+        """Returns (pair_i, pair_j, code) and keeps `shifts (m, 3)`."""
+        self.shifts, opposite = image_shifts(cell_vectors, periodic, self.reach)
+        while True:
+            slot, image = np.empty(self.copies, np.int32), np.empty(self.copies, np.int32)
+            copies = np.empty((3, self.copies))
+            ng = k.ghosts(state.x, ns, bins.origin, bins.inverse, bins.widths, self.shifts, self.reach, slot, image, copies)
+            if ng >= 0:
+                break
+            self.copies *= 2
+        everything = np.concatenate([state.x[:, :ns], copies[:, :ng]], axis=1)
+        low = everything.min(axis=1) if ns else np.zeros(3)
+        span = everything.max(axis=1) - low if ns else np.zeros(3)
+        counts = np.maximum(1, np.minimum((span / self.reach).astype(np.int64), 64))
+        width = np.maximum(span / counts, self.reach)
+        head, following = np.empty(int(counts.prod()), np.int32), np.empty(ns + ng, np.int32)
+        while True:
+            out = [np.empty(self.size, np.int32) for _ in range(3)]
+            n = k.pairs(state.x, ns, everything, slot, image, ng, opposite, counts, low, width, head, following, self.reach, *out)
+            if n >= 0:
+                return [a[:n] for a in out]
+            self.size *= 2
+
+
+def partner_table(n: int, pairs: np.ndarray, kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Special pairs (m, 2) as partners of each atom row: start (n+1,), partner (2m,), kind (2m,)."""
+    both = np.concatenate([pairs, pairs[:, ::-1]]) if len(pairs) else np.zeros((0, 2), np.int32)
+    kind = np.concatenate([kinds, kinds]) if len(pairs) else np.zeros(0, np.int8)
+    order = np.argsort(both[:, 0], kind="stable")
+    start = np.zeros(n + 1, np.int32)
+    start[1:] = np.cumsum(np.bincount(both[:, 0], minlength=n)) if len(both) else 0
+    return start, np.ascontiguousarray(both[order, 1], np.int32), np.ascontiguousarray(kind[order], np.int32)

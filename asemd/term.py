@@ -1,0 +1,140 @@
+"""Terms: the pieces of an energy, each a compiled kernel with its arguments per thread."""
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from asemd.errors import SimulationError
+from asemd.kernels import pair as pair_kernels
+
+BONDED_KEY = {"bond": "ebond", "angle": "eangle", "dihedral": "edihed", "improper": "eimp"}
+
+
+class Term(Protocol):
+    """What the engine asks of a term.
+
+    `category` is the thermo column group (pair, bond, ...); `kernel` returns the compiled function and the module it lives in;
+    `arguments` its arguments for one thread, valid until the next list build; `describe` the error for the item that `bad` names.
+    """
+
+    category: str
+
+    def kernel(self, energy: bool, per_atom: bool): ...
+
+    def rebuild(self, engine) -> None: ...
+
+    def arguments(self, engine, tid: int) -> tuple: ...
+
+    def describe(self, engine, item: int, value: float) -> SimulationError: ...
+
+
+class BondedTerm:
+    """All items of one bonded style."""
+
+    def __init__(self, category: str, use, items: np.ndarray, types: np.ndarray, ntypes: int, units):
+        self.category, self.use, self.style = category, use, use.style
+        self.items, self.types = np.ascontiguousarray(items, np.int32), np.ascontiguousarray(types, np.int32)
+        self.packed = use.style.pack(use.settings, use.coeff, ntypes, units)
+        self.slots = np.zeros_like(self.items)
+
+    def kernel(self, energy, per_atom):
+        from asemd.kernels import bonded
+        f = bonded.kernel(self.style, energy=energy, per_atom=per_atom, periodic=self.periodic, orthogonal=self.orthogonal)
+        return f
+
+    def rebuild(self, engine):
+        self.periodic, self.orthogonal = bool(engine.periodic.any()), engine.ortho
+        engine.k.to_slots(self.items, engine.slot_of, self.slots)
+
+    def arguments(self, engine, tid):
+        m, nth = len(self.items), engine.threads
+        return (engine.state.x, engine.buffers[tid], self.slots, self.types, engine.cell, self.packed.coeff, self.packed.arrays, m * tid // nth,
+                m * (tid + 1) // nth, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+
+    def describe(self, engine, item, value):
+        from asemd.kernels import bonded
+        ids = [int(engine.system.id[r]) for r in self.items[item]]
+        return SimulationError(bonded.describe(self.style, value, ids, int(self.types[item])))
+
+
+class PairTerm:
+    """A pair style over the cluster list."""
+
+    category = "pair"
+
+    def __init__(self, term, single: bool):
+        self.style, self.tables, self.single = term.style, term.tables, single
+        self.uniform = pair_kernels.uniform_rows(self.tables.rows)
+        self.row = 0
+
+    def kernel(self, energy, per_atom):
+        return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single)[0]
+
+    def rebuild(self, engine):
+        self.exclude = engine.partners is not None
+        row = pair_kernels.row_length(engine.list.longest())
+        if row > self.row:
+            self.row = pair_kernels.row_length(int(1.15 * engine.list.longest()))
+            real = np.float32 if self.single else np.float64
+            size = (7 + 2 * (len(self.uniform) - sum(self.uniform)) + 1) * self.row
+            self.buffer = np.zeros((engine.threads, size), real)
+            self.types = np.zeros((engine.threads, self.row), np.uint32)
+            self.saved = np.zeros((engine.threads, self.row), real)
+            self.rows = self.tables.rows.astype(real)
+            self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, self.single)
+
+    def arguments(self, engine, tid):
+        s, c = engine.state, engine.list
+        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.unshifted, c.shifts, c.excluded_first[tid], c.excluded[tid],
+                int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, self.buffer[tid], self.types[tid],
+                self.saved[tid], engine.acc[tid, self.index])
+
+    def describe(self, engine, item, value):
+        return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
+
+
+class PairListTerm:
+    """A pair style over plain pairs: all pairs, or the special pairs the cluster kernel leaves out.
+
+    Parameters
+    ----------
+    pairs : str
+        ``all``, ``special`` or ``one_four`` (pairs (m, 2) with weights given by `pairs_of`).
+    """
+
+    category = "pair"
+
+    def __init__(self, style, tables, parts, pairs: str, one_four=None):
+        self.style, self.tables, self.parts, self.pairs = style, tables, parts, pairs
+        self.one_four = one_four
+
+    def kernel(self, energy, per_atom):
+        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom)[0]
+
+    def rebuild(self, engine):
+        if self.pairs == "all":
+            self.i, self.j, self.code, self.shifts = *engine.plain, engine.plain_shifts
+            self.lj, self.coul = engine.weight_lj, engine.weight_coul
+        elif self.pairs == "special":
+            self.i, self.j, self.code, self.shifts = *engine.special, engine.shifts27
+            self.lj, self.coul = engine.weight_lj, engine.weight_coul
+        else:
+            pairs, kinds, weights = self.one_four
+            out = [np.empty(len(pairs), np.int32) for _ in range(3)]
+            engine.k.special_pairs(pairs, kinds, engine.slot_of, engine.state.x, engine.shifts27, engine.periodic27, *out)
+            self.i, self.j, self.code = out
+            self.shifts, self.lj, self.coul = engine.shifts27, weights, weights
+
+    def arguments(self, engine, tid):
+        s, m, nth = engine.state, len(self.i), engine.threads
+        return (s.x, engine.buffers[tid], s.q, s.type, self.i, self.j, self.code, self.shifts, self.lj, self.coul, m * tid // nth,
+                m * (tid + 1) // nth, self.tables.rows, self.tables.constants, self.tables.arrays, engine.qqr2e, engine.acc[tid, self.index],
+                engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+
+    def describe(self, engine, item, value):
+        s = engine.state
+        ids = sorted(int(engine.system.id[s.row[a[item]]]) for a in (self.i, self.j))
+        why = "the atoms coincide" if value == 0 else self.style.domain or "outside the style's domain"
+        return SimulationError(f"pair style {self.style.name}: energy or force between atoms {ids[0]} and {ids[1]} at distance {value:.6g} "
+                               f"is not finite: {why}")
