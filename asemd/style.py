@@ -11,11 +11,13 @@ A bonded style is a scalar function of internal coordinates and coefficients::
 
 It returns the energy and then the derivative by each internal coordinate it names. Coordinates by category: ``r`` (bond);
 ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi`` (dihedral, -pi..pi, trans = pi); ``phi chi omega`` (improper).
-An energy that is not finite means "outside the domain": the kernel reports the item, the user gets atom ids and ``domain``.
+An energy or derivative that is not finite means "outside the domain" (write ``return math.inf, math.inf``): the kernel reports the item,
+the user gets atom ids and ``domain``. Bodies are strict IEEE: write them so that no digits cancel (a product of sines for a difference of
+cosines, ``(R0 - r) * (R0 + r)`` for a difference of squares) and so that plain Python runs them too (test before dividing by zero).
 
 A pair style is a sum of parts, each a function of ``r2`` (or ``r``) that returns energy and derivative by that argument::
 
-    @pair("lj/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "energy", "sigma": "distance"}, example=...)
+    @pair("lj/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, example=...)
     def lj_cut(r2, epsilon: "energy", sigma: "distance"): ...
 
 A part that takes ``qq`` (the product of charges times the Coulomb constant) is a Coulomb part: it follows the Coulomb special
@@ -121,15 +123,20 @@ class Style:
     see : str
         Source of the formula (paper or manual page).
     xfail : mapping
-        Shipped check -> reason it cannot hold.
+        Shipped check (`asemd.testing.styles.CHECKS`) -> reason it cannot hold.
+    check : callable, optional
+        ``check(coeff, settings)`` raises `InputError` for coefficients that make no sense.
+    weight_14 : str
+        Name of the coefficient that scales the pair interaction of atoms 1 and 4 (dihedral charmm).
     """
 
     def __init__(self, category: str, name: str, function: Callable | None, *, settings=(), coeff=None, example: str = "",
                  settings_example: str = "", domain: str = "", equilibrium: str = "", see: str = "",
-                 xfail: Mapping[str, str] = MappingProxyType({}), doc: str = ""):
+                 xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = ""):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.see, self.xfail = equilibrium, see, dict(xfail)
+        self.weight_14, self._check = weight_14, check
         notes = _annotations(function) if function else {}
         vocabulary = COORDINATES[category] + ("qq",)
         self.coordinates = tuple(n for n in notes if n in vocabulary)
@@ -165,7 +172,15 @@ class Style:
         return values
 
     def check(self, coeff: Mapping[str, Any], settings: Mapping[str, Any]) -> None:
-        """Override to refuse coefficients that make no sense; raise `InputError`."""
+        """Refuse coefficients that make no sense, by the option `check` or by overriding.
+
+        Raises
+        ------
+        InputError
+            The message names the command, the style and the coefficient.
+        """
+        if self._check:
+            self._check(coeff, settings)
 
     def format_settings(self, settings: Mapping[str, Any]) -> list[str]:
         return [p.write(settings[p.name]) for p in self.settings if p.name in settings]
@@ -190,6 +205,22 @@ class Style:
     def functions(self) -> tuple[Callable, ...]:
         """The functions a generated kernel needs, the scalar one last."""
         return (self.function,) if self.function else ()
+
+
+class ZeroStyle(Style):
+    """No forces: keeps lists and rest values. With the setting ``nocoeff`` every coefficient word is taken and forgotten."""
+
+    def __init__(self, category: str, coeff: tuple[Parameter, ...] = (), **options):
+        super().__init__(category, "zero", None, coeff=coeff, settings=(Parameter("nocoeff", "word", True),), settings_example="nocoeff",
+                         example=" ".join(["1.0"] * len(coeff)), **options)
+
+    def parse_settings(self, words):
+        if words not in ([], ["nocoeff"]):
+            raise InputError(f"{self.category}_style zero takes no word but nocoeff, got {' '.join(words)!r}")
+        return {"nocoeff": "nocoeff"} if words else {}
+
+    def parse_coeff(self, words, settings):
+        return {} if "nocoeff" in settings else super().parse_coeff(words, settings)
 
 
 def register(style: Style) -> Style:
@@ -253,13 +284,21 @@ class PairTables:
 
 
 def mix_energy(rule: str, ei: float, ej: float, si: float, sj: float) -> float:
+    """Energy of a mixed pair; `si, sj` are the sizes that the rule ``sixthpower`` weighs with."""
+    if ei * ej < 0.0:
+        raise InputError(f"energies {ei:g} and {ej:g} of different sign cannot be mixed: give pair_coeff for that pair of types")
+    energy = math.sqrt(ei * ej)
     if rule == "sixthpower":
-        return 2.0 * math.sqrt(ei * ej) * si**3 * sj**3 / (si**6 + sj**6)
-    return math.sqrt(ei * ej)
+        a, b = abs(si) ** 3, abs(sj) ** 3
+        return 2.0 * energy * a * b / (a * a + b * b) if a + b > 0.0 else 0.0
+    return energy
 
 
 def mix_distance(rule: str, si: float, sj: float) -> float:
+    """Length of a mixed pair."""
     if rule == "geometric":
+        if si * sj < 0.0:
+            raise InputError(f"lengths {si:g} and {sj:g} of different sign cannot be mixed: give pair_coeff for that pair of types")
         return math.sqrt(si * sj)
     if rule == "arithmetic":
         return 0.5 * (si + sj)
@@ -275,41 +314,35 @@ class PairStyle(Style):
         Functions and the name of the setting or coefficient that is their cutoff.
     settings, coeff : str
         ``"cut_lj [cut_coul]"``: names of the words, optional ones in brackets; an optional coefficient defaults to the setting of the
-        same name, an optional setting to `defaults`.
+        same name or follows the coefficient named in `defaults`, an optional setting to `defaults`.
     mix : mapping
-        Coefficient -> ``energy`` or ``distance``: how i-j follows from i-i and j-j; empty: must be given. `mix_rule` is the default rule,
-        `size` names the coefficient that plays sigma in the energy rule.
+        Coefficient -> how i-j follows from i-i and j-j: ``distance``, or for an energy the coefficient that plays sigma in the rule
+        ``sixthpower``. Cutoffs mix as distances. Empty: i-j must be given. `mix_rule` is the default rule.
     tail : callable, optional
         ``tail(coeff, cut) -> (e, p)``: integrals for ``pair_modify tail yes`` of one type pair (energy and pressure, without the
         factors of number and volume), see `asemd/pair/lj_cut.py`.
     units : mapping
         Units of settings and coefficients that no function argument names.
+    rows : str
+        Names of function arguments that differ by pair of types but are not words of ``pair_coeff`` (`pack_pairs` makes them).
     """
 
+    charmm_one_four = False    # True: has `one_four` tables for dihedral_style charmm
+
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
-                 mix_rule="geometric", size="sigma", tail=None, units=MappingProxyType({}), **options):
+                 mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", **options):
         notes = dict(units)
         for function, _ in parts:
             notes = {**_annotations(function), **notes}
-        self.mix, self.mix_rule, self.size, self.tail = dict(mix), mix_rule, size, tail
+        self.mix, self.mix_rule, self.tail = dict(mix), mix_rule, tail
 
         def parameters(spec):
-            return tuple(Parameter(n, notes.get(n) or ("distance" if n.startswith("cut") or n in ("inner", "outer") else ""), optional,
+            return tuple(Parameter(n, notes.get(n) or ("distance" if n.startswith(("cut", "inner", "outer")) else ""), optional,
                                    defaults.get(n)) for n, optional in _names(spec))
         main = parts[0][0] if parts else None
         super().__init__("pair", name, main, settings=parameters(settings), coeff=parameters(coeff), **options)
-        mine = {p.name for p in self.coeff}
-        made = []
-        for function, cut in parts:
-            args = _annotations(function)
-            names = [n for n in args if n not in ("r", "r2", "qq")]
-            made.append(Part(
-                function, "coul" if "qq" in args else "vdwl", cut,
-                rows=tuple(n for n in names if n in mine and args[n] != "array"),
-                constants=tuple(n for n in names if n not in mine and args[n] != "array"),
-                arrays=tuple(n for n in names if args[n] == "array"),
-                coordinate="r2" if "r2" in args else "r", charged="qq" in args))
-        self.parts = tuple(made)
+        mine = {p.name for p in self.coeff} | set(rows.split())
+        self.parts = tuple(make_part(function, cut, mine) for function, cut in parts)
         self.charged = any(p.charged for p in self.parts)
 
     def functions(self):
@@ -321,8 +354,8 @@ class PairStyle(Style):
             if p.name not in values and p.default is not None:
                 values[p.name] = values[p.default] if isinstance(p.default, str) else p.default
         for p in self.settings:
-            if p.name.startswith("cut") and values.get(p.name, 1.0) <= 0.0:
-                raise InputError(f"pair_style {self.name}: cutoff {p.name} must be > 0, got {values[p.name]:g}")
+            if p.name.startswith("cut") and values.get(p.name, 1.0) < 0.0:
+                raise InputError(f"pair_style {self.name}: cutoff {p.name} must not be negative, got {values[p.name]:g}")
         return values
 
     def parse_coeff(self, words, settings):
@@ -332,9 +365,39 @@ class PairStyle(Style):
                 raise InputError(f"pair_coeff {self.name}: cutoff {p.name} must not be negative, got {values[p.name]:g}")
         return values
 
+    def reset_cutoffs(self, coeffs: Mapping[tuple[int, int], Mapping[str, Any]]) -> dict[tuple[int, int], dict[str, Any]]:
+        """Coefficients after the same ``pair_style`` is given again: cutoffs of single pairs go back to the setting."""
+        return {pair: {n: v for n, v in values.items() if not n.startswith("cut")} for pair, values in coeffs.items()}
+
     def cutoffs(self, coeff: Mapping[str, Any], settings: Mapping[str, Any]) -> list[float]:
         """Cutoff of each part for one pair of types."""
         return [float(coeff.get(p.cut, settings.get(p.cut, 0.0))) for p in self.parts]
+
+    def reach(self, coeff: Mapping[str, Any], settings: Mapping[str, Any]) -> float:
+        """The distance up to which the neighbour list must go for one pair of types."""
+        return max(self.cutoffs(coeff, settings), default=0.0)
+
+    def complete(self, values: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+        """Coefficients of one pair with the optional ones filled in: those given, else the one it follows, else the setting."""
+        out = dict(values)
+        for p in self.coeff:
+            if p.name not in out:
+                if isinstance(p.default, str) and p.default in values:
+                    out[p.name] = values[p.default]
+                elif p.name in settings:
+                    out[p.name] = settings[p.name]
+        return out
+
+    def mixed(self, a: Mapping[str, Any], b: Mapping[str, Any], rule: str) -> dict[str, Any]:
+        """Coefficients of i-j from the complete ones of i-i and j-j."""
+        out = {}
+        for p in self.coeff:
+            how = self.mix.get(p.name) or ("distance" if p.name.startswith("cut") else "")
+            if how == "distance":
+                out[p.name] = mix_distance(rule, a[p.name], b[p.name])
+            elif how:
+                out[p.name] = mix_energy(rule, a[p.name], b[p.name], a[how], b[how])
+        return out
 
     def filled(self, coeffs: Mapping[tuple[int, int], Mapping[str, Any]], settings: Mapping[str, Any], ntypes: int,
                rule: str | None = None, only=None) -> dict[tuple[int, int], dict[str, Any]]:
@@ -346,59 +409,78 @@ class PairStyle(Style):
             ``geometric``, ``arithmetic`` or ``sixthpower`` of pair_modify; None is the style's own.
         only : set of (i, j), optional
             The pairs this sub-style of a hybrid serves; None: all.
+
+        Raises
+        ------
+        InputError
+            A pair is neither given nor mixable.
         """
-        def full(values):
-            out = {p.name: settings[p.name] for p in self.coeff if p.name in settings}
-            out.update({p.name: p.default for p in self.coeff if p.name not in out and p.default is not None})
-            out.update(values)
-            for p in self.coeff:       # an optional coefficient may follow another one
-                if isinstance(p.default, str) and p.name not in values and p.default in values:
-                    out[p.name] = values[p.default]
-            return out
+        pairs = only if only is not None else {(i, j) for i in range(1, ntypes + 1) for j in range(i, ntypes + 1)}
         out, missing = {}, []
-        rule = rule or self.mix_rule
-        for i in range(1, ntypes + 1):
-            for j in range(i, ntypes + 1):
-                if only is not None and (i, j) not in only:
-                    continue
-                if (i, j) in coeffs:
-                    out[i, j] = full(coeffs[i, j])
-                elif i != j and self.mix and (i, i) in coeffs and (j, j) in coeffs:
-                    a, b = full(coeffs[i, i]), full(coeffs[j, j])
-                    mixed = {}
-                    for p in self.coeff:
-                        how = self.mix.get(p.name) or ("distance" if p.name.startswith("cut") else None)
-                        if how == "energy":
-                            mixed[p.name] = mix_energy(rule, a[p.name], b[p.name], a[self.size], b[self.size])
-                        elif how == "distance":
-                            mixed[p.name] = mix_distance(rule, a[p.name], b[p.name])
-                    out[i, j] = mixed
-                else:
-                    missing.append((i, j))
+        for i, j in sorted(pairs):
+            if (i, j) in coeffs:
+                out[i, j] = self.complete(coeffs[i, j], settings)
+            elif i != j and self.mix and (i, i) in coeffs and (j, j) in coeffs:
+                a, b = self.complete(coeffs[i, i], settings), self.complete(coeffs[j, j], settings)
+                try:
+                    out[i, j] = self.mixed(a, b, rule or self.mix_rule)
+                except InputError as e:
+                    raise InputError(f"pair style {self.name}, types {i} {j}: {e.message}") from None
+            else:
+                missing.append((i, j))
         if missing:
-            pairs = ", ".join(f"{i} {j}" for i, j in missing[:6]) + (", ..." if len(missing) > 6 else "")
-            raise InputError(f"pair_coeff of pair_style {self.name} is missing for type pairs {pairs}")
+            raise InputError(missing_pairs(missing) + ("" if self.mix else f" (pair style {self.name} does not mix)"))
         return out
+
+    def constants(self, settings: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the functions may take besides coefficients: the settings. Override to add numbers that follow from them."""
+        return settings
 
     def pack_pairs(self, settings: Mapping[str, Any], filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int, units,
                    shift: bool = False) -> PairTables:
-        """Tables for the kernels; pairs that are not in `filled` have cut^2 = 0 and never interact."""
-        nrow = sum(2 + len(p.rows) for p in self.parts)
-        rows = np.zeros((nrow, ntypes + 1, ntypes + 1))
-        constants = np.array([float(settings[n]) for p in self.parts for n in p.constants])
-        angle_of = {p.name for p in self.coeff if p.unit == "angle"}
-        for (i, j), c in filled.items():
-            k = 0
-            for part, cut in zip(self.parts, self.cutoffs(c, settings)):
-                values = [math.radians(c[n]) if n in angle_of else c[n] for n in part.rows]
-                offset = 0.0
-                if shift and not part.charged and cut > 0.0:
-                    at = cut * cut if part.coordinate == "r2" else cut
-                    offset = part.function(at, *values, *(settings[n] for n in part.constants))[0]
-                for m in ((i, j), (j, i)):
-                    rows[(slice(k, k + 2 + len(values)), *m)] = [cut * cut, offset, *values]
-                k += 2 + len(values)
-        return PairTables(rows, constants)
+        """Tables for the kernels; pairs that are not in `filled` have cut^2 = 0 and never interact.
+
+        Parameters
+        ----------
+        shift : bool
+            ``pair_modify shift yes``: the offset of parts without charges is their energy at the cutoff.
+        """
+        return pack_parts(self.parts, self.constants(settings), filled, ntypes, lambda c: self.cutoffs(c, settings), shift,
+                          {p.name for p in self.coeff if p.unit == "angle"})
+
+
+def make_part(function: Callable, cut: str, by_pair) -> Part:
+    """The `Part` of one function; arguments named in `by_pair` are rows, the others constants."""
+    args = _annotations(function)
+    names = [n for n in args if n not in ("r", "r2", "qq")]
+    return Part(function, "coul" if "qq" in args else "vdwl", cut,
+                rows=tuple(n for n in names if n in by_pair and args[n] != "array"),
+                constants=tuple(n for n in names if n not in by_pair and args[n] != "array"),
+                arrays=tuple(n for n in names if args[n] == "array"),
+                coordinate="r2" if "r2" in args else "r", charged="qq" in args)
+
+
+def pack_parts(parts, constants, filled, ntypes: int, cutoffs: Callable, shift: bool, angles=frozenset(), arrays=()) -> PairTables:
+    """`PairTables` of `parts` from complete coefficients by pair; `cutoffs(coeff)` gives the cutoff of each part."""
+    rows = np.zeros((sum(2 + len(p.rows) for p in parts), ntypes + 1, ntypes + 1))
+    numbers = [[float(constants[n]) for n in p.constants] for p in parts]
+    for (i, j), c in filled.items():
+        k = 0
+        for part, fixed, cut in zip(parts, numbers, cutoffs(c), strict=True):
+            values = [math.radians(c[n]) if n in angles else c[n] for n in part.rows]
+            offset = 0.0
+            if shift and not part.charged and cut > 0.0:
+                offset = part.function(cut * cut if part.coordinate == "r2" else cut, *values, *fixed)[0]
+            end = k + 2 + len(values)
+            rows[k:end, i, j] = rows[k:end, j, i] = [cut * cut, offset, *values]
+            k = end
+    return PairTables(rows, np.array([x for fixed in numbers for x in fixed]), tuple(arrays))
+
+
+def missing_pairs(pairs) -> str:
+    """The message for type pairs without coefficients."""
+    listed = ", ".join(f"{i} {j}" for i, j in pairs[:6]) + (", ..." if len(pairs) > 6 else "")
+    return f"All pair coeffs are not set: pair_coeff for type pairs {listed} is missing"
 
 
 def pair(name: str, **options):

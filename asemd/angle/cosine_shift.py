@@ -1,0 +1,16 @@
+r"""$$E = -\frac{U_{min}}{2} [1 + \cos(\theta - \theta_0)]$$
+
+Bounded between -Umin, at theta0, and zero. Source: LAMMPS manual, angle_style cosine/shift.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.style import angle
+
+
+@angle("cosine/shift", example="10.0 45.0", equilibrium="theta0")
+def cosine_shift(theta, Umin: "energy", theta0: "angle"):
+    d = theta - theta0
+    c = math.cos(0.5 * d)
+    return -Umin * c * c, 0.5 * Umin * math.sin(d)
