@@ -1,0 +1,106 @@
+"""Which commands and styles exist: a name has one file, so existence is a question about files."""
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import re
+from functools import cache
+
+from asemd.errors import InputError, nearest
+from asemd.style import ACCELERATED, module_of
+
+FORCE_FIELD = ("bond", "angle", "dihedral", "improper", "pair")
+PACKAGES = {"command": "asemd.lammps.command", **{c: f"asemd.{c}" for c in (*FORCE_FIELD, "kspace", "fix", "compute", "dump", "region", "minimize")}}
+ATOM_STYLES = ("angle", "atomic", "bond", "charge", "full", "molecular")
+
+
+@cache
+def files(category: str) -> frozenset[str]:
+    """Names of the files of a category (``/`` is ``_`` in them)."""
+    try:
+        package = importlib.import_module(PACKAGES[category])
+    except ModuleNotFoundError:
+        return frozenset()
+    return frozenset(m.name for m in pkgutil.iter_modules(package.__path__))
+
+
+def _file(name: str) -> str:
+    return re.sub(r"[^0-9a-zA-Z]", "_", name)
+
+
+def plain(name: str) -> str:
+    """The style's name without an accelerator suffix."""
+    for suffix in ACCELERATED:
+        name = name.removesuffix(suffix)
+    return name
+
+
+def exists(category: str, name: str) -> bool:
+    """Whether there is a style (or command) of that name; imports the one file it would be in."""
+    if category == "atom":
+        return name in ATOM_STYLES
+    if category == "integrate":
+        return name == "verlet"
+    if category not in PACKAGES or not name or _file(plain(name)) not in files(category):
+        return False
+    if category == "command":
+        return "/" not in name
+    if category in FORCE_FIELD:
+        return plain(name) in _force_field(category, _file(plain(name)))
+    if category == "minimize":
+        return name != "state"
+    return any(c.style == plain(name) for c in _classes(importlib.import_module(module_of(category, plain(name)))))
+
+
+def _force_field(category: str, file: str) -> set[str]:
+    from asemd import style
+    importlib.import_module(f"{PACKAGES[category]}.{file}")
+    return {name for found, name in style._registry if found == category}
+
+
+@cache
+def names(category: str) -> tuple[str, ...]:
+    """All styles of a category by their LAMMPS names; imports their files."""
+    if category == "atom":
+        return ATOM_STYLES
+    if category == "integrate":
+        return ("verlet",)
+    if category == "command":
+        return tuple(sorted(files(category)))
+    if category in FORCE_FIELD:
+        from asemd import style
+        return tuple(style.names(category))
+    if category == "minimize":
+        return tuple(sorted(files(category) - {"state"}))
+    found = set()
+    for name in files(category):
+        found.update(c.style for c in _classes(importlib.import_module(f"{PACKAGES[category]}.{name}")))
+    return tuple(sorted(found))
+
+
+def _classes(module) -> list[type]:
+    """Classes with a style name, defined in that module."""
+    return [c for c in vars(module).values() if isinstance(c, type) and c.__module__ == module.__name__ and getattr(c, "style", "")]
+
+
+def load(category: str, name: str) -> type:
+    """The class of ``fix``, ``compute``, ``dump``, ``region`` or ``minimize`` style `name`.
+
+    Raises
+    ------
+    InputError
+        Unknown style; offers the nearest match.
+    """
+    module = module_of(category, plain(name))
+    if module.rpartition(".")[2] in files(category):
+        for found in _classes(importlib.import_module(module)):
+            if found.style == plain(name):
+                return found
+    raise unknown(category, name)
+
+
+def unknown(category: str, name: str) -> InputError:
+    """The error for a name that does not exist here."""
+    if category == "command":
+        return InputError(f"unknown command {name!r}{nearest(name, names('command'))}")
+    return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")

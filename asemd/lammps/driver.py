@@ -1,0 +1,269 @@
+"""A run from setup to timing table: checks, stretches of steps between outputs, thermo rows and dumps."""
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from asemd import units
+from asemd.errors import InputError
+from asemd.lammps import log
+from asemd.thermo import Moment, Progress, evaluate
+
+CHUNK = 0.5     # seconds between looks at the keyboard and updates of the progress bar
+
+
+@dataclass
+class Plan:
+    """What ``run`` was asked: steps, the span that ramps cover, and which parts of the ceremony are wanted."""
+
+    steps: int
+    first: int
+    last: int
+    pre: bool = True
+    post: bool = True
+
+
+def check(session) -> None:
+    """Everything a run needs, and what looks wrong.
+
+    Raises
+    ------
+    InputError
+        A missing mass or coefficient.
+    """
+    scene = session.scene
+    system = scene.system
+    if system.rmass is None:
+        for kind in sorted({int(t) for t in np.unique(system.type)}):
+            if not math.isfinite(system.mass[kind]):
+                raise InputError(f"no mass for atom type {kind}: use the mass command or a Masses section")
+    scene.interactions.check_complete(system)
+    if _bond_style(scene) == "fene":
+        lj, coul = tuple(scene.interactions.special_lj), tuple(scene.interactions.special_coul)
+        if lj != (0.0, 1.0, 1.0) or (system.has_charge and coul != (0.0, 1.0, 1.0)):
+            session.log.warn("bond_style fene should be used with special_bonds lj/coul 0 1 1 (special_bonds fene)")
+
+
+def check_integration(session) -> None:
+    """Warn when nothing moves the atoms, or two fixes move the same ones."""
+    scene, movers = session.scene, []
+    for id, fix in scene.fixes.items():
+        if fix.integrates:
+            mask = scene.groups.mask(fix.group)
+            for other, before in movers:
+                if (mask & before).any():
+                    session.log.warn(f"one or more atoms are time integrated more than once: by fix {other} and fix {id}")
+            movers.append((id, mask))
+    if not movers:
+        session.log.warn("no fixes with time integration, atoms won't move")
+
+
+def _bond_style(scene) -> str:
+    use = scene.interactions.bond
+    style = getattr(use, "style", None)
+    return getattr(style, "name", style) or ""
+
+
+class Driver:
+    """Carries out one run.
+
+    Parameters
+    ----------
+    session : asemd.lammps.session.Session
+    plan : Plan
+    """
+
+    def __init__(self, session, plan: Plan):
+        self.session, self.plan, self.scene = session, plan, session.scene
+        self.words = self.scene.thermo.columns(any(getattr(f, "box_change", False) for f in self.scene.fixes.values()))
+        self.output_seconds = 0.0
+
+    def run(self) -> None:
+        """Setup, steps, summary."""
+        session, plan, scene = self.session, self.plan, self.scene
+        begin = scene.step
+        loop = session.loop
+        if plan.pre or loop is None:
+            from asemd.loop import Loop
+            check(session)
+            check_integration(session)
+            session.close_loop()
+            loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), list(scene.fixes.values()),
+                                       dict(scene.groups), scene.dt, step=begin)
+            loop.setup(plan.first, plan.last, virial=True)
+            session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
+        counters = loop.engine.counters
+        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=counters.builds, dangerous=counters.dangerous)
+        before = dict(counters.timings)
+        session.running = True
+        try:
+            self._provide(begin, begin + plan.steps, fresh=True)
+            header = scene.thermo.header(self.words)
+            if header:
+                session.log.write(header + "\n")
+            self._output(begin, ends=True)
+            self._watch("start", plan.steps)
+            self.progress.started = time.perf_counter()
+            self.output_seconds = 0.0
+            self._advance(begin, begin + plan.steps)
+            seconds = time.perf_counter() - self.progress.started
+        finally:
+            session.running = False
+            self._watch("stop")
+        loop.finish()
+        if scene.thermo.footer():
+            session.log.write(scene.thermo.footer() + "\n")
+        steps = scene.step - begin
+        self._summary(seconds, steps, {k: v - before.get(k, 0.0) for k, v in counters.timings.items()})
+        session.log.flush()
+        if session.interrupted:
+            raise KeyboardInterrupt
+
+    # ----------------------------------------------------------------- steps ---
+
+    def _advance(self, begin: int, end: int) -> None:
+        session, loop = self.session, self.session.loop
+        rate, step = 0.0, begin
+        while step < end and not session.interrupted:
+            target = min(end, self._next_output(step))
+            while step < target and not session.interrupted:
+                left = target - step
+                chunk = left if not session.watched else max(1, min(left, int(rate * CHUNK) if rate else 20))
+                if chunk == left:
+                    needs = self._needs(target, end)
+                    loop.advance(chunk, virial="virial" in needs, energies="energies" in needs, virials="virials" in needs)
+                else:
+                    loop.advance(chunk, virial=False)
+                step += chunk
+                self.scene.step = step
+                rate = (step - begin) / max(time.perf_counter() - self.progress.started - self.output_seconds, 1e-9)
+                self._watch("update", step - begin)
+            started = time.perf_counter()
+            if session.interrupted and step < target:
+                loop.engine.compute(virial=True)
+                self._provide(step, step, fresh=False)
+                self._output(step, ends=True)
+            else:
+                self._provide(step, end, fresh=False)
+                self._output(step, ends=step == end or session.interrupted)
+            self.output_seconds += time.perf_counter() - started
+
+    def _next_output(self, step: int) -> int:
+        """The next step on which something is written."""
+        steps = [_multiple(d.every, step) for d in self.scene.dumps.values()] + [self._next_thermo(step)]
+        return min(s for s in steps)
+
+    def _next_thermo(self, step: int) -> int:
+        every = self.scene.thermo.every
+        if isinstance(every, str):
+            if self._thermo_step <= step:
+                value = int(self.session.variables.number(every))
+                if value <= step:
+                    raise InputError(f"thermo v_{every}: variable {every} gave step {value}, which is not after step {step}")
+                self._thermo_step = value
+            return self._thermo_step
+        return _multiple(every, step)
+
+    _thermo_step = -1
+
+    def _needs(self, step: int, end: int) -> set[str]:
+        """What the forces of an output step must bring: all that is defined on the last step, what is shown on others."""
+        scene = self.scene
+        if step == end:
+            return {"virial"}.union(*(c.needs for c in scene.computes.values()), *(_dump_needs(d) for d in scene.dumps.values()))
+        needs: set[str] = set()
+        if self._is_thermo(step):
+            needs |= scene.thermo.needs(self.words, scene.computes, self.session.variables.references)
+        for dump in scene.dumps.values():
+            if _due(dump.every, step):
+                needs |= _dump_needs(dump)
+        return needs
+
+    def _is_thermo(self, step: int) -> bool:
+        every = self.scene.thermo.every
+        return step == self._thermo_step if isinstance(every, str) else _due(every, step)
+
+    # ---------------------------------------------------------------- output ---
+
+    def _provide(self, step: int, end: int, fresh: bool) -> None:
+        """Make the state of this step what formulas and output see."""
+        session, scene = self.session, self.scene
+        loop = session.loop
+        if fresh:       # the first step may have to bring per-atom values too
+            needs = self._needs(step, step)
+            if needs & {"energies", "virials"}:
+                loop.engine.compute(virial=True, energies="energies" in needs, virials="virials" in needs)
+        session.moment = Moment(scene, loop.snapshot(), session.variables.number, self.progress, loop.engine.counters)
+
+    def _output(self, step: int, ends: bool) -> None:
+        session, scene = self.session, self.scene
+        if ends or self._is_thermo(step):
+            self._thermo(step)
+        for dump in scene.dumps.values():
+            if _due(dump.every, step) and not session.passive and dump_wanted(dump, step):
+                dump.write(session.moment.snapshot, step)
+
+    def _thermo(self, step: int) -> None:
+        session, scene = self.session, self.scene
+        norm = scene.thermo.is_normalised(scene.units)
+        values = [evaluate(session.moment, w, norm) for w in self.words]
+        session.log.write(scene.thermo.row(self.words, values, step, self.progress.cpu() if step > self.progress.begin else 0.0) + "\n")
+        session.last_thermo = {scene.thermo.name(k, w): v for k, (w, v) in enumerate(zip(self.words, values), 1)}
+        session.last_thermo_step = step
+        if scene.thermo.flush or session.watched:
+            session.log.flush()
+
+    def _watch(self, what: str, *args) -> None:
+        if self.session.observer is not None:
+            getattr(self.session.observer, what)(*args)
+
+    # --------------------------------------------------------------- summary ---
+
+    def _summary(self, seconds: float, steps: int, timings: dict[str, float]) -> None:
+        scene, write = self.scene, self.session.log.write
+        n, counters = scene.system.n, self.session.loop.engine.counters
+        write(log.loop_line(seconds, steps, n) + "\n")
+        if not self.plan.post:
+            return
+        u = units.get(scene.units)
+        write(log.performance(seconds, steps, n, scene.dt, scene.units, u.femtosecond))
+        write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n\n")
+        timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
+        present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0
+                        or (s == "Bond" and scene.system.molecular))
+        write(log.timing_table(seconds, timings, present) + "\n")
+        write(log.counts(n, 0, int(counters.pairs), counters.builds - self.progress.builds,
+                         counters.dangerous - self.progress.dangerous if scene.neighbor.check else None))
+
+
+def _multiple(every: int, step: int) -> int:
+    """The next multiple of `every` after `step`; beyond every run for 0."""
+    return (step // every + 1) * every if every else 2**62
+
+
+def _due(every: int, step: int) -> bool:
+    return bool(every) and step % every == 0
+
+
+def dump_wanted(dump, step: int) -> bool:
+    """False if this step was written already (runs share their first and last step)."""
+    if getattr(dump, "last_written", None) == step:
+        return False
+    dump.last_written = step
+    return True
+
+
+def _dump_needs(dump) -> set[str]:
+    return set(getattr(dump, "needs", ()))
+
+
+def memory() -> float:
+    """Largest memory of this process so far, in Mbytes; 0 where the system does not say."""
+    try:
+        import resource
+    except ImportError:
+        return 0.0
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0

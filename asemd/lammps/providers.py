@@ -1,0 +1,185 @@
+"""What the formulas of variables see of a session: thermo keywords, computes, fixes, atoms, groups."""
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from asemd import thermo, units
+from asemd.errors import InputError, nearest
+from asemd.lammps import catalog
+from asemd.variable import Clock
+
+AXES = {"x": 0, "y": 1, "z": 2}
+TENSOR = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+
+
+class Providers:
+    """`asemd.variable.Provider` of a session."""
+
+    def __init__(self, session):
+        self.session = session
+
+    @property
+    def scene(self):
+        return self.session.scene
+
+    @property
+    def system(self):
+        if self.scene.system is None:
+            raise InputError("a formula with simulation quantities before simulation box is defined")
+        return self.scene.system
+
+    def thermo(self, keyword: str) -> float:
+        if keyword not in thermo.KEYWORDS:
+            raise InputError(f"unknown word {keyword!r} in a formula{nearest(keyword, thermo.KEYWORDS)}")
+        system = self.system
+        norm = self.scene.thermo.is_normalised(self.scene.units)
+        return float(thermo.evaluate(self.session.moment, keyword, norm and system.n > 0))
+
+    def reference(self, kind: str, id: str, index: list[int]) -> float:
+        return thermo.value_of(self.session.moment, kind, id, index)
+
+    def is_per_atom(self, kind: str, id: str) -> bool:
+        """Whether a compute or fix gives values per atom rather than global ones."""
+        found = self.source(kind, id)
+        return type(found).per_atom is not _base_per_atom(kind) if hasattr(type(found), "per_atom") else False
+
+    def source(self, kind: str, id: str):
+        table, what = (self.scene.computes, "compute") if kind == "c" else (self.scene.fixes, "fix")
+        if id not in table:
+            raise InputError(f"there is no {what} {id}{nearest(id, table)}")
+        return table[id]
+
+    def per_atom(self, kind: str, id: str, column: int | None) -> np.ndarray:
+        self.source(kind, id)
+        values = np.asarray(self.session.moment.per_atom(id) if kind == "c" else self.source("f", id).per_atom(self.session.moment.snapshot))
+        if values.ndim == 1 and column is None:
+            return values
+        if values.ndim == 2 and column is not None and 1 <= column <= values.shape[1]:
+            return values[:, column - 1]
+        raise InputError(f"{kind}_{id}{f'[{column}]' if column else ''}: the values per atom have {values.shape[1] if values.ndim == 2 else 'no'} columns")
+
+    def vector(self, kind: str, id: str, column: int | None) -> np.ndarray:
+        source = self.source(kind, id)
+        if kind == "f":
+            size = getattr(source, "size", None)
+            if size is None or column is not None:
+                raise InputError(f"fix {id} (style {source.style}) has no global vector of known length")
+            return np.array([source.vector(i) for i in range(1, size + 1)])
+        if column is None:
+            return self.session.moment.vector(id)
+        return np.asarray(self.session.moment.array(id))[:, column - 1]
+
+    def atoms(self, name: str) -> np.ndarray:
+        s = self.system
+        if name == "mass":
+            return s.atom_masses()
+        if name in ("id", "type", "mol"):
+            return (s.molecule if name == "mol" else getattr(s, name)).astype(float)
+        if name == "q":
+            if s.q is None:
+                raise InputError(f"atom style {s.atom_style} has no charges")
+            return s.q
+        if name == "radius":
+            if "radius" not in s.extra:
+                raise InputError(f"atom style {s.atom_style} has no radius")
+            return s.extra["radius"]
+        return {"x": s.x, "v": s.v, "f": s.f}[name[0]][:, AXES[name[-1]]]
+
+    def row(self, atom_id: int) -> int:
+        rows = np.flatnonzero(self.system.id == atom_id)
+        if not rows.size:
+            raise InputError(f"there is no atom with id {atom_id}")
+        return int(rows[0])
+
+    def group(self, name: str) -> np.ndarray:
+        self.system     # noqa: B018  raises before the box is there
+        return self.scene.groups.mask(name)
+
+    def region(self, name: str) -> np.ndarray:
+        if name not in self.scene.regions:
+            raise InputError(f"there is no region {name}{nearest(name, self.scene.regions)}")
+        return self.scene.regions[name].inside(self.system.x)
+
+    def clock(self) -> Clock:
+        p = self.session.moment.progress
+        return Clock(self.scene.step, p.first, max(p.last, p.first), self.scene.dt)
+
+    def exists(self, category: str, name: str) -> bool:
+        tables = {"compute": self.scene.computes, "fix": self.scene.fixes, "group": self.scene.groups, "region": self.scene.regions,
+                  "dump": self.scene.dumps, "variable": self.session.variables.table}
+        if category in tables:
+            return name in tables[category]
+        return category != "feature" and catalog.exists(category, name)
+
+    def group_function(self, name: str, mask: np.ndarray, word: str | None) -> float:
+        """The value of ``xcm(group,x)`` and its relatives over the atoms of `mask`."""
+        words = {"bound": [a + e for a in AXES for e in ("min", "max")], "inertia": list(TENSOR)}.get(name, list(AXES))
+        if word is not None and word not in words:
+            raise InputError(f"{name}(): the direction must be one of {' '.join(words)}, got {word!r}")
+        system = self.system
+        if name in ("count", "charge"):
+            if name == "count":
+                return float(mask.sum())
+            return float(system.q[mask].sum()) if system.q is not None else _no_charge(system)
+        if name == "bound":
+            column = system.x[mask][:, AXES[word[0]]]
+            return float(column.min(initial=1e20) if word.endswith("min") else column.max(initial=-1e20))
+        body = Body(system, mask)
+        if name in ("mass", "gyration"):
+            return getattr(body, name)()
+        if name == "ke":
+            return 0.5 * units.get(system.units).mvv2e * float((body.m[:, None] * body.v**2).sum())
+        value = getattr(body, name)()
+        return float(value[TENSOR[word]] if name == "inertia" else value[AXES[word]])
+
+
+def _no_charge(system):
+    raise InputError(f"charge(): atom style {system.atom_style} has no charges")
+
+
+def _base_per_atom(kind: str) -> Callable | None:
+    from asemd.compute import Compute
+    return Compute.per_atom if kind == "c" else None
+
+
+class Body:
+    """Mass, momenta and moments of some atoms, with unwrapped positions."""
+
+    def __init__(self, system, mask: np.ndarray):
+        self.m, self.v, self.f = system.atom_masses()[mask], system.v[mask], system.f[mask]
+        self.x = system.box.unwrap(system.x, system.image)[mask]
+
+    def mass(self) -> float:
+        return float(self.m.sum())
+
+    def _mean(self, values: np.ndarray) -> np.ndarray:
+        total = self.mass()
+        return self.m @ values / total if total > 0.0 else np.zeros(3)
+
+    def xcm(self) -> np.ndarray:
+        return self._mean(self.x)
+
+    def vcm(self) -> np.ndarray:
+        return self._mean(self.v)
+
+    def fcm(self) -> np.ndarray:
+        return self.f.sum(axis=0)
+
+    def gyration(self) -> float:
+        return float(np.sqrt(self._mean(((self.x - self.xcm())**2)).sum()))
+
+    def angmom(self) -> np.ndarray:
+        return (self.m[:, None] * np.cross(self.x - self.xcm(), self.v)).sum(axis=0)
+
+    def torque(self) -> np.ndarray:
+        return np.cross(self.x - self.xcm(), self.f).sum(axis=0)
+
+    def inertia(self) -> np.ndarray:
+        d = self.x - self.xcm()
+        return np.eye(3) * (self.m @ (d * d).sum(axis=1)) - (self.m[:, None, None] * d[:, :, None] * d[:, None, :]).sum(axis=0)
+
+    def omega(self) -> np.ndarray:
+        """Angular velocity; zero about axes without inertia."""
+        return np.linalg.pinv(self.inertia(), rcond=1e-12, hermitian=True) @ self.angmom()

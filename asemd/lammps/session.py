@@ -1,0 +1,237 @@
+"""A session executes commands on a scene."""
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from asemd.errors import AsemdError, InputError, Where
+from asemd.lammps import catalog, lex, script
+from asemd.lammps.log import Log, to_stdout
+from asemd.lammps.providers import Providers
+from asemd.lammps.script import Command
+from asemd.lammps.switches import Switches
+from asemd.scene import Scene
+from asemd.thermo import Moment, Progress
+from asemd.variable import Variables
+
+NESTING = 16
+BEFORE_BOX = ("units", "boundary", "atom_style", "dimension", "processors", "package")
+ACTIONS = ("run", "minimize", "rerun")
+
+
+class Stop(Exception):
+    """Raised to leave all scripts at once: ``quit``, or the end of what `asemd.read` executes."""
+
+    def __init__(self, status: int = 0):
+        super().__init__(status)
+        self.status = status
+
+
+class Session:
+    """Executes LAMMPS commands on `scene`.
+
+    Parameters
+    ----------
+    scene : Scene, optional
+    switches : Switches, optional
+        LAMMPS's command line switches, read.
+    screen : callable, optional
+        Takes text for the terminal; by default what the switches say.
+    passive : bool
+        Read only: no log, no dumps, no ``shell``; stops at the first run or minimisation.
+
+    Attributes
+    ----------
+    scene, variables, log
+    moment : Moment
+        What is known about the last step that was evaluated.
+    loop : asemd.loop.Loop or None
+        The loop of the last run.
+    interrupted : bool
+        Set it to True to end the current run after the segment it is in.
+    """
+
+    def __init__(self, scene: Scene | None = None, switches: Switches | None = None,
+                 screen: Callable[[str], None] | None = None, passive: bool = False):
+        self.switches = switches or Switches()
+        self.passive = passive
+        self.scene = scene or self._fresh_scene()
+        if screen is None and self.switches.screen != "none" and not passive:
+            screen = to_stdout if self.switches.screen is None else _to_file(self.switches.screen)
+        self.log = Log(None if passive else self.switches.log, None if passive else screen, self.switches.echo)
+        self.variables = Variables(Providers(self))
+        for name, values in self.switches.variables:
+            self.variables.define(name, "index", values)
+        self.loop: Any = None
+        self.last_thermo: dict[str, Any] = {}
+        self.last_thermo_step = -1
+        self.running = False
+        self.interrupted = False
+        self.observer: Any = None          # told about progress by the driver: .start(steps), .update(done), .stop()
+        self.label: str | None = None      # text is skipped up to this label
+        self.exhausted = False             # `next` ran out: the next `jump` is skipped
+        self._depth = 0
+        self._position: Where | None = None
+        self.moment = Moment(self.scene, None, self.variables.number, Progress())
+
+    def _fresh_scene(self) -> Scene:
+        scene = Scene()
+        scene.threads, scene.precision, scene.compat = self.switches.threads, self.switches.precision, self.switches.compat
+        return scene
+
+    # ------------------------------------------------------------- commands ---
+
+    def execute(self, command: str | Command) -> None:
+        """Execute one command.
+
+        Raises
+        ------
+        InputError
+            With the place of the command.
+        """
+        if isinstance(command, str):
+            command = Command(command, Where("", 1, " ".join(command.split())))
+        outer, self._position = self._position, command.where
+        try:
+            self._execute(command)
+        except InputError as e:
+            raise e.at(command.where)
+        except AsemdError as e:
+            if not getattr(e, "placed", False):
+                e.args = (f"{e} ({command.where})",)
+                e.placed = True
+            raise
+        finally:
+            self._position = outer
+
+    def _execute(self, command: Command) -> None:
+        if self.label is not None:
+            words = command.words
+            if len(words) == 2 and words == ["label", self.label]:
+                self.label = None
+            return
+        self.log.echo(command.text)
+        text = lex.strip_comment(command.text)
+        if not text.strip():
+            return
+        text = lex.substitute(text, self.variables.value, self.variables.evaluate, self.log.echo)
+        words = lex.split(text)
+        if words:
+            self.call(words[0], words[1:])
+
+    def call(self, name: str, args: Sequence[str]) -> None:
+        """Execute a command whose words are ready."""
+        if not catalog.exists("command", name):
+            raise catalog.unknown("command", name)
+        if name in BEFORE_BOX and self.scene.system is not None:
+            raise InputError(f"{name} command after simulation box is defined: move it before read_data or create_box")
+        if self.passive and name in ACTIONS:
+            self.scene.need_system(name)
+            raise Stop
+        importlib.import_module(f"asemd.lammps.command.{name}").run(self, list(args))
+        self.scene.sync_groups()
+
+    def commands(self, text: str) -> None:
+        """Execute several lines of text."""
+        self._run(script.parse(text), "")
+
+    def file(self, path: str | os.PathLike) -> None:
+        """Check a script, then execute it."""
+        commands = script.read(path)
+        errors, doubtful = script.check(commands)
+        script.raise_problems(errors)
+        for problem in doubtful:
+            self.log.warn(str(problem))
+        if self._depth >= NESTING:
+            raise InputError(f"include: scripts nested deeper than {NESTING}")
+        self._depth += 1
+        try:
+            self._run(commands, os.fspath(path))
+        finally:
+            self._depth -= 1
+
+    def _run(self, commands: list[Command], path: str) -> None:
+        i = 0
+        while i < len(commands):
+            try:
+                self.execute(commands[i])
+            except Jump as jump:
+                if jump.file not in ("SELF", path):
+                    commands, path = script.read(jump.file), jump.file
+                i, self.label = -1, jump.label
+            i += 1
+        if self.label is not None:
+            missing, self.label = self.label, None
+            raise InputError(f"label {missing} was not found after jump" + (f" in {path}" if path else ""))
+
+    def substitute(self, text: str) -> str:
+        """Replace variables in text whose quotes are gone (print, if)."""
+        return lex.substitute(text, self.variables.value, self.variables.evaluate, quotes=False)
+
+    def print(self, text: str) -> None:
+        """Tell the user: one line in the log and on the terminal."""
+        self.log.write(text + "\n")
+
+    @property
+    def watched(self) -> bool:
+        """Whether somebody looks at the progress of runs."""
+        return self.observer is not None
+
+    def close_loop(self) -> None:
+        """Forget the loop of the last run."""
+        self.loop = None
+
+    def warn(self, message: str) -> None:
+        """Warn, naming the command that is being executed."""
+        self.log.warn(f"{message} ({self._position})" if self._position and self._position.file else message)
+
+    # ---------------------------------------------------------------- state ---
+
+    def clear(self) -> None:
+        """Forget the scene; variables, log and working directory stay."""
+        self.close_dumps()
+        self.scene = self._fresh_scene()
+        self.loop = None
+        self.stale()
+
+    def stale(self) -> None:
+        """What was known about the last step no longer holds."""
+        self.moment = Moment(self.scene, None, self.variables.number, Progress())
+
+    def close_dumps(self) -> None:
+        for dump in self.scene.dumps.values():
+            dump.close()
+
+    def close(self) -> None:
+        """Close dumps and the log."""
+        self.close_dumps()
+        self.log.write(self.log.total_time())
+        self.log.close()
+
+    @property
+    def per_atom_count(self) -> int:
+        return self.scene.need_system("variable").n
+
+    def rows_in_order_of_id(self) -> np.ndarray:
+        return np.argsort(self.scene.need_system("gather").id, kind="stable")
+
+
+class Jump(Exception):
+    """Raised by the command ``jump``."""
+
+    def __init__(self, file: str, label: str | None):
+        super().__init__(file, label)
+        self.file, self.label = file, label
+
+
+def _to_file(path: str) -> Callable[[str], None]:
+    f = open(path, "w", encoding="utf-8")       # noqa: SIM115  lives as long as the session
+
+    def write(text: str) -> None:
+        f.write(text)
+        f.flush()
+    return write

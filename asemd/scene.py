@@ -1,0 +1,209 @@
+"""The scene: everything a script has said so far, as plain data that can be pickled, copied and written back."""
+from __future__ import annotations
+
+from collections.abc import Iterator, MutableMapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from asemd import units
+from asemd.errors import InputError, nearest
+from asemd.forcefield import Interactions
+from asemd.thermo import Thermo
+
+if TYPE_CHECKING:
+    from asemd.compute import Compute
+    from asemd.engine import Settings
+    from asemd.fix import Fix
+    from asemd.system import System
+
+MAX_GROUPS = 32
+
+
+class GroupTable(MutableMapping):
+    """Group name -> bool mask by atom row; ``all`` comes first, the position of a name is its bit.
+
+    A deleted group leaves its bit free for the next one, as in LAMMPS.
+    """
+
+    def __init__(self, n: int = 0):
+        self._slots: list[str | None] = ["all"]
+        self._masks: dict[str, np.ndarray] = {"all": np.ones(n, bool)}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        try:
+            return self._masks[name]
+        except KeyError:
+            raise KeyError(name) from None
+
+    def __setitem__(self, name: str, mask: np.ndarray) -> None:
+        mask = np.asarray(mask, bool)
+        if name not in self._masks:
+            if None in self._slots:
+                self._slots[self._slots.index(None)] = name
+            elif len(self._slots) == MAX_GROUPS:
+                raise InputError(f"group {name}: there can be at most {MAX_GROUPS} groups, all included")
+            else:
+                self._slots.append(name)
+        self._masks[name] = mask
+
+    def __delitem__(self, name: str) -> None:
+        if name == "all":
+            raise InputError("group all cannot be deleted")
+        del self._masks[name]
+        self._slots[self._slots.index(name)] = None
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name in self._slots if name is not None)
+
+    def __len__(self) -> int:
+        return len(self._masks)
+
+    def bit(self, name: str) -> int:
+        """The bit of a group: 0 for ``all``."""
+        return self._slots.index(name)
+
+    def mask(self, name: str, command: str = "") -> np.ndarray:
+        """The mask of a group.
+
+        Raises
+        ------
+        InputError
+            No group of that name; offers the nearest match.
+        """
+        if name not in self._masks:
+            raise InputError(f"{command}{': ' if command else ''}unknown group {name!r}{nearest(name, self)}")
+        return self._masks[name]
+
+    def resize(self, n: int) -> None:
+        """Make every mask `n` atoms long; atoms that are new belong to ``all`` only."""
+        for name, mask in self._masks.items():
+            grown = np.full(n, name == "all")
+            grown[:min(n, mask.size)] = mask[:n]
+            self._masks[name] = grown
+
+    def select(self, index: np.ndarray) -> None:
+        """Keep the atoms of `index` (rows or mask), in that order."""
+        self._masks = {name: mask[index] for name, mask in self._masks.items()}
+
+
+@dataclass
+class Neighbor:
+    """What ``neighbor`` and ``neigh_modify`` say; `exclude` holds ("type", i, j), ("group", a, b), ("molecule/intra", group), ("molecule/inter", group)."""
+
+    skin: float
+    every: int = 1
+    delay: int = 0
+    check: bool = True
+    exclude: list[tuple] = field(default_factory=list)
+
+
+def default_computes() -> dict[str, Compute]:
+    """``thermo_temp``, ``thermo_press`` and ``thermo_pe``, which every scene has."""
+    from asemd.compute.pe import PE
+    from asemd.compute.pressure import Pressure
+    from asemd.compute.temp import Temp
+    temp = Temp("all")
+    computes = {"thermo_temp": temp, "thermo_press": Pressure(temp=temp), "thermo_pe": PE()}
+    for name, compute in computes.items():
+        compute.id = name
+    return computes
+
+
+@dataclass
+class Scene:
+    """System, interactions, groups, fixes, computes, outputs and settings.
+
+    Attributes
+    ----------
+    system : System or None
+        None before the box is defined.
+    units, dimension, boundary, atom_style
+        As given by the commands of these names; `boundary` is three two-letter strings such as ``"pp"``.
+    interactions : asemd.forcefield.Interactions
+    groups : GroupTable
+    fixes, computes, dumps : dict
+        By id, in order of definition; a re-used id keeps its place.
+    dt : float
+        Timestep in time units of the scene.
+    """
+
+    system: System | None = None
+    units: str = "lj"
+    dimension: int = 3
+    boundary: tuple[str, str, str] = ("pp", "pp", "pp")
+    atom_style: str = "atomic"
+    interactions: Interactions = field(default_factory=Interactions)
+    groups: GroupTable = field(default_factory=GroupTable)
+    fixes: dict[str, Fix] = field(default_factory=dict)
+    computes: dict[str, Compute] = field(default_factory=default_computes)
+    dumps: dict[str, Any] = field(default_factory=dict)
+    thermo: Thermo = field(default_factory=Thermo)
+    dt: float = 0.005
+    neighbor: Neighbor = field(default_factory=lambda: Neighbor(0.3))
+    threads: int = 1
+    precision: str = "double"
+    compat: str = ""
+    min_style: str = "cg"
+    min_modify: dict[str, Any] = field(default_factory=dict)
+    first_step: int = 0
+    lattice: Any = None
+    regions: dict[str, Any] = field(default_factory=dict)
+    seeds: dict[str, int] = field(default_factory=dict)
+    map_style: str | None = None
+    newton: tuple[bool, bool] = (True, True)
+    time_base: tuple[float, int] = (0.0, 0)     # simulation time at the step where the timestep last changed
+
+    @property
+    def step(self) -> int:
+        """The current timestep."""
+        return self.system.step if self.system is not None else self.first_step
+
+    @step.setter
+    def step(self, value: int) -> None:
+        self.first_step = int(value)
+        if self.system is not None:
+            self.system.step = int(value)
+
+    def time(self, step: int) -> float:
+        """Simulation time at a step, also if the timestep was changed on the way."""
+        return self.time_base[0] + (step - self.time_base[1]) * self.dt
+
+    def set_dt(self, dt: float) -> None:
+        """Choose the timestep from now on."""
+        self.time_base = (self.time(self.step), self.step)
+        self.dt = dt
+
+    def set_units(self, name: str) -> None:
+        """Choose the unit style; timestep and skin go to its defaults."""
+        u = units.get(name)
+        self.units, self.dt, self.neighbor.skin = name, u.dt, u.skin
+
+    def need_system(self, command: str) -> System:
+        """The system, or an error that says the box is not there yet."""
+        if self.system is None:
+            raise InputError(f"{command} command before simulation box is defined: use read_data or create_box first")
+        return self.system
+
+    def sync_groups(self) -> None:
+        """Fit the group masks to the number of atoms."""
+        if self.system is not None and self.groups["all"].size != self.system.n:
+            self.groups.resize(self.system.n)
+
+    def settings(self) -> Settings:
+        """The neighbour and threading settings in the form the engine takes."""
+        from asemd.engine import Settings
+        exclude = []
+        for kind, *words in self.neighbor.exclude:
+            exclude.append((kind, *words) if kind == "type" else (kind, *(self.groups.mask(w, "neigh_modify exclude") for w in words)))
+        return Settings(skin=self.neighbor.skin, every=self.neighbor.every, delay=self.neighbor.delay, check=self.neighbor.check,
+                        exclude=exclude, threads=self.threads, precision=self.precision)
+
+    def to_atoms(self):
+        """`asemd.system.Atoms` in order of id, with the force field as calculator."""
+        from asemd.calculator import ForceField
+        system = self.need_system("read")
+        atoms = system.to_ase()
+        atoms.calc = ForceField.from_scene(self)
+        return atoms

@@ -1,0 +1,443 @@
+"""Thermodynamic output: which quantities, how they are evaluated on one step, and how a row of them is written.
+
+Keywords, column names and formats are those of LAMMPS's ``thermo_style`` and ``thermo_modify``.
+"""
+from __future__ import annotations
+
+import math
+import re
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from asemd.errors import InputError, nearest
+
+STYLES = {
+    "one": "step temp epair emol etotal press",
+    "multi": "etotal ke temp pe ebond eangle edihed eimp evdwl ecoul elong press",
+}
+FLOAT, INTEGER = "%- 14.8g", "%10d "
+MULTI_FLOAT, MULTI_INTEGER = "%14.4f", "%14d"
+WIDTH = {"float": 14, "int": 11}
+
+
+@dataclass
+class Progress:
+    """Where a run is: steps, and wall times in seconds."""
+
+    begin: int = 0              # first step of this run
+    first: int = 0              # first step of a series of runs (run ... start)
+    last: int = 0
+    started: float = field(default_factory=time.perf_counter)
+    previous: tuple[float, int] | None = None
+    builds: int = 0             # neighbour list counters when the run began
+    dangerous: int = 0
+
+    def cpu(self) -> float:
+        return time.perf_counter() - self.started
+
+
+class Moment:
+    """Everything known about one step; each compute is evaluated at most once.
+
+    Parameters
+    ----------
+    scene : asemd.scene.Scene
+    snapshot : asemd.engine.Snapshot or None
+        None before the first run: then only the box and the counts are known.
+    number : callable
+        Name of a variable -> its value.
+    progress : Progress
+    counters : object with ``builds`` and ``dangerous``, optional
+    """
+
+    def __init__(self, scene, snapshot, number: Callable[[str], float], progress: Progress | None = None, counters=None):
+        self.scene, self._snapshot, self.number = scene, snapshot, number
+        self.progress, self.counters = progress or Progress(), counters
+        self._cache: dict[tuple[str, str], Any] = {}
+
+    @property
+    def system(self):
+        return self.scene.need_system("thermo")
+
+    @property
+    def snapshot(self):
+        if self._snapshot is None:
+            raise InputError("energies, forces and computes are not known before the first run: use run 0")
+        return self._snapshot
+
+    def _get(self, kind: str, id: str) -> Any:
+        if (kind, id) not in self._cache:
+            if id not in self.scene.computes:
+                raise InputError(f"there is no compute {id}{nearest(id, self.scene.computes)}")
+            compute, snapshot = self.scene.computes[id], self.snapshot
+            for need in compute.needs & {"energies", "virials"}:
+                if getattr(snapshot.result, need) is None:
+                    raise InputError(f"compute {id} was not evaluated on step {snapshot.step}: run 0 first, or use it in thermo or a dump")
+            self._cache[kind, id] = getattr(compute, kind)(snapshot)
+        return self._cache[kind, id]
+
+    def scalar(self, id: str) -> float:
+        return float(self._get("scalar", id))
+
+    def vector(self, id: str) -> np.ndarray:
+        return self._get("vector", id)
+
+    def array(self, id: str) -> np.ndarray:
+        return self._get("array", id)
+
+    def per_atom(self, id: str) -> np.ndarray:
+        return self._get("per_atom", id)
+
+    def forget(self) -> None:
+        """Computes are evaluated again when they are asked for next."""
+        self._cache.clear()
+
+    def fix(self, id: str):
+        if id not in self.scene.fixes:
+            raise InputError(f"there is no fix {id}{nearest(id, self.scene.fixes)}")
+        return self.scene.fixes[id]
+
+    def energy(self, *keys: str) -> float:
+        return float(sum(self.snapshot.result.energy.get(k, 0.0) for k in keys))
+
+    def temperature(self) -> float:
+        return self.scalar(self.scene.thermo.temp)
+
+    def kinetic(self) -> float:
+        """Kinetic energy by the temperature and its degrees of freedom."""
+        compute, state = self.scene.computes[self.scene.thermo.temp], self.snapshot
+        return 0.5 * compute.dof(state) * state.units.boltz * self.temperature()
+
+    def potential(self) -> float:
+        return self.scalar("thermo_pe")
+
+    def pressure(self, i: int | None = None) -> float:
+        id = self.scene.thermo.press
+        return self.scalar(id) if i is None else float(self.vector(id)[i])
+
+    def coupling(self) -> float:
+        return float(sum(f.scalar() for f in self.scene.fixes.values() if f.ecouple))
+
+    def volume(self) -> float:
+        box = self.system.box
+        return box.volume if self.scene.dimension == 3 else float(np.linalg.norm(np.cross(box.cell[0], box.cell[1])))
+
+    def forces(self) -> np.ndarray:
+        return self.snapshot.system.f
+
+
+# ---------------------------------------------------------------- keywords ---
+
+@dataclass(frozen=True)
+class Keyword:
+    """One thermo keyword: column name, function of a `Moment`, kind and whether it grows with the system."""
+
+    column: str
+    value: Callable[[Moment], float]
+    kind: str = "float"
+    extensive: bool = False
+    needs: frozenset[str] = frozenset()
+
+
+def _time(m: Moment) -> float:
+    return m.scene.time(m.scene.step)
+
+
+def _rate(m: Moment, per_step: float) -> float:
+    p = m.progress
+    now = (p.cpu(), m.scene.step)
+    before, p.previous = p.previous or (0.0, p.begin), now
+    return (now[1] - before[1]) * per_step / (now[0] - before[0]) if now[1] > before[1] and now[0] > before[0] else 0.0
+
+
+def _remaining(m: Moment) -> float:
+    p, done = m.progress, m.scene.step - m.progress.begin
+    return p.cpu() * (p.last - m.scene.step) / done if done > 0 else 0.0
+
+
+def _cpu(m: Moment) -> float:
+    return m.progress.cpu() if m.scene.step > m.progress.begin else 0.0
+
+
+def _density(m: Moment) -> float:
+    from asemd import units
+    return units.get(m.scene.units).mv2d * float(m.system.atom_masses().sum()) / m.volume()
+
+
+def _angle(i: int, j: int) -> Callable[[Moment], float]:
+    def angle(m: Moment) -> float:
+        a, b = m.system.box.cell[i], m.system.box.cell[j]
+        return math.degrees(math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b)))
+    return angle
+
+
+def _edge(i: int) -> Callable[[Moment], float]:
+    return lambda m: float(np.linalg.norm(m.system.box.cell[i]))
+
+
+def _lattice(i: int) -> Callable[[Moment], float]:
+    return lambda m: float(m.scene.lattice.spacings[i]) if m.scene.lattice is not None else 1.0
+
+
+def _counter(name: str) -> Callable[[Moment], int]:
+    def count(m: Moment) -> int:
+        return getattr(m.counters, name) - getattr(m.progress, name) if m.counters is not None else 0
+    return count
+
+
+def _integer(column: str, value: Callable[[Moment], int]) -> Keyword:
+    return Keyword(column, value, "int")
+
+
+def _energy(column: str, *keys: str) -> Keyword:
+    return Keyword(column, lambda m: m.energy(*keys), extensive=True)
+
+
+def _pressure(column: str, i: int | None) -> Keyword:
+    return Keyword(column, lambda m: m.pressure(i), needs=frozenset({"virial"}))
+
+
+KEYWORDS: dict[str, Keyword] = {
+    "step": _integer("Step", lambda m: m.scene.step),
+    "elapsed": _integer("Elapsed", lambda m: m.scene.step - m.progress.begin),
+    "elaplong": _integer("Elaplong", lambda m: m.scene.step - m.progress.first),
+    "dt": Keyword("Dt", lambda m: m.scene.dt),
+    "time": Keyword("Time", _time),
+    "cpu": Keyword("CPU", _cpu),
+    "tpcpu": Keyword("T/CPU", lambda m: _rate(m, m.scene.dt)),
+    "spcpu": Keyword("S/CPU", lambda m: _rate(m, 1.0)),
+    "cpuremain": Keyword("CPULeft", _remaining),
+    "timeremain": Keyword("TimeoutLeft", lambda m: 0.0),
+    "part": _integer("Part", lambda m: 0),
+    "atoms": _integer("Atoms", lambda m: m.system.n),
+    "temp": Keyword("Temp", Moment.temperature),
+    "press": _pressure("Press", None),
+    "pe": Keyword("PotEng", Moment.potential, extensive=True),
+    "ke": Keyword("KinEng", Moment.kinetic, extensive=True),
+    "etotal": Keyword("TotEng", lambda m: m.potential() + m.kinetic(), extensive=True),
+    "evdwl": _energy("E_vdwl", "evdwl", "etail"),
+    "ecoul": _energy("E_coul", "ecoul"),
+    "epair": _energy("E_pair", "evdwl", "ecoul", "elong", "etail"),
+    "ebond": _energy("E_bond", "ebond"),
+    "eangle": _energy("E_angle", "eangle"),
+    "edihed": _energy("E_dihed", "edihed"),
+    "eimp": _energy("E_impro", "eimp"),
+    "emol": _energy("E_mol", "ebond", "eangle", "edihed", "eimp"),
+    "elong": _energy("E_long", "elong"),
+    "etail": _energy("E_tail", "etail"),
+    "enthalpy": Keyword("Enthalpy", lambda m: m.potential() + m.kinetic() + m.pressure() * m.volume() / m.snapshot.units.nktv2p,
+                        extensive=True, needs=frozenset({"virial"})),
+    "ecouple": Keyword("Ecouple", Moment.coupling, extensive=True),
+    "econserve": Keyword("Econserve", lambda m: m.potential() + m.kinetic() + m.coupling(), extensive=True),
+    "vol": Keyword("Volume", Moment.volume),
+    "density": Keyword("Density", _density),
+    "bonds": _integer("Bonds", lambda m: len(m.system.topology.bonds)),
+    "angles": _integer("Angles", lambda m: len(m.system.topology.angles)),
+    "dihedrals": _integer("Diheds", lambda m: len(m.system.topology.dihedrals)),
+    "impropers": _integer("Impros", lambda m: len(m.system.topology.impropers)),
+    "fmax": Keyword("Fmax", lambda m: float(np.abs(m.forces()).max(initial=0.0))),
+    "fnorm": Keyword("Fnorm", lambda m: float(np.linalg.norm(m.forces()))),
+    "nbuild": _integer("Nbuild", _counter("builds")),
+    "ndanger": _integer("Ndanger", _counter("dangerous")),
+    **{"l" + d: Keyword("L" + d, lambda m, i=i: float(m.system.box.lengths[i] if not m.system.box.is_lammps_frame else m.system.box.cell[i, i]))
+       for i, d in enumerate("xyz")},
+    **{d + "lo": Keyword(d.upper() + "lo", lambda m, i=i: float(m.system.box.lo[i])) for i, d in enumerate("xyz")},
+    **{d + "hi": Keyword(d.upper() + "hi", lambda m, i=i: float(m.system.box.hi[i])) for i, d in enumerate("xyz")},
+    **{t: Keyword(t.capitalize(), lambda m, i=i: float(m.system.box.tilt[i])) for i, t in enumerate(("xy", "xz", "yz"))},
+    **{d + "lat": Keyword(d.upper() + "lat", _lattice(i)) for i, d in enumerate("xyz")},
+    **{"p" + t: _pressure("P" + t, i) for i, t in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))},
+    **{f"{v}vec{d}": Keyword(f"{v.capitalize()}vec{d.upper()}", lambda m, i=i, j=j: float(m.system.box.cell[i, j]))
+       for i, v in enumerate("abc") for j, d in enumerate("xyz")},
+    **{"cell" + v: Keyword("Cell" + v.upper(), _edge(i)) for i, v in enumerate("abc")},
+    "cellalpha": Keyword("CellAlpha", _angle(1, 2)),
+    "cellbeta": Keyword("CellBeta", _angle(0, 2)),
+    "cellgamma": Keyword("CellGamma", _angle(0, 1)),
+}
+REFERENCE = re.compile(r"([cfv])_(\w+)(?:\[(\d+)\])?(?:\[(\d+)\])?")
+
+
+def parse_reference(word: str) -> tuple[str, str, list[int]] | None:
+    """``c_ID[1][2]`` -> ("c", "ID", [1, 2]); None if it is not a reference."""
+    match = REFERENCE.fullmatch(word)
+    return (match[1], match[2], [int(g) for g in match.groups()[2:] if g]) if match else None
+
+
+def value_of(moment: Moment, kind: str, id: str, index: list[int]) -> float:
+    """Global value ``c_ID[i][j]``, ``f_ID[i][j]`` or ``v_name``; indices from 1.
+
+    Raises
+    ------
+    InputError
+        No such compute, fix, variable or element.
+    """
+    if kind == "v":
+        return moment.number(id)
+    if kind == "f":
+        fix = moment.fix(id)
+        if len(index) == 2:
+            return float(fix.array(index[0], index[1])) if hasattr(fix, "array") else _missing("fix", id, index)
+        return float(fix.vector(index[0]) if index else fix.scalar())
+    if not index:
+        return moment.scalar(id)
+    values = np.asarray(moment.vector(id) if len(index) == 1 else moment.array(id))
+    if any(not 1 <= i <= n for i, n in zip(index, values.shape)):
+        _missing("compute", id, index)
+    return float(values[tuple(i - 1 for i in index)])
+
+
+def _missing(what: str, id: str, index: list[int]):
+    raise InputError(f"{what} {id} has no element {''.join(f'[{i}]' for i in index)}")
+
+
+def known(word: str) -> bool:
+    """Whether a word is a thermo keyword or a reference."""
+    return word in KEYWORDS or parse_reference(word) is not None
+
+
+def evaluate(moment: Moment, word: str, norm: bool) -> float:
+    """The value of a keyword or reference; extensive ones per atom if `norm`."""
+    keyword = KEYWORDS.get(word)
+    if keyword is not None:
+        value = keyword.value(moment)
+        extensive = keyword.extensive
+    else:
+        reference = parse_reference(word)
+        if reference is None:
+            raise InputError(f"unknown thermo keyword {word!r}{nearest(word, KEYWORDS)}")
+        value = value_of(moment, *reference)
+        source = {"c": moment.scene.computes, "f": moment.scene.fixes, "v": {}}[reference[0]].get(reference[1])
+        extensive = bool(getattr(source, "extensive", getattr(source, "style", "") in ("pe", "ke")))
+    return value / moment.system.n if norm and extensive and moment.system.n else value
+
+
+# ------------------------------------------------------------------ format ---
+
+def c_format(form: str, value: float) -> str:
+    """printf of one number; integers may be written with a format for floats and the other way round."""
+    return re.sub(r"(?<=[\d%.+\- #])(?:ll|l|h|z|j)+(?=[diugGeEfF])", "", form) % value
+
+
+@dataclass
+class Thermo:
+    """Settings of thermo, thermo_style and thermo_modify."""
+
+    style: str = "one"
+    words: tuple[str, ...] = tuple(STYLES["one"].split())
+    every: int | str = 0                   # 0: first and last step only; text: name of a variable
+    line: str = "one"
+    norm: bool | None = None               # None: yes for units lj
+    lost: str = "error"
+    lost_bond: str = "error"
+    flush: bool = False
+    temp: str = "thermo_temp"
+    press: str = "thermo_press"
+    format_line: tuple[str, ...] = ()
+    format_kind: dict[str, str] = field(default_factory=dict)      # int, float
+    format_word: dict[str, str] = field(default_factory=dict)      # by keyword
+    format_column: dict[int, str] = field(default_factory=dict)    # from 1
+    names: dict[int | str, str] = field(default_factory=dict)      # colname by column from 1, or by keyword
+
+    def set_style(self, style: str, words: Sequence[str]) -> None:
+        """``thermo_style``: everything that thermo_modify set goes back to its default.
+
+        Raises
+        ------
+        InputError
+            Unknown style or keyword.
+        """
+        if style not in ("one", "multi", "yaml", "custom"):
+            raise InputError(f"unknown thermo_style {style!r}{nearest(style, ['one', 'multi', 'yaml', 'custom'])}")
+        if style != "custom" and words:
+            raise InputError(f"thermo_style {style} takes no arguments, got {' '.join(words)}")
+        if style == "custom" and not words:
+            raise InputError("thermo_style custom needs at least one keyword")
+        for word in words:
+            if not known(word):
+                raise InputError(f"unknown thermo keyword {word!r} in thermo_style custom{nearest(word, KEYWORDS)}")
+        fresh = Thermo(style=style, words=tuple(words) or tuple(STYLES["one" if style == "yaml" else style].split()), every=self.every,
+                       line=style if style in ("multi", "yaml") else "one")
+        self.__dict__.update(fresh.__dict__)
+
+    def columns(self, box_changes: bool = False) -> list[str]:
+        """Keywords of the columns; styles one and multi get the volume when the box changes."""
+        return [*self.words, "vol"] if box_changes and self.style != "custom" else list(self.words)
+
+    def is_normalised(self, units: str) -> bool:
+        return self.norm if self.norm is not None else units == "lj"
+
+    def name(self, column: int, word: str) -> str:
+        """Title of a column (from 1)."""
+        if column in self.names or word in self.names:
+            return self.names.get(column, self.names.get(word, ""))
+        return KEYWORDS[word].column if word in KEYWORDS else word
+
+    def kind(self, word: str) -> str:
+        return KEYWORDS[word].kind if word in KEYWORDS else "float"
+
+    def format(self, column: int, word: str) -> str:
+        """The printf format of a column (from 1)."""
+        if self.format_line:
+            return self.format_line[column - 1]
+        kind = self.kind(word)
+        default = {"one": {"int": INTEGER, "float": FLOAT}, "multi": {"int": MULTI_INTEGER, "float": MULTI_FLOAT},
+                   "yaml": {"int": "%d", "float": "%.15g"}}[self.line][kind]
+        return self.format_column.get(column) or self.format_word.get(word) or self.format_kind.get(kind) or default
+
+    def header(self, words: Sequence[str]) -> str:
+        """What is printed before the first row, without the last newline."""
+        titles = [self.name(k, w) for k, w in enumerate(words, 1)]
+        if self.line == "multi":
+            return ""
+        if self.line == "yaml":
+            return "---\nkeywords: [" + "".join(f"'{t}', " for t in titles) + "]\ndata:"
+        return " ".join(_centre(t, WIDTH[self.kind(w)]) for t, w in zip(titles, words))
+
+    def footer(self) -> str:
+        return "..." if self.line == "yaml" else ""
+
+    def row(self, words: Sequence[str], values: Sequence[float], step: int = 0, cpu: float = 0.0) -> str:
+        """One row, without the last newline."""
+        if self.format_line and len(self.format_line) < len(words):
+            raise InputError(f"thermo_modify format line has {len(self.format_line)} formats for {len(words)} columns")
+        cells = [self._cell(k, w, v) for k, (w, v) in enumerate(zip(words, values), 1)]
+        if self.line == "yaml":
+            return "  - [" + "".join(f"{c}, " for c in cells) + "]"
+        if self.line == "one":
+            return " ".join(cells)
+        text = f"------------ Step {step:14d} ----- CPU = {cpu:12.7g} (sec) -------------"
+        for k, (word, cell) in enumerate(zip(words, cells)):
+            text += ("\n" if k % 3 == 0 else "") + f"{self.name(k + 1, word):<8} = {cell} "
+        return text[:-1]
+
+    def _cell(self, column: int, word: str, value: float) -> str:
+        form = self.format(column, word)
+        try:
+            return c_format(form, int(value) if self.kind(word) == "int" else value)
+        except (TypeError, ValueError, OverflowError):
+            raise InputError(f"thermo_modify format {form!r} does not fit column {column} ({word} = {value})") from None
+
+    def needs(self, words: Sequence[str], computes: Mapping[str, Any], references: Callable[[str], set[str]]) -> set[str]:
+        """What the force evaluation must give for a row (virial, energies, virials).
+
+        Parameters
+        ----------
+        references : callable
+            Formula -> every name it uses, for columns ``v_name``.
+        """
+        found: set[str] = set()
+        names = {n for w in words for n in (references(w) if w.startswith("v_") else {w.partition("[")[0]})}
+        for name in names:
+            if name in KEYWORDS:
+                found |= KEYWORDS[name].needs
+            elif name.startswith("c_") and name[2:] in computes:
+                found |= computes[name[2:]].needs
+        return found
+
+
+def _centre(text: str, width: int) -> str:
+    left = max(width - len(text), 0) // 2
+    return " " * left + text + " " * max(width - len(text) - left, 0)
