@@ -36,7 +36,7 @@ class State:
         self.dt = float(problem.dt)
         self.alpha, self.iterations, self.evaluations = 0.0, 0, 0
         self._look()
-        self.initial = self.previous = self.energy
+        self.initial, self.previous = self.energy, 0.0
         self.first = self._norms()
 
     def _look(self) -> None:
@@ -58,7 +58,7 @@ class State:
 
     def energy_met(self) -> bool:
         """The relative change of energy in the last iteration is below etol."""
-        return abs(self.energy - self.previous) <= self.etol * 0.5 * (abs(self.energy) + abs(self.previous) + EPS_ENERGY)
+        return abs(self.energy - self.previous) < self.etol * 0.5 * (abs(self.energy) + abs(self.previous) + EPS_ENERGY)
 
     def force_met(self) -> bool:
         """The norm of the forces that ``min_modify norm`` chose is below ftol."""

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from asemd.minimize import ETOL, FTOL, MAXEVAL, MAXITER, MAXVDOTF, Options, Problem, Result
+from asemd.minimize import ETOL, FTOL, MAXITER, MAXVDOTF, Options, Problem, Result
 from asemd.minimize._state import State
 
 
@@ -17,7 +17,7 @@ class FIRE:
     @staticmethod
     def minimize(problem: Problem, etol: float, ftol: float, maxiter: int, maxeval: int,
                  options: Options | None = None, callback=None) -> Result:
-        """Minimise; see `asemd.minimize`. `Problem.masses` and `Problem.dt` matter here.
+        """Minimise; see `asemd.minimize`. `Problem.masses` and `Problem.dt` matter here; `maxeval` does not end it, as in LAMMPS.
 
         Source: E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006); J. Guenole et al., Comput. Mater. Sci. 175, 109584 (2020).
         """
@@ -54,8 +54,6 @@ class FIRE:
                 at_rest = True
             step(state, kick, mix, at_rest)
             at_rest = False
-            if state.evaluations >= maxeval:
-                return state.result(MAXEVAL)
             if etol > 0.0 and iteration - last_uphill > o.delaystep and state.energy_met():
                 return state.result(ETOL)
             if state.force_met():
@@ -69,10 +67,10 @@ class FIRE:
 def step(state: State, kick: np.ndarray, mix: tuple[float, float] | None, at_rest: bool) -> None:
     """One step of dynamics; `mix` turns the velocity towards the force."""
     o, v = state.options, state.v
-    largest = float(np.abs(v).max(initial=0.0))
-    dt = min(state.dt, o.dmax / largest) if largest > 0.0 else state.dt
-    if at_rest:     # positions have changed
+    if at_rest:     # positions have changed; the first kick decides how far atoms would go
         state.evaluate(state.x)
+    largest = float(np.abs(state.dt * kick * state.f if at_rest else v).max(initial=0.0))
+    dt = o.dmax / largest if state.dt * largest > o.dmax else state.dt
 
     def turned(v):
         return v if mix is None else mix[0] * v + mix[1] * state.f
@@ -83,10 +81,11 @@ def step(state: State, kick: np.ndarray, mix: tuple[float, float] | None, at_res
         v = turned(v)
     else:
         v = turned(v + dt * kick * state.f)
+    x = state.x + dt * v
+    if o.integrator == "eulerexplicit":
+        v = v + dt * kick * state.f
     state.previous = state.energy
-    state.evaluate(state.x + dt * v)
+    state.evaluate(x)
     if o.integrator == "verlet":
         v = v + 0.5 * dt * kick * state.f
-    elif o.integrator == "eulerexplicit":
-        v = v + dt * kick * state.f
     state.v = v
