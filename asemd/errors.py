@@ -48,6 +48,10 @@ class InputError(AsemdError):
         return self
 
 
+class InputWarning(UserWarning):
+    """Something in the input that is probably not meant; the run goes on."""
+
+
 class SimulationError(AsemdError):
     """The physics went wrong: an atom lost, a bond past its limit, NaN; the message names atom ids."""
 
