@@ -316,8 +316,9 @@ class PairStyle(Style):
         ``"cut_lj [cut_coul]"``: names of the words, optional ones in brackets; an optional coefficient defaults to the setting of the
         same name or follows the coefficient named in `defaults`, an optional setting to `defaults`.
     mix : mapping
-        Coefficient -> how i-j follows from i-i and j-j: ``distance``, or for an energy the coefficient that plays sigma in the rule
-        ``sixthpower``. Cutoffs mix as distances. Empty: i-j must be given. `mix_rule` is the default rule.
+        Coefficient -> how i-j follows from i-i and j-j: ``distance``; for an energy the coefficient that plays sigma in the rule
+        ``sixthpower``, or ``geometric`` whatever the rule. Cutoffs mix as distances. Empty: i-j must be given. `mix_rule` is the
+        default rule.
     tail : callable, optional
         ``tail(coeff, cut) -> (e, p)``: integrals for ``pair_modify tail yes`` of one type pair (energy and pressure, without the
         factors of number and volume), see `asemd/pair/lj_cut.py`.
@@ -327,7 +328,7 @@ class PairStyle(Style):
         Names of function arguments that differ by pair of types but are not words of ``pair_coeff`` (`pack_pairs` makes them).
     """
 
-    charmm_one_four = False    # True: has `one_four` tables for dihedral_style charmm
+    twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
                  mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", **options):
@@ -347,6 +348,10 @@ class PairStyle(Style):
 
     def functions(self):
         return tuple(p.function for p in self.parts)
+
+    def variant(self, settings: Mapping[str, Any], compat: str = "") -> PairStyle:
+        """The style whose parts are computed: this one, unless settings or ``compat="lammps"`` ask for other functions."""
+        return self.twin if compat == "lammps" and self.twin else self
 
     def parse_settings(self, words):
         values = super().parse_settings(words)
@@ -395,6 +400,8 @@ class PairStyle(Style):
             how = self.mix.get(p.name) or ("distance" if p.name.startswith("cut") else "")
             if how == "distance":
                 out[p.name] = mix_distance(rule, a[p.name], b[p.name])
+            elif how == "geometric":
+                out[p.name] = mix_energy(how, a[p.name], b[p.name], 0.0, 0.0)
             elif how:
                 out[p.name] = mix_energy(rule, a[p.name], b[p.name], a[how], b[how])
         return out

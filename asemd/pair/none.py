@@ -1,0 +1,6 @@
+r"""No pair interactions at all, and no neighbour list for them.  `asemd.forcefield.Interactions` holds no pair term then."""
+from __future__ import annotations
+
+from asemd.style import PairStyle, register
+
+register(PairStyle("none", [], doc=__doc__, see="LAMMPS manual, pair_style none"))
