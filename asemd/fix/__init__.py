@@ -6,18 +6,19 @@ run without Python.
 
 A compiled hook has the signature ``f(th, s, p, a)``:
 
-- ``th`` (`asemd.kernels.state.Thread`): ``tid, nth, lo, hi`` (this thread's slots are ``lo..hi-1``), ``step`` (this timestep), ``begin, end``
-  (first and last step of the run or of ``run start/stop``, for ramps), ``dt``, ``sync``, ``scratch``;
-- ``s`` (`asemd.kernels.state.State`): slot arrays ``x v f (3, cap)``, ``mass inverse_mass q (cap,)`` (inverse_mass is ftm2v / m; 0 for empty slots),
-  ``type mask row (cap,)`` (mask: group bits; row: index of the atom, -1 for an empty slot, whose mask is 0);
-- ``p (k,) float64``: the fix's own numbers, made by `parameters`, shared by all threads and kept between steps (``p[0]`` is the group bit as a float);
+- ``th`` (`asemd.kernels.state.Thread`): ``tid, nth, lo, hi`` (this thread's slots are ``lo..hi-1``), ``step`` (this timestep),
+  ``begin, end`` (first and last step of the run or of ``run start/stop``, for ramps), ``dt``, ``sync``, ``scratch``;
+- ``s`` (`asemd.kernels.state.State`): slot arrays ``x v f (3, cap)``, ``mass inverse_mass q (cap,)`` (inverse_mass is ftm2v / m; 0 for
+  empty slots), ``type mask row (cap,)`` (mask: group bits; row: index of the atom, -1 for an empty slot, whose mask is 0);
+- ``p (k,) float64``: the fix's own numbers, made by `parameters`, shared by all threads and kept between steps (``p[0]`` is the group
+  bit as a float);
 - ``a (m, n) float64``: the fix's own per-atom numbers by row, made by `atom_arrays` (a (1, 1) dummy if it has none).
 
-Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0 only, with
-``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own that several
-hooks share is named with ``@hook(uses=[function])`` and pasted beside them.
+Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0
+only, with ``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own
+that several hooks share is named with ``@hook(uses=[function])`` and pasted beside them.
 
-The array that `parameters` returns is the one the hooks work on, so a fix that keeps it sees its numbers live; the same holds for `atom_arrays`.
+The array that `parameters` returns is the one the hooks work on, so a fix that keeps it sees its numbers live; likewise `atom_arrays`.
 
 ``asemd.fix.NVT`` is the class in ``asemd/fix/nvt.py``, imported when asked for; `find` goes by the LAMMPS name.
 """
@@ -125,7 +126,7 @@ class Fix:
         """``fix_modify`` words: pairs of keyword and value."""
         if len(words) % 2 or not words:
             raise InputError(f"fix_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
-        for keyword, value in zip(words[::2], words[1::2]):
+        for keyword, value in zip(words[::2], words[1::2], strict=True):
             if not self.modify_option(keyword, value, session):
                 raise InputError(f"fix_modify: fix {self.id} (style {self.style}) does not support {keyword} {value}")
 

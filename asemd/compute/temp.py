@@ -1,0 +1,78 @@
+r"""Temperature of a group from its translational kinetic energy, and the kinetic energy tensor.
+
+.. math:: T = \frac{\sum_i m_i v_i^2}{f k_B}, \qquad K_{ab} = \sum_i m_i v_{ia} v_{ib}
+
+with :math:`f` degrees of freedom: dimension times the number of atoms, minus those that fixes remove (SHAKE, rigid bodies), minus the
+dimension for the conserved momentum (``compute_modify ID extra/dof N`` sets another number). The count follows the group as it is now, so
+``dynamic/dof`` changes nothing.
+
+Source: LAMMPS manual, compute temp and compute_modify. Units: temperature; the tensor is an energy (twice the kinetic energy on its trace).
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.compute import Compute
+from asemd.errors import InputError
+from asemd.style import Parameter
+
+COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))     # xx yy zz xy xz yz
+
+
+class Temp(Compute):
+    """Temperature.
+
+    Parameters
+    ----------
+    group : str
+        The atoms it looks at.
+    extra_dof : float, optional
+        Degrees of freedom to leave out; None is the dimension of the system.
+    """
+
+    style = "temp"
+
+    def __init__(self, group: str = "all", extra_dof: float | None = None):
+        super().__init__(group)
+        self.extra_dof = extra_dof
+
+    def dof(self, state) -> float:
+        """Degrees of freedom of the group; `state` is a `asemd.engine.Snapshot` or a `asemd.loop.Loop`.
+
+        Raises
+        ------
+        InputError
+            Constraints and extra/dof leave fewer than none.
+        """
+        mask = state.groups[self.group]
+        n, dimension = int(np.count_nonzero(mask)), state.system.dimension
+        extra = dimension if self.extra_dof is None else self.extra_dof
+        dof = dimension * n - extra - sum(fix.removed_dof(mask) for fix in state.fixes)
+        if dof < 0.0 and n > 0:
+            raise InputError(f"compute {self.id or 'temp'}: group {self.group} has {n} atoms and {dof:g} degrees of freedom")
+        return max(dof, 0.0)
+
+    def scalar(self, state) -> float:
+        """The temperature; 0 without degrees of freedom."""
+        dof = self.dof(state)
+        mask = state.mask(self.group)
+        v, mass = state.system.v[mask], state.system.atom_masses()[mask]
+        return float(state.units.mvv2e / (dof * state.units.boltz) * (mass @ (v * v).sum(axis=1))) if dof > 0.0 else 0.0
+
+    def vector(self, state) -> np.ndarray:
+        """(6,) sum of m v v in energy units: xx yy zz xy xz yz."""
+        mask = state.mask(self.group)
+        v, mass = state.system.v[mask], state.system.atom_masses()[mask]
+        return state.units.mvv2e * np.array([mass @ (v[:, i] * v[:, j]) for i, j in COMPONENTS])
+
+    def modify(self, words: list[str], session) -> None:
+        """``compute_modify``: extra/dof N (older: extra N), dynamic/dof yes|no (older: dynamic)."""
+        if len(words) % 2 or not words:
+            raise InputError(f"compute_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
+        for keyword, value in zip(words[::2], words[1::2], strict=True):
+            if keyword in ("extra/dof", "extra"):
+                self.extra_dof = Parameter(keyword).read(value, "compute_modify")
+            elif keyword not in ("dynamic/dof", "dynamic"):
+                super().modify([keyword], session)
+            elif value not in ("yes", "no", "on", "off", "true", "false"):
+                raise InputError(f"compute_modify: {keyword} must be yes or no, got {value!r}")

@@ -1,0 +1,36 @@
+r"""Two dimensions: velocity and force along z are zero.
+
+Source: LAMMPS manual, fix enforce2d.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.fix import Fix, hook
+
+
+class Enforce2D(Fix):
+    """Keep atoms in the plane they are in.
+
+    Raises
+    ------
+    InputError
+        At the start of a run, if the system has three dimensions.
+    """
+
+    style = "enforce2d"
+    minimizes = True
+
+    def parameters(self, loop) -> np.ndarray:
+        if loop.system.dimension != 2:
+            raise InputError("fix enforce2d is for systems of two dimensions; say dimension 2 before the box is created")
+        return super().parameters(loop)
+
+    @hook
+    def post_force(th, s, p, a):
+        bit = np.int32(np.int64(p[0]))
+        for i in range(th.lo, th.hi):
+            if s.mask[i] & bit != 0:
+                s.v[2, i] = 0.0
+                s.f[2, i] = 0.0

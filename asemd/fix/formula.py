@@ -1,0 +1,57 @@
+"""Arguments of fixes that may be a number or a variable (``v_name``)."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asemd.style import Parameter
+
+if TYPE_CHECKING:
+    from asemd.loop import Loop
+
+Value = float | Callable[["Loop"], float | np.ndarray]
+
+
+class Formula:
+    """A variable of style equal or atom as a function of the running simulation.
+
+    Parameters
+    ----------
+    name : str
+        Name of the variable.
+    session
+        Its ``variables`` evaluate it.
+
+    Raises
+    ------
+    InputError
+        No variable of that name.
+    """
+
+    def __init__(self, name: str, session):
+        session.variables.find(name)
+        self.name, self.variables = name, session.variables
+
+    def __call__(self, loop: Loop) -> float | np.ndarray:
+        """One number, or (n,) values by atom row."""
+        loop.sync_out()
+        if self.variables.find(self.name).style == "atom":
+            return self.variables.per_atom(self.name, loop.system.n)
+        return self.variables.number(self.name)
+
+    def __str__(self) -> str:
+        return f"v_{self.name}"
+
+
+def read(word: str, name: str, what: str, session) -> float | Formula:
+    """A word of a script: a number, or ``v_name``."""
+    return Formula(word[2:], session) if word.startswith("v_") else Parameter(name).read(word, what)
+
+
+def write(value: float | Formula | None) -> str:
+    """The word again; a plain Python function has none and shows as its name."""
+    if value is None:
+        return "NULL"
+    return str(value) if isinstance(value, Formula) else getattr(value, "__name__", None) or repr(float(value))

@@ -1,0 +1,190 @@
+r"""Langevin thermostat: friction and uniform noise added to the forces; use it with fix nve.
+
+.. math:: F_i \leftarrow F_i - \frac{m_i}{\tau_i} v_i + \sqrt{\frac{24 k_B T_0 m_i}{\tau_i \Delta t}}\, u, \quad u \in [-\tfrac12, \tfrac12)
+
+with :math:`\tau_i` the damping time multiplied by the ratio of the atom's type (keyword ``scale``). Noise of three components per atom
+and step depends on seed, step and atom only, not on threads. ``zero yes`` takes the mean of the noise away from each atom of the group.
+``tally yes`` adds up the energy that friction and noise take from the atoms: the scalar of this fix (thermo keywords ecouple, econserve).
+
+Source: T. Schneider, E. Stoll, Phys. Rev. B 17, 1302 (1978); B. Duenweg, W. Paul, Int. J. Mod. Phys. C 2, 817 (1991), for uniform noise;
+LAMMPS manual, fix langevin. The noise equals LAMMPS's in distribution, the friction in every digit. Units: temperature, time.
+"""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd.errors import InputError, nearest
+from asemd.fix import hook
+from asemd.fix.formula import write
+from asemd.fix.thermostat import Thermostat
+from asemd.kernels.random import uniform
+from asemd.kernels.threads import reduce_sum
+from asemd.style import Parameter
+
+KEYWORDS = ("angmom", "gjf", "omega", "scale", "tally", "zero")
+TYPES = 14      # ratios start here in the parameters, by atom type
+
+
+class Langevin(Thermostat):
+    """Implicit solvent: friction and noise.
+
+    Parameters
+    ----------
+    group : str
+        The atoms it acts on.
+    temperature : float or (float, float) or callable
+        Target, or target at the start and at the end of a run, in temperature units of the scene; a function of the loop may return one
+        number or one per atom.
+    damping : float
+        Relaxation time m / friction coefficient, in time units of the scene.
+    seed : int
+        A positive number.
+    scale : dict[int, float], optional
+        Atom type -> ratio that multiplies the damping time.
+    tally, zero : bool
+        Add up the energy; remove the mean of the noise.
+
+    Raises
+    ------
+    InputError
+        A value out of its range, or at the start of a run a type that does not exist.
+    """
+
+    style = "langevin"
+
+    def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1, scale: dict[int, float] | None = None,
+                 tally: bool = False, zero: bool = False):
+        super().__init__(group, temperature, damping)
+        if seed <= 0:
+            raise InputError(f"fix langevin: seed must be a positive whole number, got {seed}")
+        for kind, ratio in (scale or {}).items():
+            if ratio <= 0.0:
+                raise InputError(f"fix langevin: the scale ratio of type {kind} must be positive, got {ratio:g}")
+        self.seed, self.scale, self.tally, self.zero = seed, dict(scale or {}), tally, zero
+        self.p, self.a = np.zeros(TYPES), np.zeros((1, 4))
+        if callable(self.start):
+            self.pre_force = self._follow_variable
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        what = "fix langevin"
+        if len(words) < 4:
+            raise InputError(f"fix langevin needs Tstart Tstop damp seed, got {len(words)} values")
+        ramp, damping = cls.read_ramp(words, session), Parameter("damp").read(words[2], what)
+        seed, words = Parameter("seed", "integer").read(words[3], what), words[4:]
+        scale, flags = {}, {}
+        while words:
+            keyword, need = words[0], 2 if words[0] == "scale" else 1
+            if keyword not in KEYWORDS:
+                raise InputError(f"fix langevin: unknown keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
+            values, words = words[1:1 + need], words[1 + need:]
+            if len(values) < need:
+                raise InputError(f"fix langevin: {keyword} needs {need} value{'s' * (need > 1)}, got {len(values)}")
+            if keyword == "scale":
+                scale[Parameter("type", "integer").read(values[0], what)] = Parameter("ratio").read(values[1], what)
+            elif keyword in ("tally", "zero"):
+                if values[0] not in ("yes", "no", "on", "off", "true", "false"):
+                    raise InputError(f"fix langevin: {keyword} must be yes or no, got {values[0]!r}")
+                flags[keyword] = values[0] in ("yes", "on", "true")
+            elif values[0] not in ("no", "off", "false"):
+                why = "LAMMPS has dropped it in this form, leave it out" if keyword == "gjf" else "particles here do not rotate"
+                raise InputError(f"fix langevin: {keyword} {values[0]} is not supported; {why}")
+        return cls(group, ramp, damping, seed, scale, **flags)
+
+    def to_lammps(self) -> list[str]:
+        words = [write(self.start), repr(self.stop), repr(self.damping), str(self.seed)]
+        for kind, ratio in self.scale.items():
+            words += ["scale", str(kind), repr(ratio)]
+        return words + ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero
+
+    def parameters(self, loop) -> np.ndarray:
+        ntypes, u = len(loop.system.mass) - 1, loop.units
+        wrong = [kind for kind in self.scale if not 1 <= kind <= ntypes]
+        if wrong:
+            raise InputError(f"fix langevin: scale names atom type {wrong[0]}, there are types 1 to {ntypes}")
+        ratios = [1.0] + [self.scale.get(kind, 1.0) for kind in range(1, ntypes + 1)]
+        constant = not callable(self.start)
+        ramp = (self.start, self.stop) if constant else (0.0, 0.0)
+        friction, noise = 1.0 / (self.damping * u.ftm2v), 24.0 * u.boltz / (self.damping * u.mvv2e) / u.ftm2v**2
+        self.p = np.array([loop.group_bit(self.group), self.seed, self.tally, self.zero, not constant, *ramp, friction, noise,
+                           max(np.count_nonzero(loop.groups[self.group]), 1), bool(self.scale), *self.p[11:13], loop.dt, *ratios], dtype=float)
+        return self.p
+
+    def atom_arrays(self, loop) -> np.ndarray | None:
+        """Columns: the added force (for the tally), the square root of the target temperature (for a variable)."""
+        if not (self.tally or callable(self.start)):
+            return None
+        self.a = np.zeros((loop.system.n, 4))
+        if callable(self.start):
+            self._follow_variable(loop)
+        return self.a
+
+    def _follow_variable(self, loop) -> None:
+        self.a[:, 3] = np.sqrt(self.target(loop))
+
+    @hook
+    def post_force(th, s, p, a):
+        bit, seed, step = np.int32(np.int64(p[0])), np.int64(p[1]), th.step
+        tally, zero, variable, scaled = p[2] != 0.0, p[3] != 0.0, p[4] != 0.0, p[10] != 0.0
+        friction, noise = p[7], math.sqrt(p[8] / th.dt)
+        done = 0.0
+        if th.end != th.begin:
+            done = (step - th.begin) / (th.end - th.begin)
+        root = math.sqrt(p[5] + done * (p[6] - p[5]))
+        work = 0.0
+        for d in range(3):
+            total = 0.0
+            if tally or variable or scaled or zero:
+                for i in range(th.lo, th.hi):
+                    if s.mask[i] & bit != 0:
+                        ratio = p[14 + s.type[i]]
+                        size = a[s.row[i], 3] if variable else root
+                        drag = friction * s.mass[i] / ratio * s.v[d, i]
+                        kick = noise * math.sqrt(s.mass[i] / ratio) * size * (uniform(seed, step, s.row[i], d) - 0.5)
+                        s.f[d, i] += kick - drag
+                        total += kick
+                        if tally:
+                            a[s.row[i], d] = kick - drag
+            else:
+                for i in range(th.lo, th.hi):
+                    member = 1.0 if s.mask[i] & bit != 0 else 0.0
+                    kick = noise * root * math.sqrt(s.mass[i]) * (uniform(seed, step, s.row[i], d) - 0.5)
+                    s.f[d, i] += member * (kick - friction * s.mass[i] * s.v[d, i])
+            mean = reduce_sum(th, total) / p[9] if zero else 0.0
+            if zero or tally:
+                for i in range(th.lo, th.hi):
+                    if s.mask[i] & bit != 0:
+                        s.f[d, i] -= mean
+                        if tally:
+                            a[s.row[i], d] -= mean
+                            work += a[s.row[i], d] * s.v[d, i]
+        if tally and step == th.begin:          # the first half step of the run
+            work = reduce_sum(th, work)
+            if th.tid == 0:
+                p[11] = 0.5 * work * th.dt
+                p[12] = work
+
+    @hook
+    def end_of_step(th, s, p, a):
+        bit = np.int32(np.int64(p[0]))
+        work = 0.0
+        for i in range(th.lo, th.hi):
+            if s.mask[i] & bit != 0:
+                for d in range(3):
+                    work += a[s.row[i], d] * s.v[d, i]
+        work = reduce_sum(th, work)
+        if th.tid == 0:
+            p[11] += work * th.dt
+            p[12] = work
+
+    def hooks(self) -> dict[str, bool]:
+        hooks = super().hooks()
+        if not self.tally:
+            del hooks["end_of_step"]
+        return hooks
+
+    def scalar(self) -> float:
+        """Energy given to the heat bath since the start of the run, energy units; 0 without ``tally yes``."""
+        return -float(self.p[11] - 0.5 * self.p[12] * self.p[13])

@@ -1,0 +1,153 @@
+r"""What all thermostats share: a target temperature, a compute that measures the temperature, the energy of the bath.
+
+The target ramps linearly over the run, :math:`T_0(t) = T_{start} + \frac{t - t_{begin}}{t_{end} - t_{begin}} (T_{stop} - T_{start})`.
+"""
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asemd.compute.pressure import find_temperature
+from asemd.compute.temp import Temp
+from asemd.errors import InputError, SimulationError
+from asemd.fix import Fix
+from asemd.fix.formula import Value, read
+from asemd.kernels.threads import reduce_sum
+from asemd.style import Parameter
+
+if TYPE_CHECKING:
+    from asemd.loop import Loop
+
+
+class Thermostat(Fix):
+    """Base class of thermostats.
+
+    Parameters
+    ----------
+    group : str
+        The atoms it acts on.
+    temperature : float or (float, float) or callable
+        Target, or target at the start and at the end of a run, in temperature units; a function of the loop is evaluated when needed.
+    damping : float
+        Relaxation time, in time units.
+
+    Attributes
+    ----------
+    temp : Temp
+        Measures the temperature; that of the group unless ``fix_modify ID temp`` names another one.
+
+    Raises
+    ------
+    InputError
+        A negative temperature, a damping time that is not positive.
+    """
+
+    ecouple = True
+
+    def __init__(self, group: str = "all", temperature: Value | tuple[float, float] = 300.0, damping: float = 100.0):
+        super().__init__(group)
+        self.start, self.stop = temperature if isinstance(temperature, tuple) else (temperature, temperature)
+        if callable(self.stop):
+            raise InputError(f"fix {self.style}: Tstop must be a number; a variable as Tstart is the target at all times")
+        if min(self.stop, self.stop if callable(self.start) else self.start) < 0.0:
+            raise InputError(f"fix {self.style}: temperatures must not be negative, got {self.start} and {self.stop}")
+        if not damping > 0.0:
+            raise InputError(f"fix {self.style}: the damping time must be positive, got {damping:g}")
+        self.damping = damping
+        self.temp = Temp(group)
+
+    @classmethod
+    def read_ramp(cls, words: list[str], session) -> tuple[Value, float]:
+        """``Tstart Tstop``; when Tstart is a variable Tstop is read but not used."""
+        start = read(words[0], "Tstart", f"fix {cls.style}", session)
+        stop = Parameter("Tstop").read(words[1], f"fix {cls.style}")
+        return start, max(stop, 0.0) if callable(start) else stop
+
+    def target(self, loop: Loop):
+        """The target temperature now; for an atom-style variable (n,) by atom row.
+
+        Raises
+        ------
+        InputError
+            A variable returned a negative temperature.
+        """
+        if callable(self.start):
+            value = self.start(loop)
+            if not (value >= 0.0 if isinstance(value, float) else (value >= 0.0).all()):
+                raise InputError(f"fix {self.id} (style {self.style}): the variable returned a negative temperature")
+            return value
+        done = (loop.step - loop.begin) / (loop.end - loop.begin) if loop.end != loop.begin else 0.0
+        return self.start + done * (self.stop - self.start)
+
+    def modify_option(self, keyword, value, session):
+        if keyword == "temp":
+            found = find_temperature(value, session, "fix_modify temp")
+            if type(found) is not Temp:
+                raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp so far, {value} has style {found.style}")
+            self.temp = found
+            return True
+        if keyword == "energy" and value in ("yes", "on", "true"):
+            raise InputError(f"fix_modify energy: the energy of fix {self.style} is that of a heat bath, not potential energy; "
+                             "print it with the thermo keywords ecouple and econserve")
+        return super().modify_option(keyword, value, session)
+
+
+def measured_temperature(th, s, p):
+    """The temperature of the group with bit ``p[1]``, from its degrees of freedom ``p[2]``, ``p[3]`` = boltz and ``p[4]`` = mvv2e."""
+    bit = np.int32(np.int64(p[1]))
+    twice = 0.0
+    for d in range(3):
+        for i in range(th.lo, th.hi):
+            if s.mask[i] & bit != 0:
+                twice += s.mass[i] * s.v[d, i] * s.v[d, i]
+    twice = reduce_sum(th, twice)
+    return p[4] * twice / (p[2] * p[3]) if p[2] > 0.0 else 0.0
+
+
+class VelocityScaling(Thermostat):
+    """Base class of thermostats that scale all velocities at the end of a step.
+
+    A subclass names the compiled function ``scaled(now, target, dt, p)`` that gives the temperature to go to, and its numbers from ``p[9]``
+    on by `settings`.
+    """
+
+    scaled = None
+
+    def __init__(self, group="all", temperature=300.0, damping=1.0):
+        super().__init__(group, temperature, damping)
+        self.p = np.zeros(9)
+        if callable(self.start):
+            self.end_of_step = self._follow_variable
+
+    def settings(self) -> tuple[float, ...]:
+        return ()
+
+    def parameters(self, loop) -> np.ndarray:
+        energy, start = self.p[7], 0.0 if callable(self.start) else self.start
+        self.p = np.array([loop.group_bit(self.group), loop.group_bit(self.temp.group), self.temp.dof(loop), loop.units.boltz,
+                           loop.units.mvv2e, start, self.stop, energy, 0.0, *self.settings()], dtype=float)
+        return self.p
+
+    def _follow_variable(self, loop) -> None:
+        """One step with the target from a variable."""
+        target = self.target(loop)
+        loop.sync_out()
+        now = self.temp.scalar(loop.snapshot())
+        if now <= 0.0:
+            self.p[8] += 1.0
+            return
+        new = type(self).scaled(now, target, loop.dt, self.p)
+        loop.system.v[loop.groups[self.group]] *= math.sqrt(new / now)
+        self.p[7] += 0.5 * self.p[3] * self.p[2] * (now - new)
+        loop.sync_in()
+
+    def finish(self, loop) -> None:
+        if self.p[8] > 0.0:
+            raise SimulationError(f"fix {self.id} (style {self.style}): the temperature of group {self.temp.group} was 0, "
+                                  "there is nothing to scale; give the atoms velocities first")
+
+    def scalar(self) -> float:
+        """Energy taken out of the atoms so far, energy units."""
+        return float(self.p[7])
