@@ -14,7 +14,7 @@ import numpy as np
 
 from asemd.compute import Compute
 from asemd.errors import InputError
-from asemd.style import Parameter
+from asemd.words import number, yes_no
 
 COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))     # xx yy zz xy xz yz
 
@@ -71,8 +71,8 @@ class Temp(Compute):
             raise InputError(f"compute_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
         for keyword, value in zip(words[::2], words[1::2], strict=True):
             if keyword in ("extra/dof", "extra"):
-                self.extra_dof = Parameter(keyword).read(value, "compute_modify")
-            elif keyword not in ("dynamic/dof", "dynamic"):
+                self.extra_dof = number(value, f"compute_modify {keyword}")
+            elif keyword in ("dynamic/dof", "dynamic"):
+                yes_no(value, f"compute_modify {keyword}")
+            else:
                 super().modify([keyword], session)
-            elif value not in ("yes", "no", "on", "off", "true", "false"):
-                raise InputError(f"compute_modify: {keyword} must be yes or no, got {value!r}")

@@ -18,10 +18,9 @@ from asemd.fix import hook
 from asemd.fix.applied_force import AppliedForce
 from asemd.fix.formula import Value, read, write
 from asemd.kernels.threads import reduce_sum
-from asemd.style import Parameter
+from asemd.words import whole, yes_no
 
 KEYWORDS = ("every", "region", "energy")
-ON = ("yes", "on", "true")
 
 
 class AddForce(AppliedForce):
@@ -67,7 +66,7 @@ class AddForce(AppliedForce):
         what = "fix addforce"
         if len(words) < 3:
             raise InputError(f"fix addforce needs fx fy fz, got {len(words)} values")
-        force = [read(w, n, what, session) for w, n in zip(words, ("fx", "fy", "fz"), strict=False)]
+        force = [read(w, "fix addforce force", session) for w in words[:3]]
         options, name, words = {}, "", words[3:]
         while words:
             keyword = words[0]
@@ -76,11 +75,11 @@ class AddForce(AppliedForce):
             if len(words) < 2:
                 raise InputError(f"fix addforce: {keyword} needs a value")
             if keyword == "every":
-                options["every"] = Parameter("every", "integer").read(words[1], what)
+                options["every"] = whole(words[1], "fix addforce every")
             elif keyword == "region":
                 options["region"], name = cls.read_region(words[1:], what, session), words[1]
             else:
-                options["energy"] = read(words[1], "energy", what, session)
+                options["energy"] = read(words[1], "fix addforce energy", session)
                 if not callable(options["energy"]):
                     raise InputError(f"fix addforce: energy needs an atom-style variable v_name, got {words[1]!r}")
             words = words[2:]
@@ -150,7 +149,7 @@ class AddForce(AppliedForce):
         return np.stack([force[:, i] * r[:, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], axis=1)
 
     def modify_option(self, keyword, value, session):
-        if keyword in ("energy", "virial") and value in (*ON, "no", "off", "false"):
-            setattr(self, f"thermo_{keyword}", value in ON)
+        if keyword in ("energy", "virial"):
+            setattr(self, f"thermo_{keyword}", yes_no(value, f"fix_modify {keyword}"))
             return True
         return super().modify_option(keyword, value, session)

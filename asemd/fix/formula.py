@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asemd.style import Parameter
+from asemd.words import number
 
 if TYPE_CHECKING:
     from asemd.loop import Loop
@@ -45,9 +45,9 @@ class Formula:
         return f"v_{self.name}"
 
 
-def read(word: str, name: str, what: str, session) -> float | Formula:
+def read(word: str, what: str, session) -> float | Formula:
     """A word of a script: a number, or ``v_name``."""
-    return Formula(word[2:], session) if word.startswith("v_") else Parameter(name).read(word, what)
+    return Formula(word[2:], session) if word.startswith("v_") else number(word, what)
 
 
 def write(value: float | Formula | None) -> str:

@@ -21,7 +21,7 @@ from asemd.fix.formula import write
 from asemd.fix.thermostat import Thermostat
 from asemd.kernels.random import uniform
 from asemd.kernels.threads import reduce_sum
-from asemd.style import Parameter
+from asemd.words import number, take, whole, yes_no
 
 KEYWORDS = ("angmom", "gjf", "omega", "scale", "tally", "zero")
 TYPES = 14      # ratios start here in the parameters, by atom type
@@ -69,27 +69,23 @@ class Langevin(Thermostat):
 
     @classmethod
     def from_lammps(cls, group, words, session):
-        what = "fix langevin"
         if len(words) < 4:
             raise InputError(f"fix langevin needs Tstart Tstop damp seed, got {len(words)} values")
-        ramp, damping = cls.read_ramp(words, session), Parameter("damp").read(words[2], what)
-        seed, words = Parameter("seed", "integer").read(words[3], what), words[4:]
+        ramp, damping = cls.read_ramp(words, session), number(words[2], "fix langevin damp")
+        seed, words = whole(words[3], "fix langevin seed"), words[4:]
         scale, flags = {}, {}
         while words:
-            keyword, need = words[0], 2 if words[0] == "scale" else 1
+            keyword, what = words[0], f"fix langevin {words[0]}"
             if keyword not in KEYWORDS:
                 raise InputError(f"fix langevin: unknown keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
-            values, words = words[1:1 + need], words[1 + need:]
-            if len(values) < need:
-                raise InputError(f"fix langevin: {keyword} needs {need} value{'s' * (need > 1)}, got {len(values)}")
+            values = take(words[1:], 2 if keyword == "scale" else 1, what)
+            words = words[1 + len(values):]
             if keyword == "scale":
-                scale[Parameter("type", "integer").read(values[0], what)] = Parameter("ratio").read(values[1], what)
+                scale[whole(values[0], what)] = number(values[1], what)
             elif keyword in ("tally", "zero"):
-                if values[0] not in ("yes", "no", "on", "off", "true", "false"):
-                    raise InputError(f"fix langevin: {keyword} must be yes or no, got {values[0]!r}")
-                flags[keyword] = values[0] in ("yes", "on", "true")
+                flags[keyword] = yes_no(values[0], what)
             elif values[0] not in ("no", "off", "false"):
-                why = "LAMMPS has dropped it in this form, leave it out" if keyword == "gjf" else "particles here do not rotate"
+                why = "only the standard discretisation is there" if keyword == "gjf" else "particles here do not rotate"
                 raise InputError(f"fix langevin: {keyword} {values[0]} is not supported; {why}")
         return cls(group, ramp, damping, seed, scale, **flags)
 
@@ -109,7 +105,8 @@ class Langevin(Thermostat):
         ramp = (self.start, self.stop) if constant else (0.0, 0.0)
         friction, noise = 1.0 / (self.damping * u.ftm2v), 24.0 * u.boltz / (self.damping * u.mvv2e) / u.ftm2v**2
         self.p = np.array([loop.group_bit(self.group), self.seed, self.tally, self.zero, not constant, *ramp, friction, noise,
-                           max(np.count_nonzero(loop.groups[self.group]), 1), bool(self.scale), *self.p[11:13], loop.dt, *ratios], dtype=float)
+                           max(np.count_nonzero(loop.groups[self.group]), 1), bool(self.scale), *self.p[11:13], loop.dt,
+                           *ratios], dtype=float)
         return self.p
 
     def atom_arrays(self, loop) -> np.ndarray | None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix
-from asemd.style import Parameter
+from asemd.words import whole
 
 KEYWORDS = ("linear", "angular", "rescale")
 
@@ -63,7 +63,7 @@ class Momentum(Fix):
     def from_lammps(cls, group, words, session):
         if not words:
             raise InputError("fix momentum needs N and one of linear, angular")
-        every, words = Parameter("N", "integer").read(words[0], "fix momentum"), words[1:]
+        every, words = whole(words[0], "fix momentum N"), words[1:]
         options = {}
         while words:
             keyword = words[0]

@@ -13,7 +13,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.fix import Fix, hook
 from asemd.kernels.threads import barrier, reduce_sum
-from asemd.style import Parameter
+from asemd.words import number
 
 
 def kick_within(th, s, p):
@@ -69,7 +69,7 @@ class NVELimit(Fix):
     def from_lammps(cls, group, words, session):
         if len(words) != 1:
             raise InputError(f"fix nve/limit needs one value, xmax, got {len(words)}")
-        return cls(group, Parameter("xmax").read(words[0], "fix nve/limit"))
+        return cls(group, number(words[0], "fix nve/limit xmax"))
 
     def to_lammps(self) -> list[str]:
         return [repr(self.xmax)]

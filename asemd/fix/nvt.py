@@ -26,7 +26,7 @@ from asemd.errors import InputError, nearest
 from asemd.fix import hook
 from asemd.fix.thermostat import Thermostat
 from asemd.kernels.threads import barrier, reduce_sum
-from asemd.style import Parameter
+from asemd.words import number, take, whole
 
 HEADER = 14     # numbers before the chain: eta (n), its velocity (n + 1), acceleration (n), mass (n)
 PRESSURE = ("iso", "aniso", "tri", "x", "y", "z", "xy", "yz", "xz", "couple", "ptemp")
@@ -116,24 +116,23 @@ class NVT(Thermostat):
 
     @classmethod
     def from_lammps(cls, group, words, session):
-        arguments, what = {}, "fix nvt"
+        arguments = {}
         while words:
             keyword, words = words[0], words[1:]
             if keyword in PRESSURE:
                 raise InputError(f"fix nvt: {keyword} controls the pressure, which fix nvt does not; use fix npt")
             if keyword not in KEYWORDS:
                 raise InputError(f"fix nvt: unknown keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
-            need = 3 if keyword == "temp" else BAROSTAT_ONLY.get(keyword, 1)
-            if len(words) < need:
-                raise InputError(f"fix nvt: {keyword} needs {need} value{'s' * (need > 1)}, got {len(words)}")
-            values, words = words[:need], words[need:]
+            what = f"fix nvt {keyword}"
+            values = take(words, 3 if keyword == "temp" else BAROSTAT_ONLY.get(keyword, 1), what)
+            words = words[len(values):]
             if keyword == "temp":
-                start, stop, damping = (Parameter(n).read(w, what) for n, w in zip(("Tstart", "Tstop", "Tdamp"), values, strict=True))
-                arguments.update(temperature=(start, stop), damping=damping)
+                start, stop, arguments["damping"] = (number(w, what) for w in values)
+                arguments["temperature"] = start, stop
             elif keyword == "drag":
-                arguments["drag"] = Parameter("drag").read(values[0], what)
+                arguments["drag"] = number(values[0], what)
             elif keyword in ("tchain", "tloop"):
-                arguments[{"tchain": "chain", "tloop": "loops"}[keyword]] = Parameter(keyword, "integer").read(values[0], what)
+                arguments[{"tchain": "chain", "tloop": "loops"}[keyword]] = whole(values[0], what)
         if "temperature" not in arguments:
             raise InputError("fix nvt needs temp Tstart Tstop Tdamp")
         return cls(group, **arguments)

@@ -36,7 +36,7 @@ class SetForce(AppliedForce):
     def from_lammps(cls, group, words, session):
         if len(words) < 3:
             raise InputError(f"fix setforce needs fx fy fz, got {len(words)} values")
-        force = [None if w == "NULL" else read(w, n, "fix setforce", session) for w, n in zip(words, ("fx", "fy", "fz"), strict=False)]
+        force = [None if w == "NULL" else read(w, "fix setforce force", session) for w in words[:3]]
         region, words = None, words[3:]
         while words:
             if words[0] != "region":

@@ -17,7 +17,7 @@ from asemd.errors import InputError
 from asemd.fix import hook
 from asemd.fix.formula import write
 from asemd.fix.thermostat import VelocityScaling, measured_temperature
-from asemd.style import Parameter
+from asemd.words import number
 
 
 def relaxed(now, target, dt, p):
@@ -52,7 +52,7 @@ class TempBerendsen(VelocityScaling):
     def from_lammps(cls, group, words, session):
         if len(words) != 3:
             raise InputError(f"fix temp/berendsen needs Tstart Tstop Tdamp, got {len(words)} values")
-        return cls(group, cls.read_ramp(words[:2], session), Parameter("Tdamp").read(words[2], "fix temp/berendsen"))
+        return cls(group, cls.read_ramp(words[:2], session), number(words[2], "fix temp/berendsen Tdamp"))
 
     def to_lammps(self) -> list[str]:
         return [write(self.start), repr(self.stop), repr(self.damping)]

@@ -17,7 +17,7 @@ from asemd.errors import InputError
 from asemd.fix import hook
 from asemd.fix.formula import write
 from asemd.fix.thermostat import VelocityScaling, measured_temperature
-from asemd.style import Parameter
+from asemd.words import number, whole
 
 
 def rescaled(now, target, dt, p):
@@ -63,12 +63,10 @@ class TempRescale(VelocityScaling):
 
     @classmethod
     def from_lammps(cls, group, words, session):
-        what = "fix temp/rescale"
         if len(words) != 5:
             raise InputError(f"fix temp/rescale needs N Tstart Tstop window fraction, got {len(words)} values")
-        every = Parameter("N", "integer").read(words[0], what)
-        window, fraction = (Parameter(n).read(w, what) for n, w in zip(("window", "fraction"), words[3:], strict=True))
-        return cls(group, cls.read_ramp(words[1:3], session), every, window, fraction)
+        return cls(group, cls.read_ramp(words[1:3], session), whole(words[0], "fix temp/rescale N"),
+                   number(words[3], "fix temp/rescale window"), number(words[4], "fix temp/rescale fraction"))
 
     def to_lammps(self) -> list[str]:
         return [str(self.every), write(self.start), repr(self.stop), repr(self.window), repr(self.fraction)]

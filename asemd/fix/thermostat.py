@@ -15,7 +15,7 @@ from asemd.errors import InputError, SimulationError
 from asemd.fix import Fix
 from asemd.fix.formula import Value, read
 from asemd.kernels.threads import reduce_sum
-from asemd.style import Parameter
+from asemd.words import number
 
 if TYPE_CHECKING:
     from asemd.loop import Loop
@@ -61,8 +61,8 @@ class Thermostat(Fix):
     @classmethod
     def read_ramp(cls, words: list[str], session) -> tuple[Value, float]:
         """``Tstart Tstop``; when Tstart is a variable Tstop is read but not used."""
-        start = read(words[0], "Tstart", f"fix {cls.style}", session)
-        stop = Parameter("Tstop").read(words[1], f"fix {cls.style}")
+        start = read(words[0], f"fix {cls.style} Tstart", session)
+        stop = number(words[1], f"fix {cls.style} Tstop")
         return start, max(stop, 0.0) if callable(start) else stop
 
     def target(self, loop: Loop):
