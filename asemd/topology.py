@@ -1,0 +1,207 @@
+"""Bonds, angles, dihedrals and impropers as index arrays, and the 1-2, 1-3, 1-4 pairs that follow from the bonds."""
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+ATOMS = {"bond": 2, "angle": 3, "dihedral": 4, "improper": 4}
+KINDS = tuple(ATOMS)
+
+
+def rows_of(index, n: int) -> np.ndarray:
+    """Row numbers that a slice, mask, integer or list of integers (negative ones count from the end) picks of `n` atoms."""
+    index = np.asarray(index) if not isinstance(index, slice) else index
+    if not isinstance(index, slice) and index.size == 0 and index.dtype != bool:
+        return np.zeros(0, np.int64)
+    return np.atleast_1d(np.arange(n)[index])
+
+
+@dataclass(eq=False)
+class Topology:
+    """Bonded items by atom row, counted from 0, with their types, counted from 1.
+
+    Parameters
+    ----------
+    bonds, angles, dihedrals, impropers : (m, 2), (m, 3), (m, 4), (m, 4) int
+        Atom rows; in an angle the middle atom is the second one.
+    bond_types, angle_types, dihedral_types, improper_types : (m,) int, optional
+        Types; 1 for all if not given.
+
+    Raises
+    ------
+    ValueError
+        Arrays of the wrong shape.
+    """
+
+    bonds: np.ndarray = ()
+    bond_types: np.ndarray | None = None
+    angles: np.ndarray = ()
+    angle_types: np.ndarray | None = None
+    dihedrals: np.ndarray = ()
+    dihedral_types: np.ndarray | None = None
+    impropers: np.ndarray = ()
+    improper_types: np.ndarray | None = None
+
+    def __post_init__(self):
+        for kind, width in ATOMS.items():
+            atoms, types = getattr(self, kind + "s"), getattr(self, kind + "_types")
+            atoms = np.array(atoms, np.int32)
+            if atoms.size == 0:
+                atoms = atoms.reshape(0, width)
+            if atoms.ndim != 2 or atoms.shape[1] != width:
+                raise ValueError(f"{kind}s must have the shape (m, {width}), got {atoms.shape}")
+            types = np.ones(len(atoms), np.int32) if types is None else np.array(np.broadcast_to(types, len(atoms)), np.int32)
+            setattr(self, kind + "s", atoms)
+            setattr(self, kind + "_types", types)
+
+    def items(self, kind: str) -> tuple[np.ndarray, np.ndarray]:
+        """Atoms (m, k) and types (m,) of ``bond``, ``angle``, ``dihedral`` or ``improper``."""
+        return getattr(self, kind + "s"), getattr(self, kind + "_types")
+
+    def __iter__(self) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+        return ((kind, *self.items(kind)) for kind in KINDS)
+
+    @classmethod
+    def _made(cls, parts: dict[str, tuple[np.ndarray, np.ndarray]]) -> Topology:
+        return cls(**{f"{kind}s": atoms for kind, (atoms, _) in parts.items()},
+                   **{f"{kind}_types": types for kind, (_, types) in parts.items()})
+
+    @property
+    def is_empty(self) -> bool:
+        return not any(len(types) for _, _, types in self)
+
+    def counts(self) -> dict[str, int]:
+        """Number of items by kind."""
+        return {kind: len(types) for kind, _, types in self}
+
+    def __eq__(self, other) -> bool:
+        return isinstance(other, Topology) and all(
+            np.array_equal(a, b) for kind in KINDS for a, b in zip(self.items(kind), other.items(kind)))
+
+    __hash__ = None
+
+    def __repr__(self) -> str:
+        return "Topology(" + ", ".join(f"{len(types)} {kind}s" for kind, _, types in self if len(types)) + ")"
+
+    def copy(self) -> Topology:
+        return Topology._made({kind: (atoms, types) for kind, atoms, types in self})
+
+    def select(self, index, n: int) -> Topology:
+        """The items among chosen atoms; an item that loses an atom goes.
+
+        Parameters
+        ----------
+        index : slice, mask or rows
+            The atoms that stay, in their new order; of an atom chosen twice the first copy keeps the items.
+        n : int
+            Number of atoms before.
+        """
+        rows = rows_of(index, n)
+        new = np.full(n, -1, np.int64)
+        new[rows[::-1]] = np.arange(len(rows))[::-1]
+        parts = {}
+        for kind, atoms, types in self:
+            renamed = new[atoms]
+            keep = (renamed >= 0).all(axis=1)
+            parts[kind] = renamed[keep], types[keep]
+        return Topology._made(parts)
+
+    def shift(self, n: int) -> Topology:
+        """All row numbers plus `n`."""
+        return Topology._made({kind: (atoms + n, types) for kind, atoms, types in self})
+
+    def concatenate(self, *others: Topology) -> Topology:
+        """Items of this and the others, one after the other; the rows stay as they are (see `shift`)."""
+        tops = (self, *others)
+        return Topology._made({kind: (np.concatenate([t.items(kind)[0] for t in tops]), np.concatenate([t.items(kind)[1] for t in tops]))
+                               for kind in KINDS})
+
+    def repeat(self, n: int, copies: int) -> Topology:
+        """The items of `copies` copies of `n` atoms each; no item goes from one copy to another."""
+        parts = {}
+        for kind, atoms, types in self:
+            offset = np.repeat(np.arange(copies) * n, len(atoms))
+            parts[kind] = np.tile(atoms, (copies, 1)) + offset[:, None], np.tile(types, copies)
+        return Topology._made(parts)
+
+    def repeat_periodic(self, n: int, times, box, x: np.ndarray) -> Topology:
+        """The items of a repeated periodic cell: what crosses a periodic face is connected with the neighbouring copy.
+
+        Parameters
+        ----------
+        n : int
+            Number of atoms of one copy.
+        times : (int, int, int)
+            Copies along a, b, c; copy (i, j, k) is number ``(i * times[1] + j) * times[2] + k``.
+        box : asemd.box.Box
+            The cell before.
+        x : (n, 3)
+            Positions before. Each bond is its shortest image.
+        """
+        times = np.asarray(times)
+        grid = np.stack(np.meshgrid(*map(np.arange, times), indexing="ij"), -1).reshape(-1, 3)
+        parts = {}
+        for kind, atoms, types in self:
+            at = np.zeros((*atoms.shape, 3), np.int64)     # the copy of every atom, counted from that of the first
+            chain = {"angle": ((1, 0), (1, 2)), "bond": ((0, 1),)}.get(kind, ((1, 0), (1, 2), (2, 3)))
+            for known, new in chain:
+                _, shift = box.minimum_image(x[atoms[:, new]] - x[atoms[:, known]])
+                at[:, new] = at[:, known] + shift
+            copy = (grid[:, None, None] + at[None]) % times
+            number = (copy[..., 0] * times[1] + copy[..., 1]) * times[2] + copy[..., 2]
+            parts[kind] = (number * n + atoms).reshape(-1, atoms.shape[1]), np.tile(types, len(grid))
+        return Topology._made(parts)
+
+    def special(self, n: int, angle: bool = False, dihedral: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """The pairs one, two and three bonds apart.
+
+        Parameters
+        ----------
+        n : int
+            Number of atoms.
+        angle : bool
+            As ``special_bonds angle yes``: a 1-3 pair counts only if it is 1-3 of an angle, or 1-3 or 2-4 of a dihedral.
+        dihedral : bool
+            As ``special_bonds dihedral yes``: a 1-4 pair counts only if it is 1-4 of a dihedral.
+
+        Returns
+        -------
+        pairs : (m, 2) int32
+            Rows i < j, sorted; each pair once.
+        kind : (m,) int8
+            1, 2, 3 for 1-2, 1-3, 1-4; the nearest counts.
+        """
+        ends = self.bonds[self.bonds[:, 0] != self.bonds[:, 1]].astype(np.int64)
+        both = np.unique(np.concatenate([ends, ends[:, ::-1]]), axis=0)
+        first = np.searchsorted(both[:, 0], np.arange(n + 1))     # bonds of atom i: both[first[i]:first[i + 1]]
+
+        def walk(paths):
+            """Every path longer by one bond."""
+            start, count = first[paths[:, -1]], np.diff(first)[paths[:, -1]]
+            row = np.repeat(np.arange(len(paths)), count)
+            at = start[row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+            out = np.column_stack([paths[row], both[at, 1]])
+            return out[out[:, -1] != out[:, -3]]                   # not straight back
+
+        keys = []
+        paths = both
+        for hop in range(3):
+            paths = walk(paths) if hop else both
+            near, far = paths[:, 0], paths[:, -1]
+            key = np.unique((near * n + far)[near < far])
+            if hop == 1 and angle:
+                key = key[np.isin(key, _keys(n, self.angles[:, [0, 2]], self.dihedrals[:, [0, 2]], self.dihedrals[:, [1, 3]]))]
+            if hop == 2 and dihedral:
+                key = key[np.isin(key, _keys(n, self.dihedrals[:, [0, 3]]))]
+            keys.append(key)
+        key, index = np.unique(np.concatenate(keys), return_index=True)     # the first occurrence is the nearest
+        kind = np.repeat(np.array([1, 2, 3], np.int8), [len(k) for k in keys])[index]
+        return np.column_stack(np.divmod(key, max(n, 1))).astype(np.int32), kind
+
+
+def _keys(n: int, *pairs: np.ndarray) -> np.ndarray:
+    """i * n + j of pairs, smaller row first."""
+    p = np.sort(np.concatenate(pairs).astype(np.int64), axis=1)
+    return p[:, 0] * n + p[:, 1]
