@@ -1,6 +1,7 @@
 r"""$$E = 0$$
 
-Angles without forces: their geometry can be measured, and theta0 is the angle that constraints use. Source: LAMMPS manual, angle_style zero.
+Angles without forces: their geometry can be measured, and theta0 is the angle that constraints use.
+Source: LAMMPS manual, angle_style zero.
 """
 from __future__ import annotations
 

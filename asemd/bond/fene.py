@@ -22,14 +22,16 @@ def check(coeff, settings):
 def fene(r, K: "energy/distance^2", R0: "distance", epsilon: "energy", sigma: "distance"):
     if not 0.0 < r < R0:
         return math.inf, math.inf
-    rest = (R0 - r) * (R0 + r) / (R0 * R0)
-    x = r / R0
-    slope = K * r / rest
-    s = sigma / r
+    rest = (R0 - r) * (R0 + r)
+    spring = K * R0 * R0
+    slope = spring * r / rest
+    inverse = 1.0 / r
+    s = sigma * inverse
     s2 = s * s
     s6 = s2 * s2 * s2
     repulsion = 0.0
     if s6 > 0.5:
-        slope -= 48.0 * epsilon * s6 * (s6 - 0.5) / r
+        slope -= 48.0 * epsilon * s6 * (s6 - 0.5) * inverse
         repulsion = 4.0 * epsilon * (s6 - 0.5) * (s6 - 0.5)
-    return repulsion - 0.5 * K * R0 * R0 * (math.log(rest) if x > 0.5 else math.log1p(-x * x)), slope
+    x = r / R0
+    return repulsion - 0.5 * spring * (math.log(rest / (R0 * R0)) if x > 0.5 else math.log1p(-x * x)), slope

@@ -1,6 +1,7 @@
 r"""$$E = 0$$
 
-Bonds without forces: their geometry can be measured, and r0 is the length that constraints use. Source: LAMMPS manual, bond_style zero.
+Bonds without forces: their geometry can be measured, and r0 is the length that constraints use.
+Source: LAMMPS manual, bond_style zero.
 """
 from __future__ import annotations
 

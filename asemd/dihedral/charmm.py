@@ -1,7 +1,8 @@
 r"""$$E = K [1 + \cos(n \phi - d)]$$
 
 Torsion of CHARMM and AMBER; d is a whole number of degrees, and w scales the pair interaction of the first and the fourth atom, which
-the styles with "charmm" in their name provide. Source: MacKerell et al., J. Phys. Chem. B 102, 3586 (1998); LAMMPS manual, dihedral_style charmm.
+the styles with "charmm" in their name provide.
+Source: MacKerell et al., J. Phys. Chem. B 102, 3586 (1998); LAMMPS manual, dihedral_style charmm.
 """
 from __future__ import annotations
 

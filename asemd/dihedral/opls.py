@@ -1,4 +1,5 @@
-r"""$$E = \tfrac{1}{2} K_1 [1 + \cos\phi] + \tfrac{1}{2} K_2 [1 - \cos 2\phi] + \tfrac{1}{2} K_3 [1 + \cos 3\phi] + \tfrac{1}{2} K_4 [1 - \cos 4\phi]$$
+r"""$$E = \tfrac{1}{2} K_1 [1 + \cos\phi] + \tfrac{1}{2} K_2 [1 - \cos 2\phi]
+    + \tfrac{1}{2} K_3 [1 + \cos 3\phi] + \tfrac{1}{2} K_4 [1 - \cos 4\phi]$$
 
 Torsion of the OPLS force field. Source: Watkins and Jorgensen, J. Phys. Chem. A 105, 4118 (2001); LAMMPS manual, dihedral_style opls.
 """

@@ -1,7 +1,8 @@
 r"""$$E = \frac{K}{2 \sin^2 \omega_0} (\cos\omega - \cos\omega_0)^2, \qquad E = K (1 - \cos\omega) \; \text{if} \; \omega_0 = 0$$
 
-Inversion of DREIDING: omega is the angle between the axis I-L and the plane of I, J, K. With omega0 = 0 the planar structure is the minimum,
-else there are two minima and a barrier. Source: Mayo, Olafson and Goddard, J. Phys. Chem. 94, 8897 (1990); LAMMPS manual, improper_style umbrella.
+Inversion of DREIDING: omega is the angle between the axis I-L and the plane of I, J, K. With omega0 = 0 the planar structure is
+the minimum, else there are two minima and a barrier.
+Source: Mayo, Olafson and Goddard, J. Phys. Chem. 94, 8897 (1990); LAMMPS manual, improper_style umbrella.
 """
 from __future__ import annotations
 

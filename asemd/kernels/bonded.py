@@ -108,7 +108,7 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
     return b
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def kernel(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthogonal: bool) -> Callable:
     """The compiled loop of a bonded style.
 
@@ -131,7 +131,8 @@ def kernel(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthog
         ``f(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad)``: `x` (3, cap) positions, `out` (3, cap)
         forces are added to, `items` (m, k) int32 columns of `x`, `types` (m,) int32, `cell` an `asemd.kernels.state.Cell`, `coeff` (npar,
         ntypes + 1) and `arrays` of `Style.pack`, `lo` and `hi` the range of items, `acc` (8,) energy in 0 and virial xx yy zz xy xz yz in
-        2 to 7 are added to, `atom_energy` (cap,), `atom_virial` (6, cap), `bad` (4,): 1, item, coordinate of the first item outside the domain.
+        2 to 7 are added to, `atom_energy` (cap,), `atom_virial` (6, cap), `bad` (4,): 1, item and coordinate of the
+        first item outside the domain.
     """
     return source(style, energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal).build().loop
 

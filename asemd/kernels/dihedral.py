@@ -1,7 +1,7 @@
 """Loop over torsion angles (dihedrals, and impropers in phi or chi); pasted by `asemd.kernels.bonded` like `asemd.kernels.bond`.
 
-With f = x1 - x2, g = x2 - x3, h = x4 - x3, a = f x g, b = h x g the sine is (b x a) . g / |g| and the gradients are multiples of a / a^2 and
-b / b^2, so that no sine is divided by. Source: Blondel and Karplus, J. Comput. Chem. 17, 1132 (1996).
+With f = x1 - x2, g = x2 - x3, h = x4 - x3, a = f x g, b = h x g the sine is (b x a) . g / |g| and the gradients are multiples of a / a^2
+and b / b^2, so that no sine is divided by. Source: Blondel and Karplus, J. Comput. Chem. 17, 1132 (1996).
 """
 from __future__ import annotations
 

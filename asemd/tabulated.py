@@ -1,0 +1,170 @@
+"""Tabulated functions: one section of a table file, and cubic splines through its values."""
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from asemd.errors import InputError, Where, nearest
+
+
+@dataclass(eq=False)
+class Section:
+    """One section of a table file.
+
+    Attributes
+    ----------
+    file, keyword : str
+        Where it is from.
+    parameters : dict of str to tuple of float
+        Words of the line after the keyword, with their numbers.
+    columns : (n, k) float64
+        The numbers of each line.
+    units : str
+        Unit style named in the first line of the file (``# ... UNITS: metal``), or empty.
+    where : Where
+        The line of the keyword.
+    """
+
+    file: str
+    keyword: str
+    parameters: dict[str, tuple[float, ...]]
+    columns: np.ndarray
+    units: str = ""
+    where: Where = field(default_factory=lambda: Where("", 0))
+
+
+def find_file(name: str, what: str) -> Path:
+    """The file of that name, here or in a folder of the environment variable LAMMPS_POTENTIALS.
+
+    Raises
+    ------
+    InputError
+        There is no such file.
+    """
+    path = Path(name).expanduser()
+    folders = [Path(f) for f in os.environ.get("LAMMPS_POTENTIALS", "").split(os.pathsep) if f]
+    for candidate in (path, *(folder / path.name for folder in folders)):
+        if candidate.is_file():
+            return candidate
+    raise InputError(f"{what}: cannot open file {name}: no such file")
+
+
+def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str) -> Section:
+    """Read one section of a table file.
+
+    Parameters
+    ----------
+    name, keyword : str
+        File, and first word of the section.
+    known : mapping
+        Parameter of the second line -> how many numbers follow it; ``N`` must be among them.
+    columns : int
+        Numbers that each of the N lines must have at least, the index counted.
+    what : str
+        Command and style, for messages.
+
+    Raises
+    ------
+    InputError
+        No such file or section, an unknown parameter, N missing, too few lines, something that is not a number; with file and line.
+    """
+    path = find_file(name, what)
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    found = re.search(r"UNITS:\s*(\S+)", lines[0]) if lines and lines[0].lstrip().startswith("#") else None
+    words = [(k, line.split("#")[0].split()) for k, line in enumerate(lines)]
+    words = [(k, w) for k, w in words if w]
+
+    def wrong(message: str, k: int) -> InputError:
+        return InputError(f"{what}: {message}", Where(name, k + 1, lines[k] if k < len(lines) else ""))
+
+    starts = [n for n, (_, w) in enumerate(words) if w[0] == keyword]
+    if not starts:
+        titles = [w[0] for _, w in words if re.match(r"[A-Za-z_]", w[0]) and w[0] != "N"]
+        raise InputError(f"{what}: no section {keyword!r} in file {name}{nearest(keyword, titles)}")
+    start = starts[0]
+    at = words[start][0]
+    if start + 1 == len(words):
+        raise wrong(f"section {keyword} has no line of parameters", at)
+    k, line = words[start + 1]
+    parameters: dict[str, tuple[float, ...]] = {}
+    while line:
+        word, *rest = line
+        if word not in known:
+            raise wrong(f"unknown parameter {word!r} of table {keyword}{nearest(word, known)}", k)
+        count = known[word]
+        try:
+            parameters[word] = tuple(float(w) for w in rest[:count])
+        except ValueError:
+            parameters[word] = ()
+        if len(parameters[word]) != count:
+            raise wrong(f"parameter {word} of table {keyword} needs {count} number{'s' * (count != 1)}", k)
+        line = rest[count:]
+    if "N" not in parameters:
+        raise wrong(f"table {keyword} does not say N", k)
+    n = int(parameters["N"][0])
+    if n != parameters["N"][0] or n < 2:
+        raise wrong(f"N of table {keyword} must be a whole number of at least 2", k)
+    rows = words[start + 2:start + 2 + n]
+    values = np.zeros((n, columns))
+    for m, (k, row) in enumerate(rows):
+        if not re.fullmatch(r"\d+", row[0]):
+            raise wrong(f"table {keyword} has {m} of N = {n} lines", k)
+        try:
+            values[m] = [float(w) for w in row[:columns]]
+        except ValueError:
+            raise wrong(f"line {m + 1} of table {keyword} must have {columns} numbers", k) from None
+    if len(rows) < n:
+        raise wrong(f"table {keyword} has {len(rows)} of N = {n} lines: the file ends too early", rows[-1][0] if rows else k)
+    if not np.isfinite(values).all():
+        raise wrong(f"table {keyword} has a number that is not finite", rows[int(np.argwhere(~np.isfinite(values))[0, 0])][0])
+    return Section(name, keyword, parameters, values, found[1] if found else "", Where(name, at + 1, lines[at]))
+
+
+def clamped_spline(x: np.ndarray, y: np.ndarray, first: float, last: float) -> np.ndarray:
+    """Second derivatives at the nodes of the cubic spline through (x, y) with given slopes at both ends.
+
+    Parameters
+    ----------
+    x, y : (n,)
+        Nodes, x increasing, n at least 2.
+    first, last : float
+        dy/dx at both ends.
+
+    Returns
+    -------
+    (n,) float64
+    """
+    h = np.diff(x)
+    slope = np.concatenate([[first], np.diff(y) / h, [last]])
+    right = 6.0 * np.diff(slope)
+    above, below = h.tolist(), h.tolist()
+    middle = (2.0 * (np.concatenate([[0.0], h]) + np.concatenate([h, [0.0]]))).tolist()
+    b = right.tolist()
+    for k in range(1, len(b)):                     # elimination in a tridiagonal, diagonally dominant system
+        factor = below[k - 1] / middle[k - 1]
+        middle[k] -= factor * above[k - 1]
+        b[k] -= factor * b[k - 1]
+    b[-1] /= middle[-1]
+    for k in range(len(b) - 2, -1, -1):
+        b[k] = (b[k] - above[k] * b[k + 1]) / middle[k]
+    return np.array(b)
+
+
+def spline_value(x: np.ndarray, y: np.ndarray, y2: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The cubic spline with second derivatives `y2` at points `at`; outside the nodes the end pieces go on."""
+    at = np.asarray(at, float)
+    k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    h = x[k + 1] - x[k]
+    a, b = (x[k + 1] - at) / h, (at - x[k]) / h
+    return a * y[k] + b * y[k + 1] + ((a**3 - a) * y2[k] + (b**3 - b) * y2[k + 1]) * h * h / 6.0
+
+
+def cubic_coefficients(y: np.ndarray, y2: np.ndarray | float, h: float) -> np.ndarray:
+    """Coefficients (n - 1, 4) of 1, b, b^2, b^3 on each interval of equal length `h`, b in [0, 1), of a spline with nodes `y`."""
+    m = np.broadcast_to(y2, y.shape) * (h * h / 6.0)
+    return np.column_stack([y[:-1], np.diff(y) - 2.0 * m[:-1] - m[1:], 3.0 * m[:-1], np.diff(m)])
