@@ -1,0 +1,151 @@
+"""The columns of dumps: name -> kind and values of the atoms of a snapshot."""
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from asemd.errors import InputError, nearest
+
+AXES = "xyz"
+
+
+class View:
+    """Some atoms of a snapshot, in the order they are written; every array is made when it is first asked for.
+
+    Parameters
+    ----------
+    snapshot : asemd.engine.Snapshot
+    rows : (m,) int array
+    element : list of str
+        Names of the types from 1 on; C if empty, as in LAMMPS.
+    variables : asemd.variable.Variables, optional
+    """
+
+    def __init__(self, snapshot, rows: np.ndarray, element: Sequence[str], variables=None):
+        self.system, self.rows, self.variables, self._element = snapshot.system, rows, variables, element
+        box = self.system.box
+        self.box, self.rotation = (box, None) if box.is_lammps_frame else box.to_lammps()
+
+    def _vector(self, array: np.ndarray) -> np.ndarray:
+        values = array[self.rows]
+        return values if self.rotation is None else values @ self.rotation
+
+    @cached_property
+    def id(self):
+        return self.system.id[self.rows]
+
+    @cached_property
+    def x(self):
+        if self.rotation is None:
+            return self.system.x[self.rows]
+        return (self.system.x[self.rows] - self.system.box.origin) @ self.rotation + self.box.origin
+
+    @cached_property
+    def v(self):
+        return self._vector(self.system.v)
+
+    @cached_property
+    def f(self):
+        return self._vector(self.system.f)
+
+    @cached_property
+    def image(self):
+        return self.system.image[self.rows]
+
+    @cached_property
+    def xs(self):
+        """Scaled positions, by the arithmetic of an upper triangular inverse: last digits as LAMMPS has them."""
+        box, d = self.box, self.x - self.box.lo
+        lx, ly, lz = box.hi - box.lo
+        if not box.triclinic:
+            return d / (lx, ly, lz)
+        xy, xz, yz = box.tilt
+        return np.column_stack([d[:, 0] / lx - xy / (lx * ly) * d[:, 1] + (yz * xy - ly * xz) / (lx * ly * lz) * d[:, 2],
+                                d[:, 1] / ly - yz / (ly * lz) * d[:, 2], d[:, 2] / lz])
+
+    @cached_property
+    def xu(self):
+        return self.x + self.image @ self.box.cell
+
+    @cached_property
+    def xsu(self):
+        return self.xs + self.image
+
+    def element(self) -> list[str]:
+        if not self._element:
+            return ["C"] * len(self.rows)
+        return [self._element[t - 1] for t in self.system.type[self.rows].tolist()]
+
+    def labels(self) -> list[str]:
+        known = self.system.labels.get("atom", {})
+        missing = {int(t) for t in np.unique(self.system.type[self.rows])} - set(known)
+        if missing:
+            raise InputError(f"dump: atom type {min(missing)} has no label, use the labelmap command")
+        return [known[t] for t in self.system.type[self.rows].tolist()]
+
+    def charge(self) -> np.ndarray:
+        if self.system.q is None:
+            raise InputError(f"dump: atom style {self.system.atom_style} has no charges for the column q")
+        return self.system.q[self.rows]
+
+    def molecule(self) -> np.ndarray:
+        if not self.system.molecular:
+            raise InputError(f"dump: atom style {self.system.atom_style} has no molecules for the column mol")
+        return self.system.molecule[self.rows]
+
+
+COLUMNS: dict[str, tuple[str, Callable[[View], Sequence]]] = {
+    "id": ("integer", lambda w: w.id),
+    "mol": ("integer", View.molecule),
+    "proc": ("integer", lambda w: np.zeros(len(w.rows), int)),
+    "procp1": ("integer", lambda w: np.ones(len(w.rows), int)),
+    "type": ("integer", lambda w: w.system.type[w.rows]),
+    "typelabel": ("string", View.labels),
+    "element": ("string", View.element),
+    "mass": ("float", lambda w: w.system.atom_masses()[w.rows]),
+    "q": ("float", View.charge),
+}
+LABELS = ("typelabel", "element")
+
+
+def _component(array: str, axis: int) -> Callable[[View], np.ndarray]:
+    return lambda w: getattr(w, array)[:, axis]
+
+
+for _k, _a in enumerate(AXES):
+    for _suffix, _array in (("", "x"), ("s", "xs"), ("u", "xu"), ("su", "xsu")):
+        COLUMNS[_a + _suffix] = ("float", _component(_array, _k))
+    COLUMNS["v" + _a] = ("float", _component("v", _k))
+    COLUMNS["f" + _a] = ("float", _component("f", _k))
+    COLUMNS["i" + _a] = ("integer", _component("image", _k))
+
+
+def kind_of(name: str) -> str:
+    """``integer``, ``float`` or ``string``.
+
+    Raises
+    ------
+    InputError
+        No such column.
+    """
+    if re.fullmatch(r"[cfv]_\w+(\[\d+\])?", name):
+        return "float"
+    if name not in COLUMNS:
+        raise InputError(f"dump: column {name!r} is unknown or not supported{nearest(name, COLUMNS)}")
+    return COLUMNS[name][0]
+
+
+def column_of(view: View, name: str) -> Sequence:
+    """The values of one column."""
+    if name in COLUMNS:
+        return COLUMNS[name][1](view)
+    kind, source = name[0], name[2:]
+    if view.variables is None:
+        raise InputError(f"dump: column {name} needs a session")
+    if kind == "v":
+        return np.asarray(view.variables.per_atom(source, view.system.n))[view.rows]
+    index = re.fullmatch(r"(\w+?)(?:\[(\d+)\])?", source)
+    return np.asarray(view.variables.provider.per_atom(kind, index[1], int(index[2]) if index[2] else None), dtype=float)[view.rows]

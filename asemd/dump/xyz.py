@@ -1,0 +1,29 @@
+"""``dump ID group xyz N file``: the XYZ format."""
+from __future__ import annotations
+
+from asemd.dump import Dump
+from asemd.dump._columns import column_of
+
+
+class XYZ(Dump):
+    """Number of atoms, a comment line with the step, then type (or element, or label) and x y z."""
+
+    style = "xyz"
+    KEYWORDS = {k: n for k, n in Dump.KEYWORDS.items() if k not in ("thresh", "region", "colname", "units", "header")}
+
+    def __init__(self, group: str, every: int, path: str, *, variables=None, regions=None):
+        super().__init__(group, every, path, ["typelabel", "x", "y", "z"], variables=variables, regions=regions)
+        self.numeric = True
+
+    def lines(self, view):
+        first = view.element() if self.element else [str(t) for t in column_of(view, "type")] if self.numeric else view.labels()
+        form = self.format()
+        return "".join([form % row for row in zip(first, *(column_of(view, c).tolist() for c in "xyz"))])
+
+    def head(self, snapshot, step, n):
+        time = f" Time: {step * snapshot.dt:f}" if self.time else ""
+        return f"{n}\n Atoms. Timestep: {step}{time}\n"
+
+    def _modify_types(self, values, what, session):
+        super()._modify_types(values, what, session)
+        self.columns[0], self.numeric = "typelabel", values[0] == "numeric"
