@@ -10,6 +10,7 @@ import numpy as np
 from asemd import units
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
+from asemd.minimize import Options
 from asemd.thermo import Thermo
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ class Scene:
     precision: str = "double"
     compat: str = ""
     min_style: str = "cg"
-    min_modify: dict[str, Any] = field(default_factory=dict)
+    min_modify: Options = field(default_factory=Options)
     first_step: int = 0
     lattice: Any = None
     regions: dict[str, Any] = field(default_factory=dict)

@@ -48,7 +48,7 @@ def exists(category: str, name: str) -> bool:
     if category in FORCE_FIELD:
         return plain(name) in _force_field(category, _file(plain(name)))
     if category == "minimize":
-        return name != "state"
+        return not name.startswith("_")
     return any(c.style == plain(name) for c in _classes(importlib.import_module(module_of(category, plain(name)))))
 
 
@@ -71,7 +71,7 @@ def names(category: str) -> tuple[str, ...]:
         from asemd import style
         return tuple(style.names(category))
     if category == "minimize":
-        return tuple(sorted(files(category) - {"state"}))
+        return tuple(sorted(n for n in files(category) if not n.startswith("_")))
     found = set()
     for name in files(category):
         found.update(c.style for c in _classes(importlib.import_module(f"{PACKAGES[category]}.{name}")))

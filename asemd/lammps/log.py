@@ -31,6 +31,7 @@ class Log:
         self.screen, self.file, self.path = screen, None, None
         self.set_echo(echo)
         self.started = time.time()
+        self.warnings, self.max_warnings = 0, 100
         if path and path != "none":
             self.open(path)
         self.write(f"asemd {__version__} (LAMMPS input language)\n")
@@ -77,6 +78,9 @@ class Log:
     def warn(self, message: str) -> None:
         """One line ``WARNING: ...`` here, and a Python warning."""
         message = " ".join(message.split())
+        self.warnings += 1
+        if self.warnings > self.max_warnings:
+            return
         self.write(f"WARNING: {message}\n")
         self.flush()
         warnings.warn(message, stacklevel=3)

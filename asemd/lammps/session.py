@@ -6,8 +6,6 @@ import os
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
-
 from asemd.errors import AsemdError, InputError, Where
 from asemd.lammps import catalog, lex, script
 from asemd.lammps.log import Log, to_stdout
@@ -198,6 +196,11 @@ class Session:
         self.loop = None
         self.stale()
 
+    def changed(self) -> None:
+        """The atoms or the box were changed from outside: the next run starts afresh."""
+        self.loop = None
+        self.moment.forget()
+
     def stale(self) -> None:
         """What was known about the last step no longer holds."""
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
@@ -211,13 +214,6 @@ class Session:
         self.close_dumps()
         self.log.write(self.log.total_time())
         self.log.close()
-
-    @property
-    def per_atom_count(self) -> int:
-        return self.scene.need_system("variable").n
-
-    def rows_in_order_of_id(self) -> np.ndarray:
-        return np.argsort(self.scene.need_system("gather").id, kind="stable")
 
 
 class Jump(Exception):

@@ -1,0 +1,27 @@
+"""``atom_modify map|sort|first|id value``: accepted; atoms are always found by id, and sorted by the engine as it needs."""
+from __future__ import annotations
+
+from asemd.errors import InputError, nearest
+from asemd.words import choice, number, take, whole, yes_no
+
+KEYWORDS = ("id", "map", "first", "sort")
+
+
+def run(session, args):
+    words = take(args, 1, "atom_modify") and list(args)
+    while words:
+        key = words.pop(0)
+        if key not in KEYWORDS:
+            raise InputError(f"atom_modify: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
+        values = take(words, 2 if key == "sort" else 1, f"atom_modify {key}")
+        del words[:len(values)]
+        if key == "map":
+            session.scene.map_style = choice(values[0], ("array", "hash", "yes"), "atom_modify map")
+        elif key == "id":
+            if not yes_no(values[0], "atom_modify id"):
+                raise InputError("atom_modify id no is not supported: atoms always have ids")
+        elif key == "sort":
+            whole(values[0], "atom_modify sort")
+            number(values[1], "atom_modify sort")
+        elif session.scene.system is not None:
+            session.scene.groups.mask(values[0], "atom_modify first")

@@ -1,0 +1,24 @@
+"""``fix ID group style words...``"""
+from __future__ import annotations
+
+import re
+
+from asemd.errors import InputError
+from asemd.lammps import catalog
+from asemd.words import take
+
+
+def run(session, args):
+    id, group, style = take(args, 3, "fix")[:3]
+    scene = session.scene
+    scene.need_system(f"fix {style}")
+    if not re.fullmatch(r"\w+", id):
+        raise InputError(f"fix: ID {id!r} must have only letters, numbers and underscores")
+    scene.groups.mask(group, f"fix {id}")
+    old = scene.fixes.get(id)
+    if old is not None and old.style != catalog.plain(style):
+        raise InputError(f"fix {id} exists with style {old.style}: unfix it before it becomes {style}")
+    new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
+    new.id = id
+    scene.fixes[id] = new
+    session.loop = None

@@ -1,0 +1,13 @@
+"""``min_style style``"""
+from __future__ import annotations
+
+from asemd.lammps import catalog
+from asemd.words import take
+
+
+def run(session, args):
+    session.scene.need_system("min_style")
+    style = catalog.plain(take(args, 1, "min_style")[0])
+    if not catalog.exists("minimize", style):
+        raise catalog.unknown("minimize", args[0])
+    session.scene.min_style = style

@@ -1,0 +1,22 @@
+"""``thermo_style style keywords...``"""
+from __future__ import annotations
+
+from asemd.errors import InputError, nearest
+from asemd.thermo import Thermo, parse_reference
+from asemd.words import take
+
+
+def run(session, args):
+    scene = session.scene
+    scene.need_system("thermo_style")
+    take(args, 1, "thermo_style")
+    for word in args[1:]:
+        reference = parse_reference(word)
+        table = {"c": scene.computes, "f": scene.fixes}.get(reference[0]) if reference else None
+        if table is not None and reference[1] not in table:
+            raise InputError(f"thermo_style: there is no {'compute' if reference[0] == 'c' else 'fix'} {reference[1]}{nearest(reference[1], table)}")
+    before = scene.thermo
+    lost = before != Thermo(before.style, before.words, before.every, before.style if before.style in ("multi", "yaml") else "one")
+    before.set_style(args[0], args[1:])
+    if lost:
+        session.warn("new thermo_style command, previous thermo_modify settings are lost")

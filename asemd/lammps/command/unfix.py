@@ -1,0 +1,14 @@
+"""``unfix ID``"""
+from __future__ import annotations
+
+from asemd.errors import InputError, nearest
+from asemd.words import take
+
+
+def run(session, args):
+    id = take(args, 1, "unfix")[0]
+    fixes = session.scene.fixes
+    if id not in fixes:
+        raise InputError(f"unfix: there is no fix {id}{nearest(id, fixes)}")
+    del fixes[id]
+    session.loop = None
