@@ -14,6 +14,9 @@ A compiled hook has the signature ``f(th, s, p, a)``:
   bit as a float);
 - ``a (m, n) float64``: the fix's own per-atom numbers by row, made by `atom_arrays` (a (1, 1) dummy if it has none).
 
+Loops over slices of this thread (``s.v[d, th.lo:th.hi]``, index from 0) become vector instructions, ``range(th.lo, th.hi)`` does not:
+the compiler must know that an index is not negative.
+
 Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0
 only, with ``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own
 that several hooks share is named with ``@hook(uses=[function])`` and pasted beside them.

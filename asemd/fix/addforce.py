@@ -99,13 +99,13 @@ class AddForce(AppliedForce):
 
     @hook
     def post_force(th, s, p, a):
-        bit = np.int32(np.int64(p[0]))
+        bit, mask = np.int32(np.int64(p[0])), s.mask[th.lo:th.hi]
         for d in range(3):
-            value, before = p[1 + d], 0.0
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    before += s.f[d, i]
-                    s.f[d, i] += value
+            f, value, before = s.f[d, th.lo:th.hi], p[1 + d], 0.0
+            for i in range(f.size):
+                if mask[i] & bit != 0:
+                    before += f[i]
+                    f[i] += value
             before = reduce_sum(th, before)
             if th.tid == 0:
                 p[4 + d] = before

@@ -130,6 +130,8 @@ class Langevin(Thermostat):
         if th.end != th.begin:
             done = (step - th.begin) / (th.end - th.begin)
         root = math.sqrt(p[5] + done * (p[6] - p[5]))
+        mine = slice(th.lo, th.hi)
+        mask, mass, row = s.mask[mine], s.mass[mine], s.row[mine]
         work = 0.0
         for d in range(3):
             total = 0.0
@@ -145,10 +147,10 @@ class Langevin(Thermostat):
                         if tally:
                             a[s.row[i], d] = kick - drag
             else:
-                for i in range(th.lo, th.hi):
-                    member = 1.0 if s.mask[i] & bit != 0 else 0.0
-                    kick = noise * root * math.sqrt(s.mass[i]) * (uniform(seed, step, s.row[i], d) - 0.5)
-                    s.f[d, i] += member * (kick - friction * s.mass[i] * s.v[d, i])
+                v, f = s.v[d, mine], s.f[d, mine]
+                for i in range(v.size):
+                    kick = noise * root * math.sqrt(mass[i]) * (uniform(seed, step, row[i], d) - 0.5)
+                    f[i] += kick - friction * mass[i] * v[i] if mask[i] & bit != 0 else 0.0
             mean = reduce_sum(th, total) / p[9] if zero else 0.0
             if zero or tally:
                 for i in range(th.lo, th.hi):

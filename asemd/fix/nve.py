@@ -20,19 +20,21 @@ class NVE(Fix):
 
     @hook
     def initial_integrate(th, s, p, a):
-        bit = np.int32(np.int64(p[0]))
-        half = 0.5 * th.dt
+        bit, half, mine = np.int32(np.int64(p[0])), 0.5 * th.dt, slice(th.lo, th.hi)
+        mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
         for d in range(3):
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    s.v[d, i] += half * s.inverse_mass[i] * s.f[d, i]
-                    s.x[d, i] += th.dt * s.v[d, i]
+            x, v, f = s.x[d, mine], s.v[d, mine], s.f[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    v[i] += half * inverse_mass[i] * f[i]
+                    x[i] += th.dt * v[i]
 
     @hook
     def final_integrate(th, s, p, a):
-        bit = np.int32(np.int64(p[0]))
-        half = 0.5 * th.dt
+        bit, half, mine = np.int32(np.int64(p[0])), 0.5 * th.dt, slice(th.lo, th.hi)
+        mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
         for d in range(3):
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    s.v[d, i] += half * s.inverse_mass[i] * s.f[d, i]
+            v, f = s.v[d, mine], s.f[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    v[i] += half * inverse_mass[i] * f[i]

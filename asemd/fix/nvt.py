@@ -163,23 +163,25 @@ class NVT(Thermostat):
         if th.tid == 0:
             nose_hoover_chain(th, p)
         barrier(th)
-        bit, factor, half = np.int32(np.int64(p[0])), p[12], 0.5 * th.dt
+        bit, factor, half, mine = np.int32(np.int64(p[0])), p[12], 0.5 * th.dt, slice(th.lo, th.hi)
+        mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
         for d in range(3):
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    s.v[d, i] = s.v[d, i] * factor + half * s.inverse_mass[i] * s.f[d, i]
-                    s.x[d, i] += th.dt * s.v[d, i]
+            x, v, f = s.x[d, mine], s.v[d, mine], s.f[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    v[i] = v[i] * factor + half * inverse_mass[i] * f[i]
+                    x[i] += th.dt * v[i]
 
     @hook(uses=[nose_hoover_chain])
     def final_integrate(th, s, p, a):
-        bit, seen, half = np.int32(np.int64(p[0])), np.int32(np.int64(p[1])), 0.5 * th.dt
+        bit, seen, half, mine = np.int32(np.int64(p[0])), np.int32(np.int64(p[1])), 0.5 * th.dt, slice(th.lo, th.hi)
+        mask, mass, inverse_mass = s.mask[mine], s.mass[mine], s.inverse_mass[mine]
         twice = 0.0
         for d in range(3):
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    s.v[d, i] += half * s.inverse_mass[i] * s.f[d, i]
-                if s.mask[i] & seen != 0:
-                    twice += s.mass[i] * s.v[d, i] * s.v[d, i]
+            v, f = s.v[d, mine], s.f[d, mine]
+            for i in range(v.size):
+                v[i] += half * inverse_mass[i] * f[i] if mask[i] & bit != 0 else 0.0
+                twice += mass[i] * v[i] * v[i] if mask[i] & seen != 0 else 0.0
         twice = reduce_sum(th, twice)
         if th.tid == 0:
             p[11] = p[4] * twice / (p[2] * p[3]) if p[2] > 0.0 else 0.0
@@ -187,9 +189,10 @@ class NVT(Thermostat):
         barrier(th)
         factor = p[12]
         for d in range(3):
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    s.v[d, i] *= factor
+            v = s.v[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    v[i] *= factor
 
     def scalar(self) -> float:
         """Energy of the chain, energy units."""

@@ -59,14 +59,13 @@ class SetForce(AppliedForce):
 
     @hook
     def post_force(th, s, p, a):
-        bit = np.int32(np.int64(p[0]))
+        bit, mask = np.int32(np.int64(p[0])), s.mask[th.lo:th.hi]
         for d in range(3):
-            value, change, before = p[1 + d], p[4 + d] != 0.0, 0.0
-            for i in range(th.lo, th.hi):
-                if s.mask[i] & bit != 0:
-                    before += s.f[d, i]
-                    if change:
-                        s.f[d, i] = value
+            f, value, change, before = s.f[d, th.lo:th.hi], p[1 + d], p[4 + d] != 0.0, 0.0
+            for i in range(f.size):
+                if mask[i] & bit != 0:
+                    before += f[i]
+                    f[i] = value if change else f[i]
             before = reduce_sum(th, before)
             if th.tid == 0:
                 p[7 + d] = before

@@ -84,10 +84,12 @@ class TempRescale(VelocityScaling):
         factor = math.sqrt(new / now) if now > 0.0 else 1.0
         if factor != 1.0:
             bit = np.int32(np.int64(p[0]))
+            mask = s.mask[th.lo:th.hi]
             for d in range(3):
-                for i in range(th.lo, th.hi):
-                    if s.mask[i] & bit != 0:
-                        s.v[d, i] *= factor
+                v = s.v[d, th.lo:th.hi]
+                for i in range(v.size):
+                    if mask[i] & bit != 0:
+                        v[i] *= factor
         if th.tid == 0:
             p[7] += 0.5 * p[3] * p[2] * (now - new) if now > 0.0 else 0.0
             p[8] += 1.0 if now <= 0.0 else 0.0

@@ -96,12 +96,14 @@ class Thermostat(Fix):
 
 def measured_temperature(th, s, p):
     """The temperature of the group with bit ``p[1]``, from its degrees of freedom ``p[2]``, ``p[3]`` = boltz and ``p[4]`` = mvv2e."""
-    bit = np.int32(np.int64(p[1]))
+    bit, mine = np.int32(np.int64(p[1])), slice(th.lo, th.hi)
+    mask, mass = s.mask[mine], s.mass[mine]
     twice = 0.0
     for d in range(3):
-        for i in range(th.lo, th.hi):
-            if s.mask[i] & bit != 0:
-                twice += s.mass[i] * s.v[d, i] * s.v[d, i]
+        v = s.v[d, mine]
+        for i in range(v.size):
+            if mask[i] & bit != 0:
+                twice += mass[i] * v[i] * v[i]
     twice = reduce_sum(th, twice)
     return p[4] * twice / (p[2] * p[3]) if p[2] > 0.0 else 0.0
 
