@@ -17,6 +17,7 @@ import textwrap
 import types
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -55,8 +56,34 @@ class _Plain(ast.NodeTransformer):
     """Strip what compiled code does not need; optionally make every number literal a `real` of the working precision and
     map ``math.exp`` to the vectorised twin."""
 
-    def __init__(self, real: bool, vector: bool):
-        self.real, self.vector = real, vector
+    def __init__(self, real: bool, vector: bool, constants: Mapping[str, bool]):
+        self.real, self.vector, self.constants = real, vector, constants
+
+    def _known(self, test):
+        if isinstance(test, ast.Name) and test.id in self.constants:
+            return bool(self.constants[test.id])
+        if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+            inner = self._known(test.operand)
+            return None if inner is None else not inner
+        if isinstance(test, ast.BoolOp) and isinstance(test.op, ast.And) and any(self._known(v) is False for v in test.values):
+            return False
+        return None
+
+    def visit_If(self, node):
+        known = self._known(node.test)
+        if known is None:
+            self.generic_visit(node)
+            return node
+        chosen = [self.visit(n) for n in (node.body if known else node.orelse)]
+        flat = [m for n in chosen for m in (n if isinstance(n, list) else [n])]
+        return flat or ast.Pass()
+
+    def visit_IfExp(self, node):
+        known = self._known(node.test)
+        if known is None:
+            self.generic_visit(node)
+            return node
+        return self.visit(node.body if known else node.orelse)
 
     def visit_FunctionDef(self, node):
         node.decorator_list, node.returns = [], None
@@ -86,7 +113,8 @@ class _Plain(ast.NodeTransformer):
         return node
 
 
-def plain_source(function: Callable, name: str | None = None, real: bool = False, vector: bool = False) -> str:
+def plain_source(function: Callable, name: str | None = None, real: bool = False, vector: bool = False,
+                 constants: Mapping[str, bool] = MappingProxyType({})) -> str:
     """Source of a function without decorators, annotations and docstring, under another name if asked for.
 
     Parameters
@@ -95,9 +123,11 @@ def plain_source(function: Callable, name: str | None = None, real: bool = False
         Wrap number literals as ``real(...)``, so that single-precision kernels stay in single precision.
     vector : bool
         Replace ``math.exp`` and relatives by branch-free versions that vectorise (`asemd.kernels.vector_math`).
+    constants : mapping
+        Names whose truth is known: ``if NAME:`` keeps one branch only, so that a variant holds nothing it does not need.
     """
     tree = ast.parse(textwrap.dedent(inspect.getsource(inspect.unwrap(function))))
-    tree = ast.fix_missing_locations(_Plain(real, vector).visit(tree))
+    tree = ast.fix_missing_locations(_Plain(real, vector, constants).visit(tree))
     node = tree.body[0]
     if name:
         node.name = name
@@ -118,6 +148,7 @@ class Builder:
 
     def __init__(self, title: str):
         self.lines = [f'"""{title}"""', _HEADER]
+        self.constants: dict[str, object] = {}
         self._have: set[str] = set()
 
     def line(self, text: str) -> None:
@@ -125,6 +156,7 @@ class Builder:
 
     def constant(self, name: str, value) -> None:
         """A module constant, frozen into the machine code; branches on it vanish."""
+        self.constants[name] = value
         self.lines.append(f"{name} = {value!r}" if isinstance(value, (bool, int, float, str)) else f"{name} = {value}")
 
     def text(self, source: str, options: str = "", cache: bool = True, jit: bool = True) -> None:
@@ -139,7 +171,7 @@ class Builder:
         name = name or function.__name__
         if name not in self._have:
             self._have.add(name)
-            self.text(plain_source(function, name, real, vector), f"fastmath={FAST}" if fast else "")
+            self.text(plain_source(function, name, real, vector, self.constants), f"fastmath={FAST}" if fast else "")
         return name
 
     def use(self, module: types.ModuleType, name: str, alias: str | None = None) -> None:

@@ -1,8 +1,10 @@
 """Compiled pair kernels of a style: one for the cluster list, one for plain pair lists, made for exactly the variant a scene needs."""
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -62,6 +64,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
     return "\n".join(lines)
 
 
+@lru_cache(maxsize=None)
 def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool):
     """The kernel over cluster lists.
 
@@ -80,7 +83,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
                             CHARGED=style.charged, VARYING=bool(varying), EXCLUDE=exclude, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
-    if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(_source, style.functions())):
+    if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(inspect.getsource, style.functions())):
         from asemd.kernels import vector_math
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)
@@ -98,11 +101,6 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     return module.cluster_forces, module
 
 
-def _source(function) -> str:
-    import inspect
-    return inspect.getsource(function)
-
-
 def cluster_tuple(rows: np.ndarray, constants: np.ndarray, uniform: Sequence[bool], single: bool) -> tuple:
     """The scalars ``p`` of a cluster kernel: uniform rows, then constants, in the working precision."""
     real = np.float32 if single else np.float64
@@ -115,6 +113,7 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
     return tuple(bool(np.all(r[1:, 1:] == r[1, 1])) for r in rows)
 
 
+@lru_cache(maxsize=None)
 def list_kernel(style, parts, *, energy: bool, per_atom: bool):
     """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts."""
     b = Builder(f"pair {style.name}: plain list")

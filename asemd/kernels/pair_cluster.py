@@ -15,7 +15,8 @@ CLUSTER = 8
 ROW = 1048
 WIDTH = 8
 NROWS = 0
-ENERGY = CHARGED = VARYING = EXCLUDE = False
+ENERGY = CHARGED = VARYING = False
+EXCLUDE = True
 SLOT_BITS = 0x3FFFFFF
 real = np.float64
 pair_force = pair_energy = fill_rows = None
@@ -186,11 +187,8 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                 if t1 != last1:
                     last1 = t1
                     fill_rows(b, full, rows, t1, types, (7 + NROWS) * ROW)
-            alone = False
-            if EXCLUDE:
-                alone = xp < xe and (excluded[xp] >> 16) <= a + 1
             b[a] = done
-            if alone:
+            if EXCLUDE and xp < xe and (excluded[xp] >> 16) <= a + 1:
                 # an excluded partner is hidden from one atom only: one at a time
                 x0 = xp
                 while xp < xe and (excluded[xp] >> 16) == a:

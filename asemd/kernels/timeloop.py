@@ -1,0 +1,175 @@
+"""The compiled time loop: text generated for exactly the terms and fixes of a run.
+
+The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built by Python, loop entered again), pre_force, forces,
+post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after forces are complete.
+"""
+from __future__ import annotations
+
+import hashlib
+import inspect
+import textwrap
+from collections.abc import Sequence
+from types import ModuleType
+
+from asemd.kernels import random, threads
+from asemd.kernels.generate import FAST, Builder, plain_source
+
+FINISHED, REBUILD, BAD = 0, 1, 2
+COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate", "end_of_step")
+# places in `control` (int64) and `numbers` (float64)
+STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY = range(11)
+DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
+
+
+def _hash(module: ModuleType) -> str:
+    return hashlib.sha256(inspect.getsource(module).encode()).hexdigest()[:16]
+
+
+def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[dict[str, object]], everys: Sequence[int]) -> ModuleType:
+    """The loop module.
+
+    Parameters
+    ----------
+    kernels : sequence of (plain, with_energy)
+        Compiled kernels of each term.
+    categories : sequence of str
+        ``pair`` or other, per term, for the timing table.
+    hooks : sequence of dict
+        Per fix: hook name -> compiled-hook function (only those that are compiled).
+    everys : sequence of int
+        Per fix: `end_of_step` is called on multiples of this.
+    """
+    from asemd.kernels import clock, state
+    b = Builder("time loop")
+    b.line(f"# {_hash(threads)} {_hash(state)} {_hash(clock)}")
+    b.line("from asemd.kernels.threads import barrier, reduce_sum\nfrom asemd.kernels.state import Thread\nfrom asemd.kernels.clock import now")
+    b.function(random.uniform, fast=True)
+    b.function(random.normal, fast=True)
+    for k, (plain, energy) in enumerate(kernels):
+        for f, alias in ((plain, f"term{k}"), (energy, f"term{k}_energy")):
+            g = getattr(f, "py_func", f)
+            b.line(f"from {g.__module__} import {g.__name__} as {alias}")
+    for n, fix in enumerate(hooks):
+        for name, f in fix.items():
+            b.text(plain_source(f, f"fix{n}_{name}"), f"fastmath={FAST}")
+
+    def calls(name: str, indent: int) -> str:
+        lines = []
+        for n, fix in enumerate(hooks):
+            if name in fix:
+                guard = f"if step % {everys[n]} == 0:\n    " if name == "end_of_step" and everys[n] != 1 else ""
+                lines.append(f"{guard}fix{n}_{name}(th, s, fixes[{n}][0], fixes[{n}][1])")
+        return textwrap.indent("\n".join(lines), " " * indent)
+
+    def terms(suffix: str, indent: int) -> str:
+        lines, last = [], None
+        for k, category in enumerate(categories):
+            at = "PAIR_TIME" if category == "pair" else "BOND_TIME"
+            if last not in (None, at):
+                lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
+            lines.append(f"term{k}{suffix}(*terms[{k}])")
+            last = at
+        if last:
+            lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
+        return textwrap.indent("\n".join(lines) or "t0 = t0", " " * indent)
+
+    b.text(f'''def run(tid, nth, ns, s, held, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
+    step = control[{STEP}]
+    last = control[{LAST}]
+    resume = control[{RESUME}]
+    ago = control[{AGO}]
+    every = control[{EVERY}]
+    delay = control[{DELAY}]
+    check = control[{CHECK}]
+    begin = control[{BEGIN}]
+    end = control[{END}]
+    energy = control[{ENERGY}]
+    dt = numbers[{DT}]
+    trigger = numbers[{TRIGGER}]
+    lo = ns * tid // nth
+    hi = ns * (tid + 1) // nth
+    x, f = s.x, buffers[tid]
+    t0 = now()
+    th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+    barrier(th)
+    while resume != 0 or step < last:
+        if resume == 0:
+            step += 1
+            th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+{calls("initial_integrate", 12)}
+{calls("post_integrate", 12)}
+            ago += 1
+            need = False
+            if ago >= delay and ago % every == 0:
+                need = check == 0
+                if check != 0:
+                    m = 0.0
+                    for i in range(lo, hi):
+                        a = x[0, i] - held[0, i]
+                        b = x[1, i] - held[1, i]
+                        c = x[2, i] - held[2, i]
+                        m = max(m, a * a + b * b + c * c)
+                        if not (a * a + b * b + c * c <= 1e300):
+                            m = 1e301
+                    scratch[tid, 1] = m
+            if tid == 0:
+                t1 = now()
+                numbers[{MODIFY_TIME}] += t1 - t0
+                t0 = t1
+            barrier(th)
+            if ago >= delay and ago % every == 0 and check != 0:
+                m = 0.0
+                for t in range(nth):
+                    m = max(m, scratch[t, 1])
+                need = m > trigger
+            if tid == 0:
+                t1 = now()
+                numbers[{COMM_TIME}] += t1 - t0
+                t0 = t1
+            if need:
+                if tid == 0:
+                    control[{STEP}] = step
+                    if check != 0 and ago == max(every, delay):
+                        control[{DANGEROUS}] += 1
+                return {REBUILD}
+        resume = 0
+{calls("pre_force", 8)}
+        for d in range(3):
+            for i in range(ns):
+                f[d, i] = 0.0
+        if energy != 0 and step == last:
+            for k in range(acc.shape[1]):
+                for c in range(8):
+                    acc[tid, k, c] = 0.0
+{terms("_energy", 12)}
+        else:
+{terms("", 12)}
+        if nth > 1:
+            barrier(th)
+            for t in range(1, nth):
+                for d in range(3):
+                    for i in range(lo, hi):
+                        buffers[0, d, i] += buffers[t, d, i]
+        for t in range(nth):
+            for k in range(bad.shape[1]):
+                if bad[t, k, 0] != 0.0:
+                    if tid == 0:
+                        control[{STEP}] = step
+                    return {BAD}
+        if tid == 0:
+            t1 = now()
+            numbers[{COMM_TIME}] += t1 - t0
+            t0 = t1
+{calls("post_force", 8)}
+{calls("final_integrate", 8)}
+{calls("end_of_step", 8)}
+        if tid == 0:
+            t1 = now()
+            numbers[{MODIFY_TIME}] += t1 - t0
+            t0 = t1
+    barrier(th)
+    if tid == 0:
+        control[{STEP}] = step
+        control[{AGO}] = ago
+    return {FINISHED}''', f"fastmath={FAST}")
+    return b.build()

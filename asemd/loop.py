@@ -1,0 +1,265 @@
+"""The time loop: fixes, forces and list builds over many steps, compiled where nothing needs Python."""
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from asemd.engine import Engine, Result, Settings, Snapshot
+from asemd.errors import InputError, SimulationError
+from asemd.fix import Fix
+from asemd.kernels import timeloop as tl
+from asemd.kernels.state import Thread
+
+
+class Loop:
+    """Runs a system under its fixes.
+
+    Parameters
+    ----------
+    system : asemd.system.System
+        Moved in place.
+    interactions : asemd.forcefield.Interactions
+    settings : asemd.engine.Settings
+    fixes : list of Fix
+    groups : mapping
+        Group name -> (n,) bool; the position of a name is its bit unless the mapping has a method `bit`.
+    dt : float
+        Time step, in the system's units.
+    step : int
+        Number of the present step.
+    """
+
+    def __init__(self, system, interactions, settings: Settings, fixes: list[Fix], groups, dt: float, step: int = 0):
+        self.system, self.interactions, self.settings = system, interactions, settings
+        self.fixes, self.groups, self.dt, self.step = list(fixes), groups, float(dt), int(step)
+        self.begin = self.end = self.step
+        self.engine = Engine(system, interactions, settings)
+        self.units = self.engine.units
+        self.result: Result | None = None
+        self.engine.groups = {name: groups[name] for name in groups}
+        self.engine.bits = {name: self.group_bit(name) for name in groups}
+        self.engine._rows(system.n)
+        nth = self.engine.threads
+        self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
+        self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
+        self._module = None
+        self._chunk = 100
+
+    def group_bit(self, name: str) -> int:
+        """The bit value of a group: 1 for ``all``, 2, 4, ...
+
+        Raises
+        ------
+        InputError
+            Unknown group.
+        """
+        if name not in self.groups:
+            raise InputError(f"unknown group {name!r}")
+        at = self.groups.bit(name) if hasattr(self.groups, "bit") else list(self.groups).index(name)
+        if at > 30:
+            raise InputError(f"group {name}: fixes can act on the first 31 groups only")
+        return 1 << at
+
+    @property
+    def state(self):
+        return self.engine.state
+
+    @property
+    def nslots(self) -> int:
+        return self.engine.ns
+
+    # ---- set-up -------------------------------------------------------------------------------------------------------------------------
+    def setup(self, begin: int | None = None, end: int | None = None, virial: bool = True) -> Result:
+        """Lists, first forces, and the fixes' part in them; compiles what the run needs. Returns the result of the first step."""
+        self.begin = self.step if begin is None else int(begin)
+        self.end = self.begin if end is None else int(end)
+        e = self.engine
+        e.load()
+        e.forces(True)
+        self._ago = 0
+        self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
+        self._make_module()
+        for n, f in enumerate(self.fixes):
+            f.setup(self)
+            if "post_force" in self._kinds[n]:
+                self._call(n, "post_force")
+        self.result = e.collect()
+        e.timings = dict.fromkeys(e.timings, 0.0)
+        e.builds = e.dangerous = 0
+        return self.result
+
+    def _arrays(self, fix: Fix) -> np.ndarray:
+        a = fix.atom_arrays(self)
+        return np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)
+
+    def _make_module(self) -> None:
+        self._kinds = [f.hooks() for f in self.fixes]
+        self._compiled = all(compiled for kinds in self._kinds for compiled in kinds.values())
+        hooks = [{name: getattr(f, name) for name in tl.COMPILED if kinds.get(name)} for f, kinds in zip(self.fixes, self._kinds)]
+        terms = self.engine.terms
+        kernels = [(t.kernel(False, False), t.kernel(True, False)) for t in terms]
+        key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks))
+        if self._module is None or self._module[0] != key:
+            module = tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes])
+            self._module = (key, module)
+        if self._compiled:
+            self._enter(0, False)     # compiles, or loads from the cache, without moving anything
+
+    # ---- running ------------------------------------------------------------------------------------------------------------------------
+    def advance(self, steps: int, virial: bool = True, energies: bool = False, virials: bool = False, progress=None) -> Result | None:
+        """Run exactly `steps` steps; the system is in sync afterwards.
+
+        Parameters
+        ----------
+        virial : bool
+            Energies and virial are wanted at the last step; otherwise None is returned and `result` keeps its old energies.
+        energies, virials : bool
+            Per-atom shares are wanted at the last step.
+        progress : callable, optional
+            Called with the present step now and then.
+        """
+        want = virial or energies or virials
+        last = self.step + int(steps)
+        if self._compiled:
+            while self.step < last:
+                began, at = time.perf_counter(), self.step
+                self._segment(min(last, self.step + self._chunk), want and self.step + self._chunk >= last)
+                spent = time.perf_counter() - began
+                self._chunk = max(20, int(0.2 * (self.step - at) / max(spent, 1e-9)))
+                if progress is not None:
+                    progress(self.step)
+        else:
+            while self.step < last:
+                self._python_step(want and self.step + 1 == last)
+                if progress is not None:
+                    progress(self.step)
+        self._take_timings()
+        if not want:
+            self.engine.store()
+            return None
+        result = self.engine.collect()
+        if energies or virials:
+            self.engine.per_atom(result)
+        self.result = result
+        return result
+
+    def _segment(self, last: int, energy: bool) -> None:
+        """Compiled steps up to `last`, with list builds in between."""
+        resume = False
+        while True:
+            status = self._enter(last, energy, resume)
+            if status == tl.FINISHED:
+                return
+            if status == tl.BAD:
+                self.engine.store()
+                try:
+                    self.engine.check()
+                except SimulationError as error:
+                    raise SimulationError(f"step {self.step}: {error}") from None
+            self._rebuild()
+            resume = True
+
+    def _rebuild(self) -> None:
+        try:
+            self.engine.rebuild()
+        except SimulationError as error:
+            self.engine.store()
+            raise SimulationError(f"step {self.step}: {error}") from None
+        self._ago = 0
+
+    def _enter(self, last: int, energy: bool, resume: bool = False) -> int:
+        e, s, c, x = self.engine, self.settings, self._control, self._numbers
+        if last == 0:
+            last = self.step
+        c[:11] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy]
+        x[tl.DT], x[tl.TRIGGER] = self.dt, (0.5 * s.skin) ** 2
+        self._sync[:] = 0
+        status = [0] * e.threads
+        run = self._module[1].run
+
+        def work(tid):
+            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.buffers, e.bad, self._sync, self._scratch, c, x, e.acc,
+                              e.arguments(tid), self._fix_data)
+        for t in range(e.threads):
+            e.arguments(t)
+        e.parallel(work)
+        self.step = int(c[tl.STEP])
+        self._ago = int(c[tl.AGO])
+        e.dangerous += int(c[tl.DANGEROUS])
+        return status[0]
+
+    def _take_timings(self) -> None:
+        t, x = self.engine.timings, self._numbers
+        for name, at in (("Pair", tl.PAIR_TIME), ("Bond", tl.BOND_TIME), ("Modify", tl.MODIFY_TIME), ("Comm", tl.COMM_TIME)):
+            t[name] += float(x[at])
+            x[at] = 0.0
+
+    # ---- steps with Python hooks --------------------------------------------------------------------------------------------------------
+    def _thread(self) -> Thread:
+        return Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, self.dt, self._sync, self._scratch)
+
+    def _call(self, n: int, name: str) -> None:
+        """One hook of one fix, compiled or not, on all slots."""
+        if self._kinds[n][name] and name in tl.COMPILED:
+            p, a = self._fix_data[n]
+            getattr(self._module[1], f"fix{n}_{name}")(self._thread(), self.engine.state, p, a)
+        else:
+            getattr(self.fixes[n], name)(self)
+
+    def _hook(self, name: str) -> None:
+        for n, fix in enumerate(self.fixes):
+            if name in self._kinds[n] and (name != "end_of_step" or self.step % fix.every == 0):
+                self._call(n, name)
+
+    def _python_step(self, energy: bool) -> None:
+        e, s = self.engine, self.settings
+        began = time.perf_counter()
+        self.step += 1
+        self._hook("initial_integrate")
+        self._hook("post_integrate")
+        self._ago += 1
+        need = False
+        if self._ago >= s.delay and self._ago % s.every == 0:
+            need = not s.check or not e.k.moved(e.state.x, e.held, e.ns) <= (0.5 * s.skin) ** 2
+            if need and s.check and self._ago == max(s.every, s.delay):
+                e.dangerous += 1
+        e.timings["Modify"] += time.perf_counter() - began
+        if need:
+            self._hook("pre_exchange")
+            self._hook("pre_neighbor")
+            self._rebuild()
+            self._hook("post_neighbor")
+        self._hook("pre_force")
+        try:
+            e.forces(energy)
+        except SimulationError as error:
+            e.store()
+            raise SimulationError(f"step {self.step}: {error}") from None
+        began = time.perf_counter()
+        for name in ("post_force", "final_integrate", "end_of_step"):
+            self._hook(name)
+        e.timings["Modify"] += time.perf_counter() - began
+
+    # ---- exchange with the system -------------------------------------------------------------------------------------------------------
+    def sync_out(self) -> None:
+        """Positions, velocities and forces of the slots into the system."""
+        self.engine.store()
+
+    def sync_in(self) -> None:
+        """Positions and velocities of the system into the slots (the list stays)."""
+        e = self.engine
+        e.k.load(self.system.x, self.system.v, self.system.x, e.state.x, e.state.v, e.state.row, e.ns, False)
+
+    def finish(self) -> None:
+        """End of a run: results of fixes are read back, the system is in sync."""
+        for f in self.fixes:
+            f.finish(self)
+        self.system.step = self.step
+
+    def snapshot(self) -> Snapshot:
+        """What observers see now."""
+        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes)
+
+
+__all__ = ["Loop"]
