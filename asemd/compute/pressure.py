@@ -49,7 +49,7 @@ class Pressure(Compute):
     ----------
     group : str
         Must be ``all``.
-    temp : Temp, optional
+    temperature : Temp, optional
         Measures the kinetic part; None is allowed if `terms` has no ``ke``. By default that of all atoms.
     terms : sequence of str, optional
         Some of ke, pair, bond, angle, dihedral, improper, kspace, fix, virial; None: all.
@@ -63,13 +63,13 @@ class Pressure(Compute):
     style = "pressure"
     needs = frozenset({"virial"})
 
-    def __init__(self, group: str = "all", temp: Temp | str | None = "default", terms=None):
+    def __init__(self, group: str = "all", temperature: Temp | str | None = "default", terms=None):
         super().__init__(group)
         if group != "all":
             raise InputError(f"compute pressure must use group all, got {group}; compute stress/atom and reduce give that of a group")
         self.words, self.terms = tuple(terms or ()), read_terms(terms, "compute pressure")
-        self.temp = Temp() if temp == "default" else temp
-        if self.temp is None and "ke" in self.terms:
+        self.temperature = Temp() if temperature == "default" else temperature
+        if self.temperature is None and "ke" in self.terms:
             raise InputError("compute pressure: needs a temperature compute for the kinetic part; give its ID, or the keyword virial")
 
     @classmethod
@@ -79,7 +79,7 @@ class Pressure(Compute):
         return cls(group, None if words[0] == "NULL" else find_temperature(words[0], session, "compute pressure"), words[1:])
 
     def to_lammps(self) -> list[str]:
-        return [self.temp.id if self.temp else "NULL", *self.words]
+        return [self.temperature.id if self.temperature else "NULL", *self.words]
 
     def virial(self, state) -> np.ndarray:
         """(6,) virial of the chosen terms, energy units, with the tail correction."""
@@ -102,14 +102,14 @@ class Pressure(Compute):
         d = state.system.dimension
         total = self.virial(state)[:d].sum()
         if "ke" in self.terms:
-            total += self.temp.dof(state) * state.units.boltz * self.temp.scalar(state)
+            total += self.temperature.dof(state) * state.units.boltz * self.temperature.scalar(state)
         return float(total / d * self._per_volume(state))
 
     def vector(self, state) -> np.ndarray:
         """(6,) xx yy zz xy xz yz; in two dimensions only xx, yy and xy are not zero."""
         total = self.virial(state)
         if "ke" in self.terms:
-            total = total + self.temp.vector(state)
+            total = total + self.temperature.vector(state)
         if state.system.dimension == 2:
             total[[2, 4, 5]] = 0.0
         return total * self._per_volume(state)

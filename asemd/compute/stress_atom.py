@@ -25,7 +25,7 @@ class StressAtom(Compute):
     ----------
     group : str
         The atoms it reports; partners outside the group count.
-    temp : Temp, optional
+    temperature : Temp, optional
         A temperature compute whose bias (a streaming velocity) is left out of the kinetic part; None: the velocities as they are.
     terms : sequence of str, optional
         Some of ke, pair, bond, angle, dihedral, improper, kspace, fix, virial; None: all.
@@ -38,10 +38,10 @@ class StressAtom(Compute):
 
     style = "stress/atom"
 
-    def __init__(self, group: str = "all", temp: Temp | None = None, terms=None):
+    def __init__(self, group: str = "all", temperature: Temp | None = None, terms=None):
         super().__init__(group)
         self.words, self.terms = tuple(terms or ()), read_terms(terms, "compute stress/atom")
-        self.temp = temp
+        self.temperature = temperature
         self.needs = frozenset({"virial", "virials"}) if set(self.terms) - {"ke"} else frozenset()
 
     @classmethod
@@ -51,7 +51,7 @@ class StressAtom(Compute):
         return cls(group, None if words[0] == "NULL" else find_temperature(words[0], session, "compute stress/atom"), words[1:])
 
     def to_lammps(self) -> list[str]:
-        return [self.temp.id if self.temp else "NULL", *self.words]
+        return [self.temperature.id if self.temperature else "NULL", *self.words]
 
     def per_atom(self, state) -> np.ndarray:
         """(n, 6) xx yy zz xy xz yz; zero outside the group."""
