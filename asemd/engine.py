@@ -178,6 +178,7 @@ class Engine:
         self._rows(n)
         self.list = ClusterList(self.threads, self.reach) if self.mode == "cluster" else PlainList(self.reach)
         self.state = None
+        self._offset = None
         self.ns = 0
 
     @staticmethod
@@ -309,7 +310,7 @@ class Engine:
         s.row[:n] = np.arange(n, dtype=np.int32)
         s.x[:, :n] = self.system.x.T
         s.v[:, :n] = self.system.v.T
-        self.image0 = self.system.image.copy()
+        self._offset = None
         self.rebuild()
 
     def rebuild(self) -> None:
@@ -319,6 +320,8 @@ class Engine:
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
             raise SimulationError(f"atom {self.system.id[s.row[bad]]}: position is not finite")
+        if not self.periodic.all():
+            self._faces()
         if self.mode == "cluster":
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
@@ -343,6 +346,34 @@ class Engine:
         self._arguments = None
         self.builds += 1
         self.timings["Neigh"] += time.perf_counter() - began
+
+    def _faces(self) -> None:
+        """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost."""
+        box = self.system.box
+        if not box.is_lammps_frame:
+            return
+        inside = self.state.row[:self.ns] >= 0
+        x, rows = self.state.x[:, :self.ns].T[inside], self.state.row[:self.ns][inside]
+        new = box.shrink_wrapped(x)
+        if new is not box:
+            self.system.box = new
+            self._set_box()
+            box = new
+        s = box.fractional(x)
+        for a in np.flatnonzero([b in ("ff", "fs", "sf", "fm", "mf") for b in box.boundary]):
+            below, above = box.boundary[a]
+            out = ((s[:, a] < 0.0) & (below == "f")) | ((s[:, a] >= 1.0) & (above == "f"))
+            if out.any() and self.system.dimension > a:
+                ids = np.sort(self.system.id[rows[out]])
+                first = rows[out][np.argmin(self.system.id[rows[out]])]
+                where = self.state.x[a, self.slot_of_row(first)]
+                raise SimulationError(
+                    f"{len(ids)} atom{'s' * (len(ids) > 1)} lost: atom {ids[0]} at {'xyz'[a]} = {where:g} left the box [{box.lo[a]:g}, {box.hi[a]:g}] through a "
+                    "fixed boundary; use a shrink-wrapped boundary, a wall, or a shorter time step")
+
+    def slot_of_row(self, row: int) -> int:
+        """The slot an atom stands in."""
+        return int(np.flatnonzero(self.state.row[:self.ns] == row)[0])
 
     def _mark(self, i, j, code, shifts) -> None:
         """Special pairs and exclusions of a plain list."""
@@ -472,6 +503,27 @@ class Engine:
         result.energies = sum(result.energies_of.values(), np.zeros(n))
         result.virials = sum(result.virials_of.values(), np.zeros((n, 6)))
         return result
+
+    def move(self, x: np.ndarray) -> None:
+        """Forces at other positions of the same atoms in the same cell; keeps the list while nobody has moved by half the skin.
+
+        Parameters
+        ----------
+        x : (n, 3) array
+            Positions, wrapped or not.
+        """
+        e = self.system
+        if self.state is None or self._offset is None:
+            fresh = True
+        else:
+            self.k.load(x, e.v, self._offset, self.state.x, self.state.v, self.state.row, self.ns, True)
+            fresh = not self.k.moved(self.state.x, self.held, self.ns) <= (0.5 * self.settings.skin) ** 2
+        if fresh:
+            e.x[:] = x
+            e.image[:] = 0
+            self.load()
+            self._offset = e.image @ self.vectors
+        self.forces(True)
 
     def compute(self, virial: bool = True, energies: bool = False, virials: bool = False) -> Result:
         """Energy, forces and virial at the system's positions; per-atom shares when asked for."""
