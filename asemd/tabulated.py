@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -54,7 +54,7 @@ def find_file(name: str, what: str) -> Path:
     raise InputError(f"{what}: cannot open file {name}: no such file")
 
 
-def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str) -> Section:
+def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str, texts: Collection[str] = ()) -> Section:
     """Read one section of a table file.
 
     Parameters
@@ -67,6 +67,8 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         Numbers that each of the N lines must have at least, the index counted.
     what : str
         Command and style, for messages.
+    texts : collection of str, optional
+        Further parameters that are followed by one word, such as a file name.
 
     Raises
     ------
@@ -94,6 +96,9 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
     parameters: dict[str, tuple[float, ...]] = {}
     while line:
         word, *rest = line
+        if word in texts and rest:
+            parameters[word], line = (rest[0],), rest[1:]
+            continue
         if word not in known:
             raise wrong(f"unknown parameter {word!r} of table {keyword}{nearest(word, known)}", k)
         count = known[word]

@@ -9,9 +9,8 @@ import math
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.bonded_table import INTERPOLATED, TableStyle, interpolate
 from asemd.style import angle
-from asemd.tabulated import INTERPOLATED, TableStyle, interpolate
 
 
 class AngleTable(TableStyle):
@@ -19,14 +18,14 @@ class AngleTable(TableStyle):
 
     def finish(self, section, x, e, f, ends, rest):
         if abs(x[0]) > 1e-6 or abs(x[-1] - 180.0) > 1e-6:
-            raise InputError(f"{section.place}: an angle table must go from 0 to 180 degrees, not from {x[0]:g} to {x[-1]:g}")
+            raise self.wrong(section, f"the angles must range from 0 to 180 degrees, not from {x[0]:g} to {x[-1]:g}")
         x = np.radians(x)
         x[0], x[-1] = 0.0, math.pi
         degree = 180.0 / math.pi
         return {"table": (x, e, f * degree, *(v * degree * degree for v in ends)), "theta0": 180.0 if rest is None else rest}
 
 
-@angle("table", cls=AngleTable, equilibrium="theta0", xfail={"slope": INTERPOLATED}, domain="the table ends there (outside table range)")
+@angle("table", cls=AngleTable, equilibrium="theta0", xfail=INTERPOLATED, domain="the table ends there (outside table range)")
 def table(theta, lo, hi, delta, first, rows, mode, nodes: "array"):
     if not lo <= theta <= hi:
         return math.inf, math.inf

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import math
 
+from asemd.bonded_table import INTERPOLATED, TableStyle, interpolate
 from asemd.style import bond
-from asemd.tabulated import INTERPOLATED, TableStyle, interpolate
 
 
-@bond("table", cls=TableStyle, equilibrium="r0", xfail={"slope": INTERPOLATED}, domain="the table ends there (outside table range)")
+@bond("table", cls=TableStyle, equilibrium="r0", xfail=INTERPOLATED, domain="the table ends there (outside table range)")
 def table(r, lo: "distance", hi: "distance", delta: "distance", first, rows, mode, nodes: "array"):
     if not lo <= r <= hi:
         return math.inf, math.inf

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.bonded_table import INTERPOLATED, TableStyle, interpolate, periodic_spline, spline_slope
 from asemd.style import dihedral
-from asemd.tabulated import INTERPOLATED, TableStyle, interpolate, periodic_spline, read_section, spline_value
+from asemd.tabulated import spline_value
 
 TURN = 2.0 * math.pi
 
@@ -20,20 +20,18 @@ TURN = 2.0 * math.pi
 class DihedralTable(TableStyle):
     """Cyclic table. ``NOF``: no forces on file, they follow from the energy. ``CHECKU`` and ``CHECKF`` write the inner table."""
 
-    KNOWN = {"NOF": 0, "DEGREES": 0, "RADIANS": 0, "CHECKU": 1, "CHECKF": 1}
-    COLUMNS = (2, 3)
     smallest = 3
 
     def read(self, path, keyword, settings):
-        section = read_section(path, keyword, self.COLUMNS, self.KNOWN)
-        forces = "NOF" not in section.words
-        degrees = "RADIANS" not in section.words
-        if forces and section.rows.shape[1] < 3:
-            raise InputError(f"{section.place}: section {keyword} has no forces: add a fourth column or the word NOF")
-        x, e = section.rows[:, 0], section.rows[:, 1]
-        f = section.rows[:, 2] if forces else None
+        known = {"NOF": 0, "DEGREES": 0, "RADIANS": 0}
+        section = self.section(path, keyword, known, 3, ("CHECKU", "CHECKF"))
+        forces, degrees = "NOF" not in section.parameters, "RADIANS" not in section.parameters
+        if forces:
+            section = self.section(path, keyword, known, 4, ("CHECKU", "CHECKF"))
+        x, e = section.columns[:, 1], section.columns[:, 2]
+        f = section.columns[:, 3] if forces else None
         if x[-1] - x[0] >= (360.0 if degrees else TURN):
-            raise InputError(f"{section.place}: the range of angles must be less than 360 degrees")
+            raise self.wrong(section, "the range of angles must be less than 360 degrees")
         if degrees:
             x, f = np.radians(x), f * (180.0 / math.pi) if forces else None
         x = x - TURN * np.floor(x / TURN)
@@ -43,26 +41,25 @@ class DihedralTable(TableStyle):
             self.compare(section, x, e, f)
         out = {"table": (x, e, f)}
         for word, column in (("CHECKU", 0), ("CHECKF", 1)):
-            if word in section.words:
-                name = section.words[section.words.index(word) + 1]
+            if word in section.parameters:
+                name = section.parameters[word][0]
                 nodes = self.inner(out["table"], settings)[3][:-1]
                 angle, value = np.arange(len(nodes)) * (360.0 if degrees else TURN) / len(nodes), nodes[:, column]
                 value = value * math.pi / 180.0 if degrees and column else value
                 try:
                     Path(name).write_text("".join(f"{a:g} {v:g}\n" for a, v in zip(angle, value)))
                 except OSError as error:
-                    raise InputError(f"{section.place}: cannot write {word} file {name}: {error.strerror}") from None
+                    raise self.wrong(section, f"cannot write {word} file {name}: {error.strerror}") from None
         return out
 
-    @staticmethod
-    def compare(section, x, e, f) -> None:
+    def compare(self, section, x, e, f) -> None:
         """Refuse forces whose sign differs from that of the energy's slope at more than half of the angles."""
         before, after = np.roll(x, 1), np.roll(x, -1)
         before[0] -= TURN
         after[-1] += TURN
         slope = ((e - np.roll(e, 1)) / (x - before) * (after - x) + (np.roll(e, -1) - e) / (after - x) * (x - before)) / (after - before)
         if np.count_nonzero(slope * f > 0.0) > len(x) // 2:
-            raise InputError(f"{section.place}: dihedral table has inconsistent forces and energies (the force is -dE/dphi; or use NOF)")
+            raise self.wrong(section, "inconsistent forces and energies (the force is -dE/dphi; or use NOF)")
 
     def inner(self, table, settings):
         x, e, f = table
@@ -77,7 +74,7 @@ class DihedralTable(TableStyle):
             second = periodic_spline(x, e, TURN)
             nodes[:n, 0] = spline_value(ring, e[wide], second[wide], at)
             if f is None:
-                nodes[:n, 1] = -spline_value(ring, e[wide], second[wide], at, slope=True)
+                nodes[:n, 1] = -spline_slope(ring, e[wide], second[wide], at)
             else:
                 nodes[:n, 1] = spline_value(ring, f[wide], periodic_spline(x, f, TURN)[wide], at)
             nodes[:n, 2] = periodic_spline(at, nodes[:n, 0], TURN)
@@ -95,7 +92,7 @@ class DihedralTable(TableStyle):
         return 0.0 if settings["style"] == "linear" else 1.0 if values["table"][2] is not None else 2.0
 
 
-@dihedral("table", cls=DihedralTable, xfail={"slope": INTERPOLATED})
+@dihedral("table", cls=DihedralTable, xfail=INTERPOLATED)
 def table(phi, lo, hi, delta, first, rows, mode, nodes: "array"):
     if not -3.5 < phi < 3.5:
         return math.inf, math.inf

@@ -1,0 +1,286 @@
+"""Checks that any bonded style must pass: `check_style` runs them on a registered style or on one of your own.
+
+>>> from asemd import style
+>>> from asemd.testing.styles import check_style
+>>> check_style(style.find("bond", "harmonic"))
+"""
+from __future__ import annotations
+
+import math
+import re
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from asemd.kernels import bonded
+from asemd.kernels.state import Cell, cell_arrays
+from asemd.style import ATOMS, Packed, Style
+
+ITEMS = 12
+BOX = 40.0
+STEP = 3e-5
+
+
+@dataclass
+class Answer:
+    """What one kernel call gives for the items of a `Sample`."""
+
+    forces: np.ndarray            # (3, n)
+    acc: np.ndarray               # (8,)
+    energies: np.ndarray          # (n,) per atom
+    virials: np.ndarray           # (6, n) per atom
+    bad: np.ndarray               # (4,)
+
+    @property
+    def items(self) -> np.ndarray:
+        """Energy of each item."""
+        return self.energies.reshape(ITEMS, -1).sum(axis=1)
+
+
+@dataclass
+class Sample:
+    """Twelve separate items of one type at random, inside the domain of the style."""
+
+    style: Style
+    packed: Packed
+    x: np.ndarray = field(default=None)
+    cell: Cell = field(default_factory=lambda: cell_arrays(np.eye(3) * BOX, np.ones(3, bool)))
+
+    def run(self, x=None, loop=None, cell=None, energy=True, per_atom=True, periodic=False, orthogonal=True) -> Answer:
+        x = np.ascontiguousarray(self.x if x is None else x)
+        loop = loop or bonded.kernel(self.style, energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal)
+        k, n = ATOMS[self.style.category], x.shape[1]
+        out = Answer(np.zeros_like(x), np.zeros(8), np.zeros(n), np.zeros((6, n)), np.zeros(4))
+        loop(x, out.forces, np.arange(n, dtype=np.int32).reshape(-1, k), np.ones(n // k, np.int32), cell or self.cell, self.packed.coeff,
+             self.packed.arrays, 0, n // k, out.acc, out.energies, out.virials, out.bad)
+        return out
+
+
+def example_words(style: Style, folder: str) -> list[str]:
+    """One valid line of coefficients; a style that reads a table gets one written into `folder`."""
+    if not any(p.unit == "path" for p in style.coeff):
+        return style.example.split()
+    lo, hi = {"bond": (0.2, 3.0), "angle": (0.0, 180.0), "dihedral": (-170.0, 180.0)}[style.category]
+    x = np.linspace(lo, hi, 36)
+    scale = 1.0 if style.category == "bond" else math.pi / 180.0
+    e, f = 5.0 * np.cos(scale * x - 0.4), 5.0 * scale * np.sin(scale * x - 0.4)
+    rows = "".join(f"{i} {a!r} {b!r} {c!r}\n" for i, (a, b, c) in enumerate(zip(x.tolist(), e.tolist(), f.tolist()), 1))
+    path = Path(folder) / f"{style.category}.table"
+    path.write_text(f"# written by asemd\n\nEXAMPLE\nN {len(x)}\n\n{rows}")
+    return [str(path), "EXAMPLE"]
+
+
+def sample(style: Style, seed: int = 7) -> Sample:
+    """Random items with the example coefficients; bonds about as long as their rest length."""
+    with tempfile.TemporaryDirectory() as folder:
+        settings = style.parse_settings(style.settings_example.split())
+        coeff = style.parse_coeff(example_words(style, folder), settings)
+        out = Sample(style, style.pack(settings, {1: coeff}, 1, None))
+    length = float(coeff.get(style.equilibrium, 1.0)) if style.category == "bond" else 1.0
+    rng = np.random.default_rng(seed)
+    k, good = ATOMS[style.category], []
+    for _ in range(50 * ITEMS):
+        steps = rng.normal(size=(3, k))
+        steps *= length * rng.uniform(0.75, 1.3, k) / np.linalg.norm(steps, axis=0)
+        item = np.cumsum(steps, axis=1) + rng.uniform(0.2 * BOX, 0.8 * BOX, (3, 1))
+        if not out.run(item).bad[0]:
+            good.append(item)
+        if len(good) == ITEMS:
+            out.x = np.concatenate(good, axis=1)
+            return out
+    raise AssertionError(f"{style}: the example coefficients leave nearly every geometry outside the domain")
+
+
+def twin(style: Style, **variant) -> dict:
+    """The same module as plain Python: its names, `loop` and `evaluate` among them."""
+    names: dict = {}
+    exec(compile(re.sub(r"(?m)^@njit.*$", "", bonded.source(style, **variant).source()), f"<{style.name}>", "exec"), names)
+    return names
+
+
+def _close(style: Style, what: str, got, want, tolerance: float, scale=None) -> None:
+    got, want = np.asarray(got, float), np.asarray(want, float)
+    scale = max(np.abs(want).max(), 1e-300) if scale is None else scale
+    error = float(np.max(np.abs(got - want) / scale))
+    assert error <= tolerance, f"{style}: {what}: relative error {error:.2g} is above {tolerance:g}"
+
+
+def _derivative(function, step: float):
+    """Central difference of fourth order (fifth order terms are left out)."""
+    return (8.0 * (function(step) - function(-step)) - (function(2.0 * step) - function(-2.0 * step))) / (12.0 * step)
+
+
+def check_text(style: Style) -> None:
+    """Coefficients and settings survive being written and read again; a word too many and a word that is no number are refused."""
+    from asemd.errors import InputError
+    with tempfile.TemporaryDirectory() as folder:
+        words = example_words(style, folder)
+        for text in {"", style.settings_example}:
+            try:
+                settings = style.parse_settings(text.split())
+            except InputError:
+                assert text == "" and any(not p.optional for p in style.settings), f"{style}: settings {text!r} are refused"
+                continue
+            again = style.parse_settings(style.format_settings(settings))
+            assert again == settings, f"{style}: settings {settings} come back as {again}"
+            coeff = style.parse_coeff(words, settings)
+            back = style.parse_coeff(style.format_coeff(coeff), settings)
+            assert repr(back) == repr(coeff), f"{style}: coefficients {coeff} come back as {back}"
+            if style.name == "zero" and settings:
+                continue
+            wrong = [words + ["1.0"]] + ([["x"] + words[1:]] if words else [])
+            for line in wrong:
+                try:
+                    style.parse_coeff(line, settings)
+                except InputError:
+                    continue
+                raise AssertionError(f"{style}: the coefficients {' '.join(line)!r} are not refused")
+
+
+def check_slope(style: Style) -> None:
+    """The returned derivatives are those of the returned energy."""
+    s = sample(style)
+    evaluate = twin(style, energy=True, per_atom=True, periodic=False)["evaluate"]
+    names = bonded.ANGLE if style.category == "angle" else style.coordinates
+    rng = np.random.default_rng(3)
+    length = float(np.linalg.norm(s.x[:, 0] - s.x[:, 1]))
+    for _ in range(20):
+        values = [length * rng.uniform(0.9, 1.2) if n.startswith("r") else rng.uniform(0.2, 2.9) * (rng.choice([1, -1]) if n == "phi" else 1)
+                  for n in names]
+        answer = evaluate(*values, 1, s.packed.coeff, s.packed.arrays)
+        if not math.isfinite(answer[0]):
+            continue
+        assert len(answer) == len(names) + 1, f"{style}: the function must return the energy and {len(names)} derivatives"
+        for i, name in enumerate(names):
+            def energy(h, i=i, values=values):
+                return evaluate(*(v + h * (j == i) for j, v in enumerate(values)), 1, s.packed.coeff, s.packed.arrays)[0]
+            want = _derivative(energy, STEP)
+            if math.isfinite(want):
+                _close(style, f"dE/d{name} is not the derivative of the energy at {name} = {values[i]:.4g}", answer[1 + i], want, 1e-6,
+                       abs(want) + 1e-3 * abs(answer[0]) + 1e-9)
+
+
+def check_twin(style: Style) -> None:
+    """Compiled and plain Python give the same numbers, in every variant; forces do not depend on the variant."""
+    s = sample(style)
+    skewed = cell_arrays(np.array([[BOX, 0, 0], [0.4 * BOX, BOX, 0], [0.3 * BOX, -0.2 * BOX, BOX]]), np.ones(3, bool))
+    reference = s.run()
+    for energy, per_atom, periodic, orthogonal in ((True, True, False, True), (True, False, True, True), (False, False, True, False),
+                                                   (False, True, True, True), (False, False, False, True)):
+        cell = s.cell if orthogonal else skewed
+        x = s.x if not periodic else s.x + (cell.vectors.T @ np.random.default_rng(0).integers(-2, 3, s.x.shape))
+        variant = dict(energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal)
+        a, b = s.run(x, cell=cell, **variant), s.run(x, twin(style, **variant)["loop"], cell)
+        for name in ("forces", "acc", "energies", "virials", "bad"):
+            p, q = getattr(a, name), getattr(b, name)
+            _close(style, f"compiled and Python {name} differ for {variant}", p, q, 1e-13)
+        _close(style, f"forces differ for {variant}", a.forces, reference.forces, 1e-10)
+    total = np.append(reference.acc[0], reference.acc[2:])
+    shares = np.append(reference.energies.sum(), reference.virials.sum(axis=1))
+    _close(style, "shares of the atoms do not add up", shares, total, 1e-12, np.abs(total).max() + np.abs(reference.energies).sum())
+
+
+def check_invariance(style: Style) -> None:
+    """Energy and forces follow a rotation and a shift; a mirror image keeps the energy unless the style is chiral (not asked for)."""
+    s = sample(style)
+    q, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
+    q *= np.sign(np.linalg.det(q))
+    a, b = s.run(), s.run(q @ s.x + np.array([[3.0], [-7.0], [11.0]]))
+    scale = np.abs(a.forces).max() + 1e-300
+    _close(style, "the energy changes with a rotation", b.items, a.items, 1e-9, np.abs(a.items).max() + scale)
+    _close(style, "forces do not turn with the atoms", b.forces, q @ a.forces, 1e-9, scale)
+
+
+def check_balance(style: Style) -> None:
+    """Forces and torques of an item sum to zero, and the virial is the sum of position times force."""
+    s = sample(style)
+    a = s.run()
+    scale = np.abs(a.forces).max() + 1e-300
+    x, f = (v.reshape(3, ITEMS, -1) for v in (s.x, a.forces))
+    _close(style, "forces do not sum to zero", f.sum(axis=2), 0.0, 1e-13, scale)
+    local = x - x[:, :, :1]
+    _close(style, "torques do not sum to zero", np.cross(local, f, axis=0).sum(axis=2), 0.0, 1e-11, scale)
+    tensor = np.einsum("aik,bik->ab", local, f)
+    want = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+    _close(style, "the virial is not the sum of position times force", a.acc[2:], want, 1e-11, scale)
+
+
+def check_gradient(style: Style) -> None:
+    """Forces are minus the gradient of the energy."""
+    s = sample(style)
+    a = s.run()
+    k = ATOMS[style.category]
+    scale = np.abs(a.forces.reshape(3, ITEMS, k)).max(axis=(0, 2)) + 1e-6 * np.abs(a.items).max() + 1e-12
+    for atom in range(k):
+        for axis in range(3):
+            def energy(h, atom=atom, axis=axis):
+                x = s.x.copy()
+                x[axis, atom::k] += h
+                return s.run(x).items
+            _close(style, f"the force on atom {atom + 1} along {'xyz'[axis]} is not minus the gradient of the energy",
+                   a.forces[axis, atom::k], -_derivative(energy, STEP), 3e-6, scale)
+
+
+def check_virial(style: Style) -> None:
+    """The virial is minus the derivative of the energy by strain."""
+    s = sample(style)
+    a = s.run()
+    for i, (p, q) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+        def energy(h, p=p, q=q):
+            strain = np.eye(3)
+            strain[p, q] += 0.5 * h
+            strain[q, p] += 0.5 * h
+            return s.run(strain @ s.x).acc[0]
+        _close(style, f"virial {'xx yy zz xy xz yz'.split()[i]} is not minus the derivative by strain",
+               a.acc[2 + i], -_derivative(energy, STEP), 1e-5, np.abs(a.acc).max() + 1e-12)
+
+
+def check_singular(style: Style) -> None:
+    """On a line, in a plane and at one place an item either is reported or has finite forces that sum to zero."""
+    s = sample(style)
+    k = ATOMS[style.category]
+    line = np.zeros((3, k))
+    line[0] = [0.0, 1.0, 2.0, 3.0][:k]
+    back = np.zeros((3, k))
+    back[0] = [1.0, 0.0, 1.5, 0.2][:k]
+    plane = np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0], [0.0] * 4])[:, :k]
+    for x in (line, back, plane, plane[:, ::-1], np.zeros((3, k)), line * np.nan):
+        a = s.run(x)
+        if a.bad[0]:
+            assert not a.forces.any() and not a.acc.any(), f"{style}: a reported item leaves forces behind"
+            assert bonded.describe(style, a.bad[2], range(1, k + 1), 1).count("\n") == 0
+            continue
+        assert np.isfinite(a.forces).all() and np.isfinite(a.acc).all(), f"{style}: forces are not finite at {x.T.tolist()}"
+        _close(style, f"forces do not sum to zero at {x.T.tolist()}", a.forces.sum(axis=1), 0.0, 1e-13, np.abs(a.forces).max() + 1e-300)
+
+
+CHECKS = {"text": check_text, "slope": check_slope, "twin": check_twin, "invariance": check_invariance, "balance": check_balance,
+          "gradient": check_gradient, "virial": check_virial, "singular": check_singular}
+
+
+def checks_of(style: Style) -> list[str]:
+    """Names of the checks that apply: all but those the style excuses, and only ``text`` without forces."""
+    return [name for name in CHECKS if name not in style.xfail and (style.function is not None or name == "text")]
+
+
+def check_style(style: Style, checks: list[str] | None = None) -> None:
+    """Run the shipped checks on a bonded style.
+
+    Parameters
+    ----------
+    style : Style
+        From `asemd.style.find` or of your own.
+    checks : list of str, optional
+        Some of `CHECKS`; all that apply by default.
+
+    Raises
+    ------
+    AssertionError
+        Says which style does what wrong.
+    """
+    if style.category not in ATOMS:
+        raise ValueError(f"{style}: only bond, angle, dihedral and improper styles can be checked here")
+    for name in checks or checks_of(style):
+        CHECKS[name](style)
