@@ -30,6 +30,7 @@ Function bodies are compiled: only arithmetic, ``if``, and functions of ``math``
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import inspect
 import math
 import pkgutil
@@ -522,6 +523,23 @@ def names(category: str) -> list[str]:
     return sorted(n for c, n in _registry if c == category)
 
 
+def plain_name(name: str) -> str:
+    """A style's name without LAMMPS's accelerator suffixes."""
+    for suffix in ACCELERATED:
+        name = name.removesuffix(suffix)
+    return name
+
+
+def exists(category: str, name: str) -> bool:
+    """Whether there is a style of that name; imports its one file."""
+    if not re.match(r"[A-Za-z]", name):
+        return False
+    module = module_of(category, name)
+    if (category, name) not in _registry and importlib.util.find_spec(module) is not None:
+        importlib.import_module(module)
+    return (category, name) in _registry
+
+
 def find(category: str, name: str) -> Style:
     """The style of that LAMMPS name; imports its one file.
 
@@ -530,8 +548,7 @@ def find(category: str, name: str) -> Style:
     InputError
         Unknown style; the message offers the nearest match.
     """
-    for suffix in ACCELERATED:
-        name = name.removesuffix(suffix)
+    name = plain_name(name)
     if (category, name) not in _registry:
         module = module_of(category, name)
         try:

@@ -1,20 +1,20 @@
 r"""Energy and force read from a file.
 
-``pair_style table linear 1000`` and ``pair_coeff 1 2 file KEYWORD [cut]``. Cubic splines through the N values of the file give energy and
-force/r at as many points, equally spaced in r^2 (style bitmap: in r^2 rounded to single precision, as its leading bits), as ``pair_style``
-says; in between they are interpolated: ``lookup`` takes the value at the middle of the interval, ``linear`` and ``bitmap`` a line,
-``spline`` a cubic spline. The force is that of the file, not the derivative of the interpolated energy. A distance below the table is an error.
+``pair_style table linear 1000`` and ``pair_coeff 1 2 file KEYWORD [cut]``. Cubic splines through the values of the file give energy
+and force/r at the N points of ``pair_style``, equally spaced in r^2 (bitmap: at the 2^N values of r^2 in single precision whose trailing bits
+are zero). In between they are interpolated: ``lookup`` takes the value at the middle of the interval, ``linear`` and ``bitmap`` a line,
+``spline`` a cubic spline. The force is that of the file, not the derivative of the interpolated energy. A distance below the table is an
+error.
 """
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
 from asemd import tabulated, words
 from asemd.errors import InputError
-from asemd.style import PairStyle, PairTables, make_part, register
+from asemd.style import PairStyle, PairTables, register
 from asemd.tabulated import clamped_spline, cubic_coefficients, spline_value
 
 METHODS = ("lookup", "linear", "spline", "bitmap")

@@ -1,0 +1,359 @@
+"""Interactions: which styles act with which coefficients, as plain data in the units of the scene."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from asemd import modifiers
+from asemd import words as read
+from asemd.errors import InputError, nearest
+from asemd.pairing import PairTerm, check_complete, make_terms, reach
+from asemd.style import ATOMS, Style, exists, find, plain_name
+
+CATEGORIES = (*ATOMS, "pair")
+HYBRID = ("hybrid", "hybrid/overlay")
+
+
+@dataclass
+class Use:
+    """One style in use.
+
+    Attributes
+    ----------
+    style : Style
+    settings : dict
+        Values of the ``*_style`` command.
+    coeff : dict
+        Type (bonded) or (i, j), i <= j (pair) -> values by name, as given; angles in degrees.
+    label : str
+        The style's name; in a hybrid with the same style twice with a number, ``lj/cut 1``.
+    modify : dict
+        What ``pair_modify pair LABEL ...`` set for this sub-style alone.
+    """
+
+    style: Style
+    settings: dict[str, Any]
+    coeff: dict[Any, dict[str, Any]] = field(default_factory=dict)
+    label: str = ""
+    modify: dict[str, Any] = field(default_factory=dict)
+
+
+def _property(category: str) -> property:
+    def get(self):
+        uses = self.uses[category]
+        return uses if len(uses) > 1 else uses[0] if uses else None
+    return property(get, doc=f"The `Use` of the {category} style, a list of them for several, None without one.")
+
+
+@dataclass
+class Interactions:
+    """The force field of a scene.
+
+    Attributes
+    ----------
+    uses : dict
+        bond, angle, dihedral, improper, pair -> list of `Use`; empty: no such interactions.
+    hybrid : dict
+        Category -> ``""``, ``"hybrid"`` or ``"hybrid/overlay"``.
+    none : dict
+        Category -> types (or pairs of types) of a hybrid set to ``none``.
+    special_lj, special_coul : (float, float, float)
+        Factors of 1-2, 1-3 and 1-4 pairs.
+    special_angle, special_dihedral : bool
+        1-3 (1-4) pairs are special only if they are the ends of an angle (dihedral).
+    shift, tail : bool
+    mix : str or None
+        Rule of ``pair_modify mix``; None: each style's own.
+    compute : bool
+        False: ``pair_modify compute no``.
+    table : dict
+        ``pair_modify table tabinner table/disp tabinner/disp``, for styles with a long-range part.
+    compat : str
+        ``"lammps"``: LAMMPS's forces also where they are not minus the gradient of its energy.
+    dielectric : float
+    """
+
+    uses: dict[str, list[Use]] = field(default_factory=lambda: {c: [] for c in CATEGORIES})
+    hybrid: dict[str, str] = field(default_factory=lambda: dict.fromkeys(CATEGORIES, ""))
+    none: dict[str, set] = field(default_factory=lambda: {c: set() for c in CATEGORIES})
+    special_lj: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    special_coul: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    special_angle: bool = False
+    special_dihedral: bool = False
+    shift: bool = False
+    tail: bool = False
+    mix: str | None = None
+    compute: bool = True
+    table: dict[str, float] = field(default_factory=dict)
+    compat: str = ""
+    dielectric: float = 1.0
+
+    bond, angle, dihedral, improper, pair = map(_property, CATEGORIES)
+
+    def style_name(self, category: str) -> str:
+        """The name after ``*_style``: ``none``, a style or a hybrid."""
+        return self.hybrid[category] or (self.uses[category][0].style.name if self.uses[category] else "none")
+
+    # ------------------------------------------------------------------ styles and coefficients ---
+
+    def set_style(self, category: str, words: list[str]) -> None:
+        """``bond_style WORDS`` and its relatives.
+
+        The same pair style again keeps its coefficients and takes the new settings; everything else starts afresh.
+        """
+        command = f"{category}_style"
+        if not words:
+            raise InputError(f"{command} needs the name of a style")
+        name, rest = plain_name(words[0]), list(words[1:])
+        if name == "none":
+            if rest:
+                raise InputError(f"{command} none takes no arguments, got {' '.join(rest)}")
+            uses: list[Use] = []
+        elif name in HYBRID:
+            if name == "hybrid/overlay" and category != "pair":
+                raise InputError(f"unknown {category} style 'hybrid/overlay' (did you mean hybrid?)")
+            uses = self._sub_styles(category, name, rest)
+        else:
+            style = find(category, name)
+            uses = [Use(style, style.parse_settings(rest), label=name)]
+            old = self.uses[category]
+            if category == "pair" and not self.hybrid[category] and old and old[0].style is style:
+                uses[0].coeff = style.reset_cutoffs(old[0].coeff)
+                self.uses[category] = uses
+                return
+        self.uses[category], self.none[category] = uses, set()
+        self.hybrid[category] = name if name in HYBRID else ""
+        if category == "pair":
+            self.shift, self.tail, self.mix, self.compute, self.table = False, False, None, True, {}
+
+    @staticmethod
+    def _sub_styles(category: str, hybrid: str, words: list[str]) -> list[Use]:
+        command = f"{category}_style {hybrid}"
+        if not words:
+            raise InputError(f"{command} needs the names of its sub-styles")
+        groups: list[list[str]] = []
+        for word in words:
+            if not groups or exists(category, plain_name(word)):
+                groups.append([plain_name(word)])
+            else:
+                groups[-1].append(word)
+        uses = []
+        for name, *rest in groups:
+            if name in HYBRID or name == "none":
+                raise InputError(f"{command} cannot have {name} as a sub-style")
+            style = find(category, name)
+            uses.append(Use(style, style.parse_settings(rest), label=name))
+        names = [use.label for use in uses]
+        for k, use in enumerate(uses):
+            if names.count(names[k]) > 1:
+                if category != "pair":
+                    raise InputError(f"{command} cannot use the style {names[k]} twice")
+                use.label = f"{names[k]} {names[:k + 1].count(names[k])}"
+        return uses
+
+    def set_coeff(self, category: str, words: list[str], system) -> None:
+        """``bond_coeff WORDS`` and its relatives.
+
+        Raises
+        ------
+        InputError
+            No style yet, a type out of range, a wrong number of values, a value that makes no sense.
+        """
+        command = f"{category}_coeff"
+        if not self.uses[category]:
+            raise InputError(f"{command} command before {category}_style is defined")
+        width = 2 if category == "pair" else 1
+        if len(words) < width:
+            raise InputError(f"{command} needs {'two atom types' if width == 2 else f'a {category} type'} and coefficients")
+        kind = "atom" if category == "pair" else category
+        n = system.counts["ntypes" if category == "pair" else f"n{category}types"]
+        if n < 1:
+            raise InputError(f"{command}: there are no {kind} types")
+        ranges = [read.bounds(w, 1, n, f"{command}: {kind} type", system.labels.get(kind)) for w in words[:width]]
+        self.assign(category, type_keys(ranges, command), list(words[width:]))
+
+    def assign(self, category: str, keys: Iterable, words: list[str]) -> None:
+        """Give coefficients to types or pairs of types (i <= j); in a hybrid `words` begin with the sub-style."""
+        uses, keys = self.uses[category], list(keys)
+        use, command = uses[0], f"{category}_coeff"
+        if self.hybrid[category]:
+            if not words:
+                raise InputError(f"{command}: {category}_style {self.hybrid[category]} needs the name of a sub-style after the types")
+            name = plain_name(words[0])
+            if name == "none":
+                if len(words) > 1:
+                    raise InputError(f"{command}: none takes no coefficients, got {' '.join(words[1:])}")
+                for key in keys:
+                    self._forget(category, key)
+                    self.none[category].add(key)
+                return
+            if name == "skip" and category in ("angle", "dihedral", "improper"):
+                return
+            use, words = self.sub_style(category, name, words[1:])
+        values = use.style.parse_coeff(words, use.settings)
+        for key in keys:
+            if self.hybrid[category] != "hybrid/overlay":
+                self._forget(category, key)
+            self.none[category].discard(key)
+            use.coeff[key] = dict(values)
+
+    def sub_style(self, category: str, name: str, words: list[str]) -> tuple[Use, list[str]]:
+        """The sub-style named in a coefficient line, and the words after its name (and number)."""
+        command, same = f"{category}_coeff", [u for u in self.uses[category] if u.style.name == name]
+        if not same:
+            known = [u.style.name for u in self.uses[category]]
+            raise InputError(f"{command}: expected a sub-style of {category}_style {self.hybrid[category]}, one of {' '.join(known)}, "
+                             f"got {name!r}{nearest(name, known)}")
+        if len(same) == 1:
+            return same[0], words
+        if not words or words[0] not in map(str, range(1, len(same) + 1)):
+            raise InputError(f"{command}: {name} is listed {len(same)} times, its name must be followed by a number from 1 to {len(same)}")
+        return same[int(words[0]) - 1], words[1:]
+
+    def _forget(self, category: str, key) -> None:
+        for use in self.uses[category]:
+            use.coeff.pop(key, None)
+
+    # ------------------------------------------------------------------------------ modifiers ---
+
+    def modify_pair(self, words: list[str]) -> None:
+        """``pair_modify WORDS``."""
+        modifiers.modify_pair(self, words)
+
+    def modified(self, use: Use, keyword: str):
+        """``shift``, ``tail``, ``mix`` or ``compute`` as it holds for one sub-style."""
+        return use.modify.get(keyword, getattr(self, keyword))
+
+    def set_special(self, words: list[str]) -> None:
+        """``special_bonds WORDS``; what is not said goes back to its default."""
+        modifiers.set_special(self, words)
+
+    def special_pairs(self, system) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs of rows (m, 2) and kinds (m,) in 1, 2, 3 that the special factors act on."""
+        return system.topology.special(system.n, self.special_angle, self.special_dihedral)
+
+    # ------------------------------------------------------------------------------- for engines ---
+
+    def pair_terms(self, ntypes: int, units) -> list[PairTerm]:
+        """The pair styles with the coefficients of all type pairs, mixed and shifted.
+
+        Raises
+        ------
+        InputError
+            A pair of types has no coefficients.
+        """
+        return make_terms(self, ntypes, units)
+
+    def tail_correction(self, system, units) -> tuple[float, float]:
+        """Energy and pressure of ``pair_modify tail yes``, in units of the scene."""
+        parts = [term.tail(system, units) for term in self.pair_terms(system.counts["ntypes"], units)]
+        return sum(e for e, _ in parts), sum(p for _, p in parts)
+
+    def cutoff(self, ntypes: int, units) -> float:
+        """The largest distance at which a pair style wants to know about pairs."""
+        return reach(self, ntypes)
+
+    def check_complete(self, system) -> None:
+        """See `asemd.pairing.check_complete`."""
+        check_complete(self, system)
+
+    # ------------------------------------------------------------------------------- written back ---
+
+    def style_line(self, category: str) -> list[str]:
+        """Words after ``*_style`` that make the styles again."""
+        out = [self.hybrid[category]] if self.hybrid[category] else []
+        for use in self.uses[category]:
+            out += [use.style.name, *use.style.format_settings(use.settings)]
+        return out or ["none"]
+
+    def coeff_lines(self, category: str) -> list[list[str]]:
+        """Words after ``*_coeff`` of all lines that make the coefficients again, sorted by type."""
+        lines = [(key, -1, [*_words_of(key), "none"]) for key in self.none[category]]
+        for k, use in enumerate(self.uses[category]):
+            name = use.label.split() if self.hybrid[category] else []
+            lines += [(key, k, [*_words_of(key), *name, *use.style.format_coeff(c)]) for key, c in use.coeff.items()]
+        return [line for _, _, line in sorted(lines, key=lambda entry: entry[:2])]
+
+    def modify_lines(self) -> list[list[str]]:
+        """Words after ``pair_modify`` of all lines that make its settings again."""
+        if not self.uses["pair"]:
+            return []
+        out = [["shift", _yes(self.shift), "tail", _yes(self.tail), "compute", _yes(self.compute)]]
+        out[0] += ["mix", self.mix] if self.mix else []
+        for name, value in self.table.items():
+            out[0] += [name, repr(value)]
+        for use in self.uses["pair"]:
+            words = [w for k, v in use.modify.items() for w in (k, v if k == "mix" else _yes(v))]
+            if words:
+                out.append(["pair", *use.label.split(), *words])
+        return out
+
+    def special_line(self) -> list[str]:
+        """Words after ``special_bonds``."""
+        return ["lj", *map(repr, self.special_lj), "coul", *map(repr, self.special_coul),
+                "angle", _yes(self.special_angle), "dihedral", _yes(self.special_dihedral)]
+
+    @classmethod
+    def build(cls, *, bond=None, angle=None, dihedral=None, improper=None, pair=None, special_bonds: str | Mapping[str, Any] = "",
+              dielectric: float = 1.0, shift: bool = False, tail: bool = False, mix: str | None = None,
+              labels: Mapping[str, Mapping[int, str]] | None = None, compat: str = "") -> Interactions:
+        """Interactions from Python, in the units of the scene (ASE's for a scene without a script), angles in degrees.
+
+        Parameters
+        ----------
+        bond, angle, dihedral, improper : mapping, optional
+            Style -> {type: values}, as ``{"harmonic": {1: (K, r0)}}``; values are a number, a sequence in the order of the style's
+            coefficients, a mapping by name, or LAMMPS's words as a string. Several styles make a hybrid.
+        pair : mapping, optional
+            Style, settings included, -> {(type, type): values}, as ``{"lj/cut 10.0": {(1, 1): (0.01, 3.4)}}``, or style ->
+            ``{"settings": (10.0,), "coeff": {...}}``. Several styles make a hybrid, an overlay if they share type pairs.
+        special_bonds : str or mapping, optional
+            Words of the command (``"amber"``), or factors ``{"lj": (0, 0, 0.5), "coul": (0, 0, 0.8)}``.
+        dielectric, shift, tail, mix, compat
+            As the attributes.
+        labels : mapping, optional
+            kind (atom bond angle dihedral improper) -> {type: label}; labels may then stand for types.
+
+        Raises
+        ------
+        InputError
+            An unknown style, a wrong number of values, an unknown label.
+        """
+        from asemd.native import fill
+        out = cls(dielectric=dielectric, compat=compat)
+        given = {"bond": bond, "angle": angle, "dihedral": dihedral, "improper": improper, "pair": pair}
+        for category, styles in given.items():
+            if styles:
+                fill(out, category, styles, (labels or {}).get("atom" if category == "pair" else category, {}))
+        out.shift, out.tail = bool(shift), bool(tail)
+        out.mix = None if mix is None else read.choice(mix, modifiers.MIX_RULES, "mix")
+        if special_bonds:
+            named = special_bonds.split() if isinstance(special_bonds, str) else [
+                str(w) for k, v in special_bonds.items() for w in (k, *(v if isinstance(v, (tuple, list)) else [_yes(v)]))]
+            out.set_special(named)
+        return out
+
+
+def type_keys(ranges: list[tuple[int, int]], command: str) -> list:
+    """Types of one range, or pairs (i, j), i <= j, of two; two single types may come in either order."""
+    (a, b), *rest = ranges
+    if not rest:
+        return list(range(a, b + 1))
+    c, d = rest[0]
+    if a == b and c == d:
+        return [(min(a, c), max(a, c))]
+    keys = [(i, j) for i in range(a, b + 1) for j in range(max(i, c), d + 1)]
+    if not keys:
+        raise InputError(f"{command}: no pair of types i <= j in these ranges")
+    return keys
+
+
+def _words_of(key) -> list[str]:
+    return [str(k) for k in key] if isinstance(key, tuple) else [str(key)]
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"

@@ -1,0 +1,7 @@
+"""``angle_coeff TYPE values``"""
+from __future__ import annotations
+
+
+def run(session, args):
+    scene = session.scene
+    scene.interactions.set_coeff("angle", args, scene.need_system("angle_coeff"))

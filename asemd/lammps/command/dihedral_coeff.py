@@ -1,0 +1,7 @@
+"""``dihedral_coeff TYPE values``"""
+from __future__ import annotations
+
+
+def run(session, args):
+    scene = session.scene
+    scene.interactions.set_coeff("dihedral", args, scene.need_system("dihedral_coeff"))

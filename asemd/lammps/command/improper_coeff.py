@@ -1,0 +1,7 @@
+"""``improper_coeff TYPE values``"""
+from __future__ import annotations
+
+
+def run(session, args):
+    scene = session.scene
+    scene.interactions.set_coeff("improper", args, scene.need_system("improper_coeff"))

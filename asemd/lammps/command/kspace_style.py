@@ -1,0 +1,27 @@
+"""``kspace_style none``: there is no long-range solver yet, so every other style is refused with what to use instead."""
+from __future__ import annotations
+
+from asemd.errors import InputError, nearest
+from asemd.style import plain_name
+
+PERIODIC = ("ewald", "ewald/disp", "ewald/dipole", "pppm", "pppm/cg", "pppm/disp", "pppm/tip4p", "pppm/disp/tip4p", "pppm/stagger", "pppm/dipole")
+ANY_BOX = ("msm", "msm/cg", "scafacos")
+
+
+def run(session, args):
+    if not args:
+        raise InputError("kspace_style needs the name of a style")
+    name = plain_name(args[0])
+    if name == "none":
+        if len(args) > 1:
+            raise InputError(f"kspace_style none takes no arguments, got {' '.join(args[1:])}")
+        return
+    if name not in PERIODIC + ANY_BOX:
+        raise InputError(f"unknown kspace style {name!r}{nearest(name, ('none', *PERIODIC, *ANY_BOX))}")
+    scene = session.scene
+    boundary = scene.system.box.boundary if scene.system is not None else scene.boundary
+    if name in PERIODIC and any(face != "pp" for face in boundary):
+        raise InputError(f"kspace_style {name} needs a box that is periodic in all directions, the boundary is {' '.join(boundary)}; "
+                         "asemd has no long-range solver yet: use a pair style with a Coulomb cutoff such as lj/cut/coul/cut")
+    raise InputError(f"kspace_style {name} is not supported yet: asemd has no long-range solver; "
+                     "use a pair style with a Coulomb cutoff such as lj/cut/coul/cut, or kspace_style none")

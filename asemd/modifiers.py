@@ -1,0 +1,95 @@
+"""Settings that change how pair interactions count: ``pair_modify`` and ``special_bonds``."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from asemd import words as read
+from asemd.errors import InputError, nearest
+from asemd.style import plain_name
+
+if TYPE_CHECKING:
+    from asemd.forcefield import Interactions
+
+KEYWORDS = ("pair", "shift", "tail", "compute", "mix", "table", "table/disp", "tabinner", "tabinner/disp", "nofdotr", "neigh/trim")
+MIX_RULES = ("geometric", "arithmetic", "sixthpower")
+FACTORS = {          # special_bonds NAME -> Lennard-Jones and Coulomb factors of 1-2, 1-3, 1-4 pairs
+    "amber": ((0.0, 0.0, 0.5), (0.0, 0.0, 5.0 / 6.0)),
+    "charmm": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    "dreiding": ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)),
+    "fene": ((0.0, 1.0, 1.0), (0.0, 1.0, 1.0)),
+}
+
+
+def modify_pair(interactions: Interactions, words: list[str]) -> None:
+    """``pair_modify WORDS``."""
+    if not interactions.uses["pair"]:
+        raise InputError("pair_modify command before pair_style is defined")
+    if not words:
+        raise InputError("pair_modify needs a keyword")
+    words, target = list(words), None
+    if words[0] == "pair":
+        if not interactions.hybrid["pair"] or len(words) < 2:
+            raise InputError("pair_modify pair needs pair_style hybrid and the name of a sub-style")
+        target, words = interactions.sub_style("pair", plain_name(words[1]), words[2:])
+    while words:
+        keyword, *words = words
+        what = f"pair_modify {keyword}"
+        if keyword == "nofdotr":      # how the virial is summed, not what it is
+            continue
+        if keyword == "special":
+            raise InputError("pair_modify special is not supported: all sub-styles follow special_bonds")
+        value = read.take(words, 1, what)[0]
+        words = words[1:]
+        if keyword in ("shift", "tail", "compute", "neigh/trim"):
+            new: Any = read.yes_no(value, what)
+            if keyword == "neigh/trim":       # only makes lists of sub-styles shorter
+                continue
+        elif keyword == "mix":
+            new = read.choice(value, MIX_RULES, what)
+        elif keyword in ("table", "table/disp", "tabinner", "tabinner/disp"):
+            new = read.whole(value, what) if keyword.startswith("table") else read.number(value, what)
+            if new < 0:
+                raise InputError(f"{what} must not be negative, got {value}")
+            interactions.table[keyword] = new
+            continue
+        else:
+            raise InputError(f"unknown pair_modify keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
+        if target is not None:
+            target.modify[keyword] = new
+        else:
+            setattr(interactions, keyword, new)
+            for use in interactions.uses["pair"]:
+                use.modify.pop(keyword, None)
+
+
+def set_special(interactions: Interactions, words: list[str]) -> None:
+    """``special_bonds WORDS``; what is not said goes back to its default."""
+    if not words:
+        raise InputError("special_bonds needs a keyword")
+    lj = coul = (0.0, 0.0, 0.0)
+    flags = {"angle": False, "dihedral": False}
+    words = list(words)
+    while words:
+        keyword, *words = words
+        what = f"special_bonds {keyword}"
+        if keyword in FACTORS:
+            lj, coul = FACTORS[keyword]
+        elif keyword in ("lj", "coul", "lj/coul"):
+            three = tuple(read.number(w, what) for w in read.take(words, 3, what))
+            words = words[3:]
+            if any(not 0.0 <= w <= 1.0 for w in three):
+                raise InputError(f"{what}: factors must be between 0 and 1, got {' '.join(f'{w:g}' for w in three)}")
+            lj = three if keyword != "coul" else lj
+            coul = three if keyword != "lj" else coul
+        elif keyword in flags:
+            flags[keyword] = read.yes_no(read.take(words, 1, what)[0], what)
+            words = words[1:]
+        elif keyword == "extra":       # room for bonds made later; lists grow by themselves here
+            read.whole(read.take(words, 1, what)[0], what)
+            words = words[1:]
+        elif keyword in ("one/five", "hybrid"):
+            raise InputError(f"{what} is not supported")
+        else:
+            raise InputError(f"unknown special_bonds keyword {keyword!r}{nearest(keyword, (*FACTORS, 'lj', 'coul', 'lj/coul', *flags))}")
+    interactions.special_lj, interactions.special_coul = lj, coul
+    interactions.special_angle, interactions.special_dihedral = flags["angle"], flags["dihedral"]

@@ -1,0 +1,77 @@
+"""Interactions given as Python mappings instead of LAMMPS commands."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from asemd.errors import InputError, nearest
+from asemd.style import find, plain_name
+
+if TYPE_CHECKING:
+    from asemd.forcefield import Interactions
+
+
+def fill(interactions: Interactions, category: str, styles: Mapping[str, Any], labels: Mapping[int, str]) -> None:
+    """Set styles and coefficients of one category; see `asemd.forcefield.Interactions.build`."""
+    entries = []
+    for title, content in styles.items():
+        name, *settings = title.split()
+        if isinstance(content, Mapping) and not set(content) - {"settings", "coeff"} and content:
+            settings += text(content.get("settings", ()))
+            content = content.get("coeff", {})
+        coeff = {key_of(key, category, labels): values for key, values in content.items()}
+        entries.append((plain_name(name), settings, coeff))
+    if len(entries) == 1:
+        interactions.set_style(category, [entries[0][0], *entries[0][1]])
+    else:
+        keys = [key for _, _, coeff in entries for key in coeff]
+        overlay = "/overlay" if category == "pair" and len(keys) > len(set(keys)) else ""
+        interactions.set_style(category, ["hybrid" + overlay, *(w for name, settings, _ in entries for w in (name, *settings))])
+    for use, (name, _, coeff) in zip(interactions.uses[category], entries, strict=False):
+        for key, values in coeff.items():
+            prefix = use.label.split() if interactions.hybrid[category] else []
+            interactions.assign(category, [key], prefix + text(values, find(category, name)))
+
+
+def key_of(key, category: str, labels: Mapping[int, str]):
+    """A type, or a pair of types with the smaller one first, from numbers or labels."""
+    if category != "pair":
+        return number(key, category, labels)
+    pair = key if isinstance(key, tuple) else (key, key)
+    if len(pair) != 2:
+        raise InputError(f"pair coefficients need a pair of atom types, got {key!r}")
+    i, j = (number(k, "atom", labels) for k in pair)
+    return (min(i, j), max(i, j))
+
+
+def number(key, kind: str, labels: Mapping[int, str]) -> int:
+    """The type that a number or a label means."""
+    for value, label in labels.items():
+        if key == label:
+            return int(value)
+    try:
+        value = int(key)
+    except (TypeError, ValueError):
+        raise InputError(f"unknown {kind} type label {key!r}{nearest(str(key), labels.values())}") from None
+    if value < 1 or value != key:
+        raise InputError(f"{kind} types are whole numbers from 1, got {key!r}")
+    return value
+
+
+def text(values, style=None) -> list[str]:
+    """Values as LAMMPS's words; a mapping goes by the names of the style's coefficients."""
+    if isinstance(values, Mapping):
+        names = [p.name for p in style.coeff] if style else list(values)
+        for name in values:
+            if name not in names:
+                raise InputError(f"{style.category} style {style.name} has no coefficient {name!r}{nearest(name, names)}")
+        names = [n for n in names if n in values]
+        if style and names != [p.name for p in style.coeff][:len(names)]:
+            raise InputError(f"{style.category} style {style.name}: give the coefficients in order, without gaps: "
+                             f"{' '.join(p.name for p in style.coeff)}")
+        values = [values[n] for n in names]
+    if isinstance(values, str):
+        return values.split()
+    if not hasattr(values, "__iter__"):
+        values = (values,)
+    return [repr(float(v)) if isinstance(v, float) else str(v) for v in values]

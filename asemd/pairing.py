@@ -1,0 +1,144 @@
+"""From pair styles and coefficients to tables for all pairs of types; what is missing is said here."""
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from asemd.errors import InputError, InputWarning
+from asemd.style import PairStyle, PairTables, missing_pairs
+
+if TYPE_CHECKING:
+    from asemd.forcefield import Interactions, Use
+
+
+@dataclass
+class PairTerm:
+    """A pair style ready for kernels.
+
+    Attributes
+    ----------
+    style : PairStyle
+        The style whose parts are computed.
+    tables : PairTables
+    filled : dict
+        (i, j) -> complete coefficients, mixed ones included.
+    """
+
+    use: Use
+    style: PairStyle
+    tables: PairTables
+    filled: dict[tuple[int, int], dict[str, Any]]
+    label: str
+    has_tail: bool
+
+    def tail(self, system, units) -> tuple[float, float]:
+        """Long-range correction of this term: energy, and pressure in the pressure units of the scene; zero without ``tail yes``."""
+        if not self.has_tail or self.style.tail is None:
+            return 0.0, 0.0
+        count = np.bincount(system.type, minlength=system.counts["ntypes"] + 1)
+        energy = pressure = 0.0
+        for (i, j), c in self.filled.items():
+            cut = self.style.cutoffs(c, self.use.settings)[0]
+            pairs = float(count[i]) * float(count[j]) * (1.0 if i == j else 2.0)
+            if cut > 0.0 and pairs:
+                e, p = self.style.tail(c, cut)
+                energy, pressure = energy + pairs * e, pressure + pairs * p
+        volume = system.box.volume
+        return energy / volume, pressure / volume**2 * units.nktv2p
+
+
+def assignment(interactions: Interactions, ntypes: int) -> list[set[tuple[int, int]]]:
+    """The pairs of types that each sub-style of a hybrid serves.
+
+    A pair i-j without coefficients goes to the sub-style of i-i and j-j, if both have the same one and no other.
+
+    Raises
+    ------
+    InputError
+        A pair belongs to no sub-style.
+    """
+    uses, none = interactions.uses["pair"], interactions.none["pair"]
+    served: list[set[tuple[int, int]]] = [set() for _ in uses]
+    missing = []
+    for i in range(1, ntypes + 1):
+        for j in range(i, ntypes + 1):
+            owners = [k for k, use in enumerate(uses) if (i, j) in use.coeff]
+            if not owners and (i, j) not in none:
+                a, b = ([k for k, use in enumerate(uses) if (t, t) in use.coeff] for t in (i, j))
+                if i == j or len(a) != 1 or a != b:
+                    missing.append((i, j))
+                owners = a
+            for k in owners:
+                served[k].add((i, j))
+    if missing:
+        raise InputError(missing_pairs(missing))
+    return served
+
+
+def complete(interactions: Interactions, ntypes: int) -> list[tuple[Use, dict[tuple[int, int], dict[str, Any]]]]:
+    """Each pair style with complete coefficients of the pairs it serves."""
+    uses = interactions.uses["pair"]
+    served = assignment(interactions, ntypes) if interactions.hybrid["pair"] else [None] * len(uses)
+    return [(use, use.style.filled(use.coeff, use.settings, ntypes, interactions.modified(use, "mix"), only))
+            for use, only in zip(uses, served, strict=True)]
+
+
+def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]:
+    """See `asemd.forcefield.Interactions.pair_terms`."""
+    out = []
+    for use, filled in complete(interactions, ntypes):
+        if interactions.modified(use, "compute"):
+            shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
+            style = use.style.variant(use.settings, interactions.compat)
+            out.append(PairTerm(use, style, style.pack_pairs(use.settings, filled, ntypes, units, shift), filled, use.label, tail))
+    return out
+
+
+def reach(interactions: Interactions, ntypes: int) -> float:
+    """The largest distance at which a pair style wants to know about pairs."""
+    return max((use.style.reach(c, use.settings) for use, filled in complete(interactions, ntypes) for c in filled.values()), default=0.0)
+
+
+def check_complete(interactions: Interactions, system) -> None:
+    """Whether a run can start: every type in use has coefficients, and the styles get what they need.
+
+    Warns (`asemd.errors.InputWarning`) where ``pair_modify tail yes`` has no effect.
+
+    Raises
+    ------
+    InputError
+        Coefficients are missing, a sub-style of a hybrid is not used, atoms have no charges, the dihedral style wants 1-4 coefficients that
+        the pair style does not have, shift and tail are both on, tail in two dimensions.
+    """
+    for category, uses in interactions.uses.items():
+        if interactions.hybrid[category]:
+            for use in uses:
+                if not use.coeff:
+                    raise InputError(f"{category}_style {interactions.hybrid[category]}: sub-style {use.label} is not used by any "
+                                     f"{category}_coeff: leave it out")
+        if category != "pair" and uses:
+            known = interactions.none[category].union(*(use.coeff for use in uses))
+            missing = sorted({int(t) for t in np.unique(system.topology.items(category)[1])} - known)
+            if missing:
+                raise InputError(f"All {category} coeffs are not set: {category}_coeff for {category} type "
+                                 f"{', '.join(map(str, missing))} is missing")
+    complete(interactions, system.counts["ntypes"])
+    for use in interactions.uses["pair"]:
+        if use.style.charged and system.q is None:
+            raise InputError(f"pair style {use.style.name} needs atom attribute q: use atom_style charge or full")
+        if interactions.modified(use, "tail"):
+            if interactions.modified(use, "shift"):
+                raise InputError("pair_modify shift and tail cannot both be yes")
+            if system.dimension == 2:
+                raise InputError("pair_modify tail yes cannot be used in two dimensions")
+            if use.style.tail is None and use.style.parts:
+                warnings.warn(f"pair_modify tail yes has no effect on pair style {use.style.name}", InputWarning, stacklevel=2)
+    for use in interactions.uses["dihedral"]:
+        weight = use.style.weight_14
+        if weight and any(c.get(weight, 0.0) for c in use.coeff.values()):
+            if not any(hasattr(u.style, "one_four") for u in interactions.uses["pair"]):
+                raise InputError(f"dihedral style {use.style.name} with a weight that is not 0 needs a pair style with 1-4 coefficients, "
+                                 "such as lj/charmm/coul/charmm")
