@@ -1,0 +1,70 @@
+"""``create_box N region-ID keyword values ...``"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.box import Box
+from asemd.errors import InputError, nearest
+from asemd.region.prism import Prism
+from asemd.system import COUNTS, MOLECULAR_STYLES, System
+from asemd.words import take, whole
+
+CHARGED = ("charge", "full")
+KEYWORDS = {**{f"{kind}/types": f"n{kind}types" for kind in ("bond", "angle", "dihedral", "improper")},
+            **{name.replace("_", "/"): name for name in COUNTS if name.startswith("extra_")}}
+
+
+def run(session, args):
+    scene = session.scene
+    if scene.system is not None:
+        raise InputError("create_box: the simulation box is defined already, use clear first")
+    count, name = take(args, 2, "create_box")[:2]
+    counts = {"ntypes": whole(count, "create_box: number of atom types")}
+    if counts["ntypes"] < 1:
+        raise InputError(f"create_box: the number of atom types must be positive, got {count}")
+    if name == "NULL":
+        raise InputError("create_box NULL (general triclinic boxes) is not supported: use a region of style prism")
+    if name not in scene.regions:
+        raise InputError(f"create_box: unknown region {name!r}{nearest(name, scene.regions)}")
+    words = args[2:]
+    while words:
+        key, what = words[0], f"create_box {words[0]}"
+        if key not in KEYWORDS:
+            raise InputError(f"create_box: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
+        if scene.atom_style not in MOLECULAR_STYLES:
+            raise InputError(f"{what}: atom_style {scene.atom_style} has no bonds")
+        value = whole(take(words[1:], 1, what)[0], what)
+        if value < 0:
+            raise InputError(f"{what}: must not be negative, got {value}")
+        counts[KEYWORDS[key]], words = value, words[2:]
+    empty = np.zeros(0)
+    scene.system = System(box=_box(scene, scene.regions[name]), x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
+                          q=empty if scene.atom_style in CHARGED else None, atom_style=scene.atom_style, dimension=scene.dimension,
+                          step=scene.step)
+    session.print(f"Created {describe(scene.system.box)}")
+    session.print("  1 by 1 by 1 MPI processor grid")
+
+
+def _box(scene, region) -> Box:
+    extent = region.extent()
+    if extent is None:
+        raise InputError(f"create_box: region {region.id} has no bounds (side out, or a plane), use a block or prism")
+    tilt, lo, hi = (0.0, 0.0, 0.0), *extent
+    triclinic = isinstance(region, Prism)
+    if triclinic:
+        tilt, lo, hi = region.tilt, region.lo, region.hi
+        periodic = [b == "pp" for b in scene.boundary]
+        for value, name, b in zip(tilt, ("xy", "xz", "yz"), (1, 2, 2)):
+            if value and not periodic[b]:
+                raise InputError(f"create_box: with tilt {name} the direction {'xyz'[b]} must be periodic")
+            if scene.dimension == 2 and value and name != "xy":
+                raise InputError(f"create_box: a 2d box must have {name} = 0")
+    if scene.dimension == 2 and not (lo[2] < 0.0 < hi[2]):
+        raise InputError(f"create_box: a 2d box must have z = 0 between zlo {lo[2]:g} and zhi {hi[2]:g}")
+    return Box.from_lammps(lo, hi, tilt, scene.boundary, triclinic)
+
+
+def describe(box: Box) -> str:
+    """The box as logs have it."""
+    lo, hi, tilt = (" ".join(f"{v:.8g}" for v in values) for values in (box.lo, box.hi, box.tilt))
+    return f"triclinic box = ({lo}) to ({hi}) with tilt ({tilt})" if box.triclinic else f"orthogonal box = ({lo}) to ({hi})"

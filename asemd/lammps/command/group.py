@@ -1,0 +1,116 @@
+"""``group ID style args``"""
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from asemd.errors import InputError, nearest
+from asemd.words import bounds, take, whole
+
+LOGICAL = {"<": np.less, ">": np.greater, "<=": np.less_equal, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal, "<>": None}
+STYLES = ("delete", "clear", "empty", "region", "id", "type", "molecule", "variable", "include", "subtract", "union", "intersect")
+
+
+def run(session, args):
+    scene = session.scene
+    system = scene.need_system("group")
+    scene.sync_groups()
+    name, style = take(args, 2, "group")[:2]
+    words, groups, what = args[2:], scene.groups, f"group {name} {style}"
+    if style in ("dynamic", "static"):
+        raise InputError(f"{what} is not supported: only groups that do not change by themselves exist")
+    if style not in STYLES:
+        raise InputError(f"group {name}: unknown style {style!r}{nearest(style, STYLES)}")
+    if not re.fullmatch(r"[\w-]+", name):
+        raise InputError(f"group name {name!r} must have only letters, digits, - and _")
+    if style in ("delete", "clear"):
+        _remove(scene, name, style, what)
+        return
+    old = groups[name] if name in groups else np.zeros(system.n, bool)
+    groups[name] = old | _members(session, system, old, style, words, what)
+    session.print(f"{int(groups[name].sum())} atoms in group {name}")
+
+
+def _remove(scene, name: str, style: str, what: str) -> None:
+    groups = scene.groups
+    if name == "all":
+        raise InputError(f"{what}: the group all cannot be changed")
+    if name not in groups:
+        if style == "clear":
+            groups[name] = np.zeros(scene.system.n, bool)
+            return
+        raise InputError(f"{what}: there is no such group{nearest(name, groups)}")
+    if style == "clear":
+        groups[name] = np.zeros(scene.system.n, bool)
+        return
+    for kind, table in (("fix", scene.fixes), ("compute", scene.computes), ("dump", scene.dumps)):
+        for id, user in table.items():
+            if getattr(user, "group", None) == name:
+                raise InputError(f"{what}: {kind} {id} uses this group, remove it first")
+    del groups[name]
+
+
+def _members(session, system, old: np.ndarray, style: str, words: list[str], what: str) -> np.ndarray:
+    scene = session.scene
+    if style == "empty":
+        return np.zeros(system.n, bool)
+    take(words, 1, what)
+    if style == "region":
+        if words[0] not in scene.regions:
+            raise InputError(f"{what}: unknown region {words[0]!r}{nearest(words[0], scene.regions)}")
+        return scene.regions[words[0]].inside(system.x)
+    if style == "variable":
+        return session.variables.per_atom(words[0].removeprefix("v_"), system.n) != 0.0
+    if style == "include":
+        if words[0] != "molecule":
+            raise InputError(f"{what}: expected molecule, got {words[0]!r}")
+        _need_molecules(system, what)
+        return np.isin(system.molecule, system.molecule[old & (system.molecule > 0)])
+    if style in ("subtract", "union", "intersect"):
+        masks = [scene.groups.mask(w, what) for w in words]
+        if style == "subtract":
+            return masks[0] & ~np.logical_or.reduce([np.zeros(system.n, bool), *masks[1:]])
+        return (np.logical_or if style == "union" else np.logical_and).reduce(masks)
+    if style == "molecule":
+        _need_molecules(system, what)
+    labels = system.labels["atom"] if style == "type" else {}
+    return _selected(getattr(system, style), words, labels, system.counts["ntypes"] if style == "type" else None, what)
+
+
+def _need_molecules(system, what: str) -> None:
+    if not system.molecular:
+        raise InputError(f"{what}: atom_style {system.atom_style} has no molecules")
+
+
+def _selected(values: np.ndarray, words: list[str], labels: dict[int, str], count: int | None, what: str) -> np.ndarray:
+    """Which values a list of numbers, labels and sequences A:B:C names, or a comparison."""
+    if words[0] in LOGICAL:
+        need = 2 if words[0] == "<>" else 1
+        limits = [_number(w, labels, what) for w in take(words[1:], need, what)]
+        if len(words) != 1 + need:
+            raise InputError(f"{what} {words[0]} needs {need} value{'s' * (need > 1)}, got {len(words) - 1}")
+        if words[0] == "<>":
+            return (values >= limits[0]) & (values <= limits[1])
+        return LOGICAL[words[0]](values, limits[0])
+    found = np.zeros(len(values), bool)
+    for word in words:
+        sequence = re.fullmatch(r"(-?\d+):(-?\d+)(?::(\d+))?", word)
+        if sequence:
+            first, last, step = int(sequence[1]), int(sequence[2]), int(sequence[3] or 1)
+            if step < 1 or last < first:
+                raise InputError(f"{what}: {word} is not a sequence start:end:step")
+            found |= (values >= first) & (values <= last) & ((values - first) % step == 0)
+        elif "*" in word and count is not None:
+            first, last = bounds(word, 1, count, what, labels)
+            found |= (values >= first) & (values <= last)
+        else:
+            found |= values == _number(word, labels, what)
+    return found
+
+
+def _number(word: str, labels: dict[int, str], what: str) -> int:
+    for number, label in labels.items():
+        if label == word:
+            return number
+    return whole(word, what)

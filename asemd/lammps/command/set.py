@@ -1,0 +1,143 @@
+"""``set style ID keyword values ...``"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError, nearest
+from asemd.random import position_seeds, uniform_at
+from asemd.words import bounds, number, take, whole
+
+LARGEST = 2**62     # no id is above
+KEYWORDS = {"type": 1, "type/fraction": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1, "charge": 1, "mass": 1, "image": 3,
+            "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
+
+
+def run(session, args):
+    scene = session.scene
+    system = scene.need_system("set")
+    scene.sync_groups()
+    style, name = take(args, 2, "set")[:2]
+    mask = _selected(scene, system, style, name)
+    words = args[2:]
+    if not words:
+        raise InputError("set needs a keyword, for example: set type 1 charge 0.5")
+    session.print("Setting atom values ...")
+    while words:
+        key, what = words[0], f"set {words[0]}"
+        if key not in KEYWORDS:
+            raise InputError(f"set: keyword {key!r} is unknown or not supported{nearest(key, KEYWORDS)}")
+        values = take(words[1:], KEYWORDS[key], what)
+        count = Setter(session, system, mask, what).apply(key, values)
+        session.print(f"  {count} settings made for {key}")
+        words = words[1 + len(values):]
+
+
+def _selected(scene, system, style: str, name: str) -> np.ndarray:
+    if style == "group":
+        return scene.groups.mask(name, "set group")
+    if style == "region":
+        if name not in scene.regions:
+            raise InputError(f"set region: unknown region {name!r}{nearest(name, scene.regions)}")
+        return scene.regions[name].inside(system.x)
+    if style == "atom":
+        values, (first, last) = system.id, bounds(name, 1, LARGEST, "set atom")
+    elif style == "type":
+        values, (first, last) = system.type, bounds(name, 1, system.counts["ntypes"], "set type", system.labels["atom"])
+    elif style == "mol":
+        if not system.molecular:
+            raise InputError(f"set mol: atom_style {system.atom_style} has no molecules")
+        values, (first, last) = system.molecule, bounds(name, 0, LARGEST, "set mol")
+    else:
+        raise InputError(f"set: unknown style {style!r}{nearest(style, ('atom', 'type', 'mol', 'group', 'region'))}")
+    return (values >= first) & (values <= last)
+
+
+class Setter:
+    """Sets one property of the atoms of `mask`; every method returns how many settings it made."""
+
+    def __init__(self, session, system, mask: np.ndarray, what: str):
+        self.session, self.system, self.mask, self.what = session, system, mask, what
+        self.rows = np.flatnonzero(mask)
+
+    def apply(self, key: str, values: list[str]) -> int:
+        system, rows = self.system, self.rows
+        if key in ("bond", "angle", "dihedral", "improper"):
+            return self._items(key, values[0])
+        if key == "type/fraction":
+            return self._fraction(values)
+        if key == "image":
+            return self._image(values)
+        if key == "type" and not values[0].startswith("v_"):
+            system.type[rows] = self._type(values[0], "atom", system.counts["ntypes"])
+            return len(rows)
+        new = self._values(values[0])
+        if key == "type":
+            wrong = (new < 1) | (new >= system.counts["ntypes"] + 1)
+            if wrong.any():
+                raise InputError(f"{self.what}: {new[wrong][0]:g} is outside the valid range 1 to {system.counts['ntypes']}")
+            system.type[rows] = new.astype(np.int32)
+        elif key == "mol":
+            if not system.molecular:
+                raise InputError(f"{self.what}: atom_style {system.atom_style} has no molecules")
+            if (new < 0).any():
+                raise InputError(f"{self.what}: a molecule number must not be negative")
+            system.molecule[rows] = new.astype(np.int64)
+        elif key == "charge":
+            if system.q is None:
+                raise InputError(f"{self.what}: atom_style {system.atom_style} has no charges")
+            system.q[rows] = new
+        elif key == "mass":
+            if system.rmass is None:
+                raise InputError(f"{self.what}: atom_style {system.atom_style} has masses by type, use the mass command")
+            if (new <= 0).any():
+                raise InputError(f"{self.what}: a mass must be positive")
+            system.rmass[rows] = new
+        else:
+            (system.v if key[0] == "v" else system.x)[rows, "xyz".index(key[-1])] = new
+        return len(rows)
+
+    def _values(self, word: str) -> np.ndarray:
+        """One number for all, or the values of a variable."""
+        if word.startswith("v_"):
+            new = self.session.variables.per_atom(word[2:], self.system.n)[self.rows]
+            bad = np.flatnonzero(~np.isfinite(new))
+            if bad.size:
+                raise InputError(f"{self.what}: variable {word[2:]} is not a finite number for atom {self.system.id[self.rows[bad[0]]]}")
+            return new
+        return np.full(len(self.rows), number(word, self.what))
+
+    def _type(self, word: str, kind: str, count: int) -> int:
+        first, last = bounds(word, 1, count, f"{self.what} type", self.system.labels[kind])
+        if first != last:
+            raise InputError(f"{self.what}: expected one type, got {word}")
+        return first
+
+    def _fraction(self, values: list[str]) -> int:
+        kind = self._type(values[0], "atom", self.system.counts["ntypes"])
+        fraction = number(values[1], self.what)
+        if not 0.0 <= fraction <= 1.0:
+            raise InputError(f"{self.what}: the fraction must be from 0 to 1, got {values[1]}")
+        u = uniform_at(position_seeds(whole(values[2], f"{self.what}: seed"), self.system.x[self.rows]), 1)[:, 0]
+        chosen = self.rows[u <= fraction]
+        self.system.type[chosen] = kind
+        return len(chosen)
+
+    def _image(self, values: list[str]) -> int:
+        for k, word in enumerate(values):
+            if word == "NULL":
+                continue
+            new = self._values(word)
+            if not self.system.box.periodic[k] and (new != 0).any():
+                raise InputError(f"{self.what}: direction {'xyz'[k]} is not periodic, its image flag must stay 0 (or NULL)")
+            self.system.image[self.rows, k] = np.trunc(new).astype(np.int32)
+        return len(self.rows)
+
+    def _items(self, kind: str, word: str) -> int:
+        """The type of every bond (angle, ...) whose atoms are all selected."""
+        count = self.system.counts[f"n{kind}types"]
+        if not self.system.molecular or count == 0:
+            raise InputError(f"{self.what}: this system has no {kind} types")
+        atoms, types = self.system.topology.items(kind)
+        inside = self.mask[atoms].all(axis=1) if len(atoms) else np.zeros(0, bool)
+        types[inside] = self._type(word, kind, count)
+        return int(inside.sum())
