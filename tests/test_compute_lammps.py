@@ -7,13 +7,17 @@ from scripted import by_lammps, have_lammps, measure, write_data
 
 SIX = range(1, 7)
 GLOBAL = {
-    "t": ("some temp", [0, *SIX]), "k": ("some ke", [0]), "e": ("all pe", [0]), "ep": ("all pe pair", [0]), "eb": ("all pe bond fix", [0]),
-    "p": ("all pressure thermo_temp", [0, *SIX]), "pv": ("all pressure NULL virial", [0, *SIX]), "pb": ("all pressure NULL bond", [0, *SIX]),
+    "t": ("some temp", [0, *SIX]), "k": ("some ke", [0]), "e": ("all pe", [0]), "ep": ("all pe pair", [0]),
+    "eb": ("all pe bond fix", [0]),
+    "p": ("all pressure thermo_temp", [0, *SIX]),
+    "pv": ("all pressure NULL virial", [0, *SIX]), "pb": ("all pressure NULL bond", [0, *SIX]),
     "pk": ("all pressure t ke pair", [0, *SIX]),
 }
 ATOM = {
-    "ea": ("all pe/atom", [0]), "ea2": ("some pe/atom bond", [0]), "ka": ("some ke/atom", [0]), "s": ("all stress/atom NULL", SIX),
-    "s2": ("some stress/atom NULL pair", SIX), "s3": ("all stress/atom thermo_temp ke bond", SIX), "s4": ("all stress/atom NULL virial", SIX),
+    "ea": ("all pe/atom", [0]), "ea2": ("some pe/atom bond", [0]), "ka": ("some ke/atom", [0]),
+    "s": ("all stress/atom NULL", SIX),
+    "s2": ("some stress/atom NULL pair", SIX),
+    "s3": ("all stress/atom thermo_temp ke bond", SIX), "s4": ("all stress/atom NULL virial", SIX),
 }
 
 
@@ -25,8 +29,8 @@ def case(folder, dimension, tail):
                  "dump_modify d sort id format float %.17g"]
     write_data(folder / f"data{dimension}", dimension)
     values = [f"c_{c}" if i == 0 else f"c_{c}[{i}]" for c, (_, indices) in GLOBAL.items() for i in indices]
-    return {"data": str(folder / f"data{dimension}"), "dimension": dimension, "commands": commands, "values": values + ["pe", "press", "temp", "etail"],
-            "runs": ["run 5"]}
+    return {"data": str(folder / f"data{dimension}"), "dimension": dimension, "commands": commands,
+            "values": [*values, "pe", "press", "temp", "etail"], "runs": ["run 5"]}
 
 
 def frames(path):

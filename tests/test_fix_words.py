@@ -47,7 +47,8 @@ def test_compute_round_trip(line, session):
     ("nve 1", "takes no arguments"), ("nve/limit", "xmax"), ("nve/limit 0", "positive"), ("nvt", "needs temp"),
     ("nvt temp 1 1", "3 values"), ("nvt temp 1 0 1", "above 0"), ("nvt temp 1 1 0", "damping"), ("nvt temp 1 1 nan", "finite"),
     ("nvt temp 1 1 1 tchain 0", "at least 1"), ("nvt temp 1 1 1 tchian 3", "did you mean tchain"), ("nvt temp 1 1 1 iso 0 0 1", "fix npt"),
-    ("nvt temp 1 1 1 drag -1", "negative"), ("langevin 1 1 1", "needs Tstart"), ("langevin 1 1 0 1", "damping"), ("langevin 1 1 1 0", "seed"),
+    ("nvt temp 1 1 1 drag -1", "negative"), ("langevin 1 1 1", "needs Tstart"), ("langevin 1 1 0 1", "damping"),
+    ("langevin 1 1 1 0", "seed"),
     ("langevin 1 1 1 1.5", "whole"), ("langevin 1 1 1 1 gjf vhalf", "gjf"), ("langevin 1 1 1 1 omega yes", "omega"),
     ("langevin -1 1 1 1", "negative"), ("langevin 1 1 1 1 talli yes", "did you mean tally"), ("langevin 1 1 1 1 scale 1", "2 values"),
     ("langevin 1 1 1 1 tally maybe", "yes or no"), ("langevin v_b 1 1 1", "undefined variable b"), ("temp/rescale 0 1 1 1 1", "at least 1"),
@@ -108,6 +109,7 @@ def test_compute_modify():
     temp = asemd.compute.Temp()
     temp.modify(["extra/dof", "0", "dynamic/dof", "yes"], None)
     assert temp.extra_dof == 0.0
-    for words, message in ((["extra/dof", "x"], "number"), (["extra/dof"], "pairs"), (["thermo", "1"], "does not take"), (["dynamic", "1"], "yes or no")):
+    for words, message in ((["extra/dof", "x"], "number"), (["extra/dof"], "pairs"), (["thermo", "1"], "does not take"),
+                           (["dynamic", "1"], "yes or no")):
         with pytest.raises(InputError, match=message):
             temp.modify(words, None)

@@ -96,7 +96,7 @@ class Langevin(Thermostat):
         return words + ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero
 
     def parameters(self, loop) -> np.ndarray:
-        ntypes, u = len(loop.system.mass) - 1, loop.units
+        ntypes, u = loop.system.counts["ntypes"], loop.units
         wrong = [kind for kind in self.scale if not 1 <= kind <= ntypes]
         if wrong:
             raise InputError(f"fix langevin: scale names atom type {wrong[0]}, there are types 1 to {ntypes}")

@@ -48,7 +48,9 @@ class Thermostat(Fix):
 
     def __init__(self, group: str = "all", temperature: Value | tuple[float, float] = 300.0, damping: float = 100.0):
         super().__init__(group)
-        self.start, self.stop = temperature if isinstance(temperature, tuple) else (temperature, temperature)
+        if not isinstance(temperature, tuple):
+            temperature = (temperature, 0.0 if callable(temperature) else temperature)
+        self.start, self.stop = temperature
         if callable(self.stop):
             raise InputError(f"fix {self.style}: Tstop must be a number; a variable as Tstart is the target at all times")
         if min(self.stop, self.stop if callable(self.start) else self.start) < 0.0:
