@@ -1,2 +1,36 @@
 """asemd: LAMMPS input scripts as ASE objects."""
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
 __version__ = "0.1.0"
+
+# public name -> module it is imported from when it is first used
+_LAZY = {
+    "read": "asemd.lammps.read",
+    "Lammps": "asemd.lammps",
+    "Session": "asemd.lammps.session",
+    "Scene": "asemd.scene",
+    "ForceField": "asemd.calculator",
+    "Atoms": "asemd.system",
+    "System": "asemd.system",
+    "Box": "asemd.box",
+    "Topology": "asemd.topology",
+    "AsemdError": "asemd.errors",
+    "InputError": "asemd.errors",
+    "SimulationError": "asemd.errors",
+}
+__all__ = ["__version__", *_LAZY]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LAZY:
+        raise AttributeError(f"module 'asemd' has no attribute {name!r}")
+    value = getattr(importlib.import_module(_LAZY[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

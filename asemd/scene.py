@@ -91,7 +91,10 @@ class GroupTable(MutableMapping):
 
 @dataclass
 class Neighbor:
-    """What ``neighbor`` and ``neigh_modify`` say; `exclude` holds ("type", i, j), ("group", a, b), ("molecule/intra", group), ("molecule/inter", group)."""
+    """What ``neighbor`` and ``neigh_modify`` say.
+
+    `exclude` holds ("type", i, j), ("group", a, b), ("molecule/intra", group) and ("molecule/inter", group), with names of groups.
+    """
 
     skin: float
     every: int = 1
@@ -106,7 +109,7 @@ def default_computes() -> dict[str, Compute]:
     from asemd.compute.pressure import Pressure
     from asemd.compute.temp import Temp
     temp = Temp("all")
-    computes = {"thermo_temp": temp, "thermo_press": Pressure(temp=temp), "thermo_pe": PE()}
+    computes = {"thermo_temp": temp, "thermo_press": Pressure("all", temp, ()), "thermo_pe": PE()}
     for name, compute in computes.items():
         compute.id = name
     return computes

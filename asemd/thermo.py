@@ -243,8 +243,7 @@ KEYWORDS: dict[str, Keyword] = {
     "fnorm": Keyword("Fnorm", lambda m: float(np.linalg.norm(m.forces()))),
     "nbuild": _integer("Nbuild", _counter("builds")),
     "ndanger": _integer("Ndanger", _counter("dangerous")),
-    **{"l" + d: Keyword("L" + d, lambda m, i=i: float(m.system.box.lengths[i] if not m.system.box.is_lammps_frame else m.system.box.cell[i, i]))
-       for i, d in enumerate("xyz")},
+    **{"l" + d: Keyword("L" + d, lambda m, i=i: float(m.system.box.cell[i, i])) for i, d in enumerate("xyz")},
     **{d + "lo": Keyword(d.upper() + "lo", lambda m, i=i: float(m.system.box.lo[i])) for i, d in enumerate("xyz")},
     **{d + "hi": Keyword(d.upper() + "hi", lambda m, i=i: float(m.system.box.hi[i])) for i, d in enumerate("xyz")},
     **{t: Keyword(t.capitalize(), lambda m, i=i: float(m.system.box.tilt[i])) for i, t in enumerate(("xy", "xz", "yz"))},

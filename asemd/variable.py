@@ -1,57 +1,21 @@
-"""Variables and their formula language, evaluated with what a `Provider` hands in.
+"""Variables: their texts, and the numbers that their formulas give.
 
-Source: the LAMMPS manual page of ``variable``; operators, functions and rounding as the program has them
-(unary minus binds tighter than ``^``, everything groups to the left, ``round`` is ``floor(x + 1/2)``).
+Source: the LAMMPS manual page of ``variable``.
 """
 from __future__ import annotations
 
-import math
 import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.formula import Clock, Parser, Provider, Value
 from asemd.marsaglia import Marsaglia
 
-Value = float | np.ndarray
-CONSTANTS = {"PI": math.pi, "yes": 1.0, "on": 1.0, "true": 1.0, "no": 0.0, "off": 0.0, "false": 0.0}
-ATOM_VECTORS = ("id", "mass", "type", "mol", "radius", "q", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz")
 STYLES = ("delete", "index", "loop", "string", "getenv", "format", "internal", "equal", "atom")
-NEVER = 2.0**63 - 1024     # the step that no run reaches
-VERSION = 20250722.0       # the LAMMPS version whose input language this is
-TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
-                   r"|(?P<op>==|!=|<=|>=|&&|\|\||\|\^|[-+*/%^!<>()\[\],:]))")
-
-
-@dataclass
-class Clock:
-    """Steps and timestep that ``ramp``, ``stagger`` and their relatives look at."""
-
-    step: int = 0
-    begin: int = 0
-    end: int = 0
-    dt: float = 0.0
-
-
-class Provider(Protocol):
-    """Where a formula gets its physical quantities; each method raises `InputError` for what does not exist."""
-
-    def thermo(self, keyword: str) -> float: ...
-    def reference(self, kind: str, id: str, index: list[int]) -> float: ...
-    def per_atom(self, kind: str, id: str, column: int | None) -> np.ndarray: ...
-    def vector(self, kind: str, id: str, column: int | None) -> np.ndarray: ...
-    def is_per_atom(self, kind: str, id: str) -> bool: ...
-    def atoms(self, name: str) -> np.ndarray: ...
-    def row(self, atom_id: int) -> int: ...
-    def group(self, name: str) -> np.ndarray: ...
-    def region(self, name: str) -> np.ndarray: ...
-    def group_function(self, name: str, mask: np.ndarray, word: str | None) -> float: ...
-    def clock(self) -> Clock: ...
-    def exists(self, category: str, name: str) -> bool: ...
 
 
 @dataclass
@@ -81,7 +45,8 @@ class Variables:
         if not re.fullmatch(r"\w+", name):
             raise InputError(f"variable name {name!r} must have only letters, numbers and underscores")
         if style not in STYLES:
-            raise InputError(f"variable {name}: style {style!r} is unknown or not supported{nearest(style, STYLES)}; supported: {' '.join(STYLES)}")
+            known = nearest(style, STYLES) or f"; there are {' '.join(STYLES)}"
+            raise InputError(f"variable {name}: style {style!r} is unknown or not supported{known}")
         if style == "delete":
             self.table.pop(name, None)
             return
@@ -139,9 +104,9 @@ class Variables:
         """The text that replaces ``${name}``."""
         variable = self.find(name)
         if variable.style == "equal":
-            return "%.15g" % self.number(name)
+            return f"{self.number(name):.15g}"
         if variable.style == "internal":
-            return "%.15g" % float(variable.text)
+            return f"{float(variable.text):.15g}"
         if variable.style == "getenv":
             return os.environ.get(variable.text, "")
         if variable.style == "format":
@@ -175,14 +140,14 @@ class Variables:
 
     def evaluate(self, formula: str) -> float:
         """The value of an equal-style formula."""
-        return float(_Parser(self, formula, per_atom=False).result())
+        return float(Parser(self, formula, per_atom=False).result())
 
     def per_atom(self, name: str, n: int) -> np.ndarray:
         """The values (n,) of an atom-style variable, by atom row."""
         variable = self.find(name)
         if variable.style != "atom":
             return np.full(n, self.number(name))
-        value = self._guarded(name, lambda: _Parser(self, variable.text, per_atom=True).result())
+        value = self._guarded(name, lambda: Parser(self, variable.text, per_atom=True).result())
         return np.broadcast_to(np.asarray(value, float), (n,)).copy()
 
     def references(self, formula: str) -> set[str]:
@@ -227,409 +192,4 @@ def _number(text: str, what: str) -> float:
         raise InputError(f"{what}: {text!r} is not a number") from None
 
 
-# ------------------------------------------------------------- arithmetic ---
-
-def _each(function: Callable[..., float], *values: Value) -> Value:
-    """Apply to numbers, or to each element of per-atom values."""
-    if any(isinstance(v, np.ndarray) for v in values):
-        return np.array([function(*row) for row in np.broadcast(*values)])
-    return function(*values)
-
-
-def _divide(a: float, b: float) -> float:
-    if b == 0.0:
-        raise InputError("division by 0 in a formula")
-    return a / b
-
-
-def _modulo(a: float, b: float) -> float:
-    if b == 0.0:
-        raise InputError("modulo 0 in a formula")
-    return math.fmod(a, b)
-
-
-def _power(a: float, b: float) -> float:
-    if a == 0.0 and b < 0.0 or a < 0.0 and b != int(b):
-        raise InputError(f"invalid power {a:g} ^ {b:g} in a formula")
-    try:
-        return math.pow(a, b)
-    except OverflowError:
-        return math.inf if a > 0 or b % 2 == 0 else -math.inf
-
-
-BINARY = (
-    {"||": lambda a, b: float(a != 0.0 or b != 0.0), "|^": lambda a, b: float((a != 0.0) != (b != 0.0))},
-    {"&&": lambda a, b: float(a != 0.0 and b != 0.0)},
-    {"==": lambda a, b: float(a == b), "!=": lambda a, b: float(a != b)},
-    {"<": lambda a, b: float(a < b), "<=": lambda a, b: float(a <= b), ">": lambda a, b: float(a > b), ">=": lambda a, b: float(a >= b)},
-    {"+": lambda a, b: a + b, "-": lambda a, b: a - b},
-    {"*": lambda a, b: a * b, "/": _divide, "%": _modulo},
-    {"^": _power},
-)
-
-
-def _domain(name: str, function: Callable[[float], float], ok: Callable[[float], bool]) -> Callable[[float], float]:
-    def checked(x: float) -> float:
-        if not ok(x):
-            raise InputError(f"{name}({x:g}) is not defined")
-        try:
-            return function(x)
-        except OverflowError:
-            return math.inf
-    return checked
-
-
-def _any(x: float) -> bool:
-    return True
-
-
-MATH: dict[str, tuple[int, Callable[..., float]]] = {
-    "sqrt": (1, _domain("sqrt", math.sqrt, lambda x: x >= 0.0)),
-    "exp": (1, _domain("exp", math.exp, _any)),
-    "ln": (1, _domain("ln", math.log, lambda x: x > 0.0)),
-    "log": (1, _domain("log", math.log10, lambda x: x > 0.0)),
-    "abs": (1, abs), "sin": (1, math.sin), "cos": (1, math.cos), "tan": (1, math.tan), "atan": (1, math.atan),
-    "asin": (1, _domain("asin", math.asin, lambda x: -1.0 <= x <= 1.0)),
-    "acos": (1, _domain("acos", math.acos, lambda x: -1.0 <= x <= 1.0)),
-    "atan2": (2, math.atan2),
-    "ceil": (1, lambda x: float(math.ceil(x))), "floor": (1, lambda x: float(math.floor(x))),
-    "round": (1, lambda x: float(math.floor(x + 0.5))), "sign": (1, lambda x: math.copysign(1.0, x)),
-    "ternary": (3, lambda a, b, c: b if a != 0.0 else c),
-}
-
-
-# ------------------------------------------------- functions of the timestep ---
-
-def _whole(name: str, values: tuple[float, ...]) -> list[int]:
-    return [int(v) for v in values]
-
-
-def _require(ok: bool, name: str, rule: str) -> None:
-    if not ok:
-        raise InputError(f"{name}() needs {rule}")
-
-
-def _ramp(c: Clock, x: float, y: float) -> float:
-    return x + (y - x) * ((c.step - c.begin) / (c.end - c.begin) if c.end != c.begin else 0.0)
-
-
-def _stagger(c: Clock, x: float, y: float) -> float:
-    x, y = _whole("stagger", (x, y))
-    _require(x > 0 and y > 0 and x > y, "stagger", "x > y > 0")
-    low = c.step // x * x
-    return float(low + y if c.step - low < y else low + x)
-
-
-def _logfreq(c: Clock, x: float, y: float, z: float) -> float:
-    x, y, z = _whole("logfreq", (x, y, z))
-    _require(x > 0 and y > 0 and 0 < y < z, "logfreq", "x > 0 and 0 < y < z")
-    if c.step < x:
-        return float(x)
-    low = x
-    while c.step >= z * low:
-        low *= z
-    multiple = c.step // low
-    return float((multiple + 1) * low if multiple < y else low * z)
-
-
-def _logfreq2(c: Clock, x: float, y: float, z: float) -> float:
-    x, y, z = _whole("logfreq2", (x, y, z))
-    _require(x > 0 and y > 0 and z > 1, "logfreq2", "x, y > 0 and z > 1")
-    if c.step < x:
-        return float(x)
-    low = x
-    while c.step >= z * low:
-        low *= z
-    k = 1
-    while math.ceil(low * (1 + k * (z - 1) / y)) <= c.step:
-        k += 1
-    return float(math.ceil(low * (1 + k * (z - 1) / y)))
-
-
-def _logfreq3(c: Clock, x: float, y: float, z: float) -> float:
-    x, y, z = _whole("logfreq3", (x, y, z))
-    _require(x > 0 and y > 1 and z - x + 1 >= y, "logfreq3", "x > 0, y > 1 and at least y steps from x to z")
-    if c.step < x:
-        return float(x)
-    if c.step >= z:
-        raise InputError(f"logfreq3({x},{y},{z}) has no step after {c.step}")
-    for k in range(1, y):
-        step = math.ceil(x * (z / x) ** (k / (y - 1)) - 1e-9)
-        if step > c.step:
-            return float(min(step, z))
-    return float(z)
-
-
-def _stride(c: Clock, x: float, y: float, z: float) -> float:
-    x, y, z = _whole("stride", (x, y, z))
-    _require(0 <= x <= y and z > 0, "stride", "0 <= x <= y and z > 0")
-    if c.step < x:
-        return float(x)
-    step = x + ((c.step - x) // z + 1) * z
-    return float(step) if step <= y else NEVER
-
-
-def _stride2(c: Clock, x: float, y: float, z: float, a: float, b: float, d: float) -> float:
-    x, y, z, a, b, d = _whole("stride2", (x, y, z, a, b, d))
-    _require(x >= 0 and y >= 0 and z > 0 and a >= 0 and b >= 0 and d > 0 and x <= y and a <= b, "stride2", "x <= y, a <= b, z > 0 and d > 0")
-    _require(a >= x and b <= y, "stride2", "a and b between x and y")
-    if c.step < x:
-        step = x
-    elif c.step < a:
-        step = min(x + ((c.step - x) // z + 1) * z, a)
-    elif c.step < b:
-        step = min(a + ((c.step - a) // d + 1) * d, b)
-        step = step if (c.step - a) // d * d + a + d <= b else b + z
-    else:
-        step = b + ((c.step - b) // z + 1) * z
-    return float(step) if step <= y else NEVER
-
-
-def _elapsed(c: Clock) -> float:
-    return (c.step - c.begin) * c.dt
-
-
-STEP: dict[str, tuple[int, Callable[..., float]]] = {
-    "ramp": (2, _ramp), "stagger": (2, _stagger), "logfreq": (3, _logfreq), "logfreq2": (3, _logfreq2), "logfreq3": (3, _logfreq3),
-    "stride": (3, _stride), "stride2": (6, _stride2),
-    "vdisplace": (2, lambda c, x, v: x + v * _elapsed(c)),
-    "swiggle": (3, lambda c, x, a, t: x + a * math.sin(2.0 * math.pi / t * _elapsed(c))),
-    "cwiggle": (3, lambda c, x, a, t: x + a * (1.0 - math.cos(2.0 * math.pi / t * _elapsed(c)))),
-}
-
-# words a group function takes besides group and region
-GROUP = {"count": 0, "mass": 0, "charge": 0, "xcm": 1, "vcm": 1, "fcm": 1, "bound": 1, "gyration": 0, "ke": 0, "angmom": 1, "torque": 1,
-         "inertia": 1, "omega": 1}
-
-
-def _slope(v: np.ndarray) -> float:
-    t = np.arange(v.size, dtype=float)
-    t -= t.mean()
-    return float((t * (v - v.mean())).sum() / (t * t).sum())
-
-
-REDUCE: dict[str, Callable[[np.ndarray], float]] = {
-    "sum": np.sum, "min": np.min, "max": np.max, "ave": np.mean, "slope": _slope,
-    "trap": lambda v: np.sum(v) - 0.5 * (v[0] + v[-1]),
-}
-
-
-class _Parser:
-    """Recursive descent over one formula; the depth of a rule is its precedence."""
-
-    def __init__(self, variables: Variables, formula: str, per_atom: bool):
-        self.variables, self.formula, self.wants_atoms = variables, formula, per_atom
-        self.at, self.kind, self.token = 0, "", ""
-        self.start = 0
-        self.advance()
-
-    @property
-    def provider(self) -> Provider:
-        if self.variables.provider is None:
-            raise InputError(f"formula {self.formula!r} needs a simulation")
-        return self.variables.provider
-
-    def advance(self) -> None:
-        rest = self.formula[self.at:]
-        if not rest.strip():
-            self.kind, self.token, self.start = "end", "", len(self.formula)
-            return
-        match = TOKEN.match(rest)
-        if not match:
-            raise InputError(f"invalid character {rest.strip()[0]!r} in formula {self.formula!r}")
-        self.kind, self.token = match.lastgroup, match[match.lastgroup]
-        self.start = self.at + match.start(match.lastgroup)
-        self.at += match.end()
-
-    def take(self, token: str) -> None:
-        if self.token != token or self.kind != "op":
-            raise InputError(f"invalid formula {self.formula!r}: expected {token!r}{f', found {self.token!r}' if self.token else ' at the end'}")
-        self.advance()
-
-    def result(self) -> Value:
-        value = self.binary(0)
-        if self.kind != "end":
-            raise InputError(f"invalid formula {self.formula!r}: unexpected {self.token!r}")
-        if isinstance(value, np.ndarray) and not self.wants_atoms:
-            raise InputError(f"formula {self.formula!r} gives one value per atom where one number is needed")
-        return value
-
-    def binary(self, level: int) -> Value:
-        if level == len(BINARY):
-            return self.unary()
-        value = self.binary(level + 1)
-        while self.kind == "op" and self.token in BINARY[level]:
-            function = BINARY[level][self.token]
-            self.advance()
-            value = _each(function, value, self.binary(level + 1))
-        return value
-
-    def unary(self) -> Value:
-        if self.kind == "op" and self.token in "-!+":
-            sign = self.token
-            self.advance()
-            value = self.unary()
-            if sign == "!":
-                return _each(lambda a: float(a == 0.0), value)
-            return 0.0 - value if sign == "-" else value
-        return self.primary()
-
-    def primary(self) -> Value:
-        if self.kind == "number":
-            value = float(self.token)
-            self.advance()
-            return value
-        if self.kind == "op" and self.token == "(":
-            self.advance()
-            value = self.binary(0)
-            self.take(")")
-            return value
-        if self.kind != "name":
-            raise InputError(f"invalid formula {self.formula!r}: a value is missing{f' before {self.token!r}' if self.token else ' at the end'}")
-        name = self.token
-        self.advance()
-        if self.kind == "op" and self.token == "(":
-            return self.call(name)
-        if name[:2] in ("c_", "f_", "v_"):
-            return self.reference(name[0], name[2:])
-        if name in CONSTANTS:
-            return CONSTANTS[name]
-        if name == "version":
-            return VERSION
-        if name in ATOM_VECTORS:
-            index = self.index()
-            values = self.provider.atoms(name)
-            return float(values[self.provider.row(index)]) if index is not None else values
-        return float(self.provider.thermo(name))
-
-    def index(self) -> int | None:
-        """``[i]``, where i is a whole number or ``v_name``."""
-        if self.kind != "op" or self.token != "[":
-            return None
-        self.advance()
-        if self.kind == "number" and self.token.isdigit():
-            value = int(self.token)
-        elif self.kind == "name" and self.token.startswith("v_"):
-            value = int(self.variables.number(self.token[2:]))
-        else:
-            raise InputError(f"invalid formula {self.formula!r}: an index must be a whole number or v_name")
-        self.advance()
-        self.take("]")
-        return value
-
-    def reference(self, kind: str, id: str) -> Value:
-        index = [i for i in (self.index(), self.index()) if i is not None]
-        if kind == "v":
-            return self.variable(id, index)
-        p = self.provider
-        if not p.is_per_atom(kind, id):
-            return float(p.reference(kind, id, index))
-        if self.wants_atoms and len(index) < 2:
-            return p.per_atom(kind, id, index[0] if index else None)
-        if not index:
-            raise InputError(f"{kind}_{id} gives one value per atom where one number is needed")
-        return float(p.per_atom(kind, id, index[1] if len(index) == 2 else None)[p.row(index[0])])
-
-    def variable(self, name: str, index: list[int]) -> Value:
-        variable = self.variables.find(name)
-        if variable.style != "atom":
-            if index:
-                raise InputError(f"v_{name}[{index[0]}]: variable {name} of style {variable.style} has no elements")
-            return self.variables.number(name)
-        if index or self.wants_atoms:
-            values = self.variables.per_atom(name, self.provider.atoms("id").size)
-            return float(values[self.provider.row(index[0])]) if index else values
-        raise InputError(f"variable {name} has style atom where one number is needed")
-
-    def words(self) -> list[str]:
-        """The plain words between the parentheses of a function that takes names."""
-        depth, end = 1, self.start + 1
-        while end < len(self.formula) and depth:
-            depth += {"(": 1, ")": -1}.get(self.formula[end], 0)
-            end += 1
-        if depth:
-            raise InputError(f"invalid formula {self.formula!r}: missing )")
-        inside = self.formula[self.start + 1:end - 1]
-        self.at = end
-        self.advance()
-        return [w.strip() for w in inside.split(",")]
-
-    def values(self) -> list[Value]:
-        self.take("(")
-        out = [self.binary(0)]
-        while self.kind == "op" and self.token == ",":
-            self.advance()
-            out.append(self.binary(0))
-        self.take(")")
-        return out
-
-    def call(self, name: str) -> Value:
-        if name in MATH:
-            return _each(MATH[name][1], *self.counted(name, MATH[name][0]))
-        if name in STEP:
-            clock = self.provider.clock()
-            count, function = STEP[name]
-            return _each(lambda *v: function(clock, *v), *self.counted(name, count))
-        if name in ("random", "normal"):
-            return self.noise(name, self.counted(name, 3))
-        if name in GROUP:
-            return self.group(name, self.words())
-        if name in REDUCE:
-            return self.reduce(name, self.words())
-        if name in ("gmask", "rmask", "grmask"):
-            return self.masks(name, self.words())
-        if name in ("is_defined", "is_available"):
-            words = self.words()
-            self.arguments(name, words, 2)
-            return float(self.provider.exists(words[0], words[1]))
-        known = [*MATH, *STEP, "random", "normal", *GROUP, *REDUCE, "gmask", "rmask", "grmask", "is_defined", "is_available"]
-        raise InputError(f"unknown function {name}() in formula {self.formula!r}{nearest(name, known)}")
-
-    def arguments(self, name: str, given: list, count: int) -> list:
-        if len(given) != count:
-            raise InputError(f"{name}() takes {count} argument{'s' * (count != 1)}, got {len(given)}")
-        return given
-
-    def counted(self, name: str, count: int) -> list[Value]:
-        return self.arguments(name, self.values(), count)
-
-    def noise(self, name: str, given: list[Value]) -> Value:
-        a, b, seed = given
-        if isinstance(seed, np.ndarray):
-            raise InputError(f"{name}(): the seed must be one number")
-        source = self.variables.random("atom" if self.wants_atoms else "equal", int(seed))
-        if name == "normal":
-            return _each(lambda mean, sigma: mean + sigma * source.gaussian(), *self.spread(a, b))
-        return _each(lambda low, high: source.uniform() * (high - low) + low, *self.spread(a, b))
-
-    def spread(self, a: Value, b: Value) -> tuple[Value, Value]:
-        """In an atom-style formula every atom draws its own number."""
-        if self.wants_atoms and not isinstance(a, np.ndarray):
-            return np.full(self.provider.atoms("id").size, a), b
-        return a, b
-
-    def group(self, name: str, words: list[str]) -> float:
-        base = 1 + GROUP[name]
-        if len(words) not in (base, base + 1):
-            raise InputError(f"{name}() takes group{', direction' * GROUP[name]} and optionally region, got {','.join(words)}")
-        mask = self.provider.group(words[0])
-        if len(words) > base:
-            mask = mask & self.provider.region(words[-1])
-        return self.provider.group_function(name, mask, words[1] if GROUP[name] else None)
-
-    def reduce(self, name: str, words: list[str]) -> float:
-        self.arguments(name, words, 1)
-        match = re.fullmatch(r"([cf])_(\w+)(?:\[(\d+)\])?", words[0])
-        if not match:
-            raise InputError(f"{name}() takes c_ID, c_ID[N], f_ID or f_ID[N], got {words[0]}")
-        values = np.asarray(self.provider.vector(match[1], match[2], int(match[3]) if match[3] else None), float)
-        if not values.size:
-            raise InputError(f"{name}({words[0]}): the vector is empty")
-        return float(REDUCE[name](values))
-
-    def masks(self, name: str, words: list[str]) -> np.ndarray:
-        self.arguments(name, words, 2 if name == "grmask" else 1)
-        if not self.wants_atoms:
-            raise InputError(f"{name}() can only be used in an atom-style variable")
-        mask = self.provider.region(words[-1]) if name != "gmask" else True
-        return np.asarray(mask & self.provider.group(words[0]) if name != "rmask" else mask, float)
+__all__ = ["Clock", "Provider", "Variable", "Variables"]

@@ -1,4 +1,4 @@
-"""LAMMPS's input language: sessions, scripts, data files, and `Lammps`, which code written for the ``lammps`` module can use instead of it."""
+"""LAMMPS's input language: sessions, scripts, data files, and `Lammps`, with the methods of the ``lammps`` Python module."""
 from __future__ import annotations
 
 import ctypes
@@ -289,8 +289,8 @@ class Lammps:
     def extract_setting(self, name: str) -> int:
         """A count or a flag; -1 if unknown."""
         scene, system = self.scene, self.scene.system
-        simple = {"dimension": scene.dimension, "box_exist": int(system is not None), "nthreads": scene.threads, "nghost": 0, "tagint": 4, "bigint": 8,
-                  "imageint": 4, "newton_pair": int(scene.newton[0]), "newton_bond": int(scene.newton[1]), "world_size": 1, "world_rank": 0,
+        simple = {"dimension": scene.dimension, "box_exist": int(system is not None), "nthreads": scene.threads, "nghost": 0,
+                  "tagint": 4, "bigint": 8, "imageint": 4, "newton_pair": int(scene.newton[0]), "newton_bond": int(scene.newton[1]), "world_size": 1, "world_rank": 0,
                   "universe_size": 1, "universe_rank": 0, "nprocs": 1}
         if name in simple:
             return simple[name]
@@ -310,7 +310,8 @@ class Lammps:
     def extract_compute(self, cid: str, cstyle: int, ctype: int):
         """Value of a compute: float, or array; per-atom values in the session's order."""
         moment = self.session.moment
-        kind = "per_atom" if cstyle == LMP_STYLE_ATOM else {LMP_TYPE_SCALAR: "scalar", LMP_TYPE_VECTOR: "vector", LMP_SIZE_VECTOR: "vector"}.get(ctype, "array")
+        kinds = {LMP_TYPE_SCALAR: "scalar", LMP_TYPE_VECTOR: "vector", LMP_SIZE_VECTOR: "vector"}
+        kind = "per_atom" if cstyle == LMP_STYLE_ATOM else kinds.get(ctype, "array")
         if cstyle == LMP_STYLE_LOCAL:
             raise InputError(f"extract_compute: compute {cid} has no local values")
         value = getattr(moment, kind)(cid)
@@ -385,7 +386,7 @@ class Lammps:
 
     def version(self) -> int:
         """The LAMMPS version whose input language this is."""
-        from asemd.variable import VERSION
+        from asemd.formula import VERSION
         return int(VERSION)
 
     has_exceptions = True

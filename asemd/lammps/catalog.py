@@ -10,7 +10,9 @@ from asemd.errors import InputError, nearest
 from asemd.style import ACCELERATED, module_of
 
 FORCE_FIELD = ("bond", "angle", "dihedral", "improper", "pair")
-PACKAGES = {"command": "asemd.lammps.command", **{c: f"asemd.{c}" for c in (*FORCE_FIELD, "kspace", "fix", "compute", "dump", "region", "minimize")}}
+PACKAGES = {"command": "asemd.lammps.command",
+            **{c: f"asemd.{c}" for c in (*FORCE_FIELD, "kspace", "fix", "compute", "dump", "region", "minimize")}}
+WRAPPERS = ("none", "hybrid")       # styles that are made of others, or of nothing
 ATOM_STYLES = ("angle", "atomic", "bond", "charge", "full", "molecular")
 
 
@@ -41,6 +43,8 @@ def exists(category: str, name: str) -> bool:
         return name in ATOM_STYLES
     if category == "integrate":
         return name == "verlet"
+    if category in FORCE_FIELD and (name in WRAPPERS or (category, name) == ("pair", "hybrid/overlay")):
+        return True
     if category not in PACKAGES or not name or _file(plain(name)) not in files(category):
         return False
     if category == "command":
@@ -69,7 +73,8 @@ def names(category: str) -> tuple[str, ...]:
         return tuple(sorted(files(category)))
     if category in FORCE_FIELD:
         from asemd import style
-        return tuple(style.names(category))
+        own = {"hybrid/overlay"} if category == "pair" else set()
+        return tuple(sorted({*style.names(category), *WRAPPERS, *own}))
     if category == "minimize":
         return tuple(sorted(n for n in files(category) if not n.startswith("_")))
     found = set()

@@ -41,7 +41,7 @@ def check(session) -> None:
             if not math.isfinite(system.mass[kind]):
                 raise InputError(f"no mass for atom type {kind}: use the mass command or a Masses section")
     scene.interactions.check_complete(system)
-    if _bond_style(scene) == "fene":
+    if scene.interactions.style_name("bond") == "fene":
         lj, coul = tuple(scene.interactions.special_lj), tuple(scene.interactions.special_coul)
         if lj != (0.0, 1.0, 1.0) or (system.has_charge and coul != (0.0, 1.0, 1.0)):
             session.log.warn("bond_style fene should be used with special_bonds lj/coul 0 1 1 (special_bonds fene)")
@@ -59,12 +59,6 @@ def check_integration(session) -> None:
             movers.append((id, mask))
     if not movers:
         session.log.warn("no fixes with time integration, atoms won't move")
-
-
-def _bond_style(scene) -> str:
-    use = scene.interactions.bond
-    style = getattr(use, "style", None)
-    return getattr(style, "name", style) or ""
 
 
 class Driver:
@@ -92,12 +86,13 @@ class Driver:
             check_integration(session)
             session.close_loop()
             loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), list(scene.fixes.values()),
-                                       dict(scene.groups), scene.dt, step=begin)
+                                       scene.groups, scene.dt, step=begin)
             loop.setup(plan.first, plan.last, virial=True)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
-        counters = loop.engine.counters
-        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=counters.builds, dangerous=counters.dangerous)
-        before = dict(counters.timings)
+        loop.begin, loop.end, loop.dt = plan.first, plan.last, scene.dt
+        engine = loop.engine
+        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=engine.builds, dangerous=engine.dangerous)
+        before = dict(engine.timings)
         session.running = True
         try:
             self._provide(begin, begin + plan.steps, fresh=True)
@@ -117,7 +112,7 @@ class Driver:
         if scene.thermo.footer():
             session.log.write(scene.thermo.footer() + "\n")
         steps = scene.step - begin
-        self._summary(seconds, steps, {k: v - before.get(k, 0.0) for k, v in counters.timings.items()})
+        self._summary(seconds, steps, {k: v - before.get(k, 0.0) for k, v in engine.timings.items()})
         session.log.flush()
         if session.interrupted:
             raise KeyboardInterrupt
@@ -134,7 +129,7 @@ class Driver:
                 chunk = left if not session.watched else max(1, min(left, int(rate * CHUNK) if rate else 20))
                 if chunk == left:
                     needs = self._needs(target, end)
-                    loop.advance(chunk, virial="virial" in needs, energies="energies" in needs, virials="virials" in needs)
+                    loop.advance(chunk, virial=True, energies="energies" in needs, virials="virials" in needs)
                 else:
                     loop.advance(chunk, virial=False)
                 step += chunk
@@ -143,12 +138,12 @@ class Driver:
                 self._watch("update", step - begin)
             started = time.perf_counter()
             if session.interrupted and step < target:
-                loop.engine.compute(virial=True)
+                loop.result = loop.engine.compute()     # between outputs energies are not computed
                 self._provide(step, step, fresh=False)
-                self._output(step, ends=True)
+                self._output(step, ends=True, dumps=True)
             else:
                 self._provide(step, end, fresh=False)
-                self._output(step, ends=step == end or session.interrupted)
+                self._output(step, ends=step == end or session.interrupted, dumps=session.interrupted)
             self.output_seconds += time.perf_counter() - started
 
     def _next_output(self, step: int) -> int:
@@ -173,13 +168,13 @@ class Driver:
         """What the forces of an output step must bring: all that is defined on the last step, what is shown on others."""
         scene = self.scene
         if step == end:
-            return {"virial"}.union(*(c.needs for c in scene.computes.values()), *(_dump_needs(d) for d in scene.dumps.values()))
+            return {"virial"}.union(*(c.needs for c in scene.computes.values()), *(d.needs for d in scene.dumps.values()))
         needs: set[str] = set()
         if self._is_thermo(step):
             needs |= scene.thermo.needs(self.words, scene.computes, self.session.variables.references)
         for dump in scene.dumps.values():
             if _due(dump.every, step):
-                needs |= _dump_needs(dump)
+                needs |= dump.needs
         return needs
 
     def _is_thermo(self, step: int) -> bool:
@@ -195,15 +190,17 @@ class Driver:
         if fresh:       # the first step may have to bring per-atom values too
             needs = self._needs(step, step)
             if needs & {"energies", "virials"}:
-                loop.engine.compute(virial=True, energies="energies" in needs, virials="virials" in needs)
-        session.moment = Moment(scene, loop.snapshot(), session.variables.number, self.progress, loop.engine.counters)
+                loop.engine.per_atom(loop.result)
+        session.moment = Moment(scene, loop.snapshot(), session.variables.number, self.progress, loop.engine)
 
-    def _output(self, step: int, ends: bool) -> None:
+    def _output(self, step: int, ends: bool, dumps: bool = False) -> None:
+        """Thermo row and dumps of a step that are due, or all of them."""
         session, scene = self.session, self.scene
         if ends or self._is_thermo(step):
             self._thermo(step)
         for dump in scene.dumps.values():
-            if _due(dump.every, step) and not session.passive and dump_wanted(dump, step):
+            wanted = dumps or _due(dump.every, step) or (dump.first and step == self.progress.begin)
+            if wanted and dump.last_written != step:        # a run's last step is the next one's first
                 dump.write(session.moment.snapshot, step)
 
     def _thermo(self, step: int) -> None:
@@ -224,7 +221,7 @@ class Driver:
 
     def _summary(self, seconds: float, steps: int, timings: dict[str, float]) -> None:
         scene, write = self.scene, self.session.log.write
-        n, counters = scene.system.n, self.session.loop.engine.counters
+        n, engine = scene.system.n, self.session.loop.engine
         write(log.loop_line(seconds, steps, n) + "\n")
         if not self.plan.post:
             return
@@ -235,8 +232,8 @@ class Driver:
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0
                         or (s == "Bond" and scene.system.molecular))
         write(log.timing_table(seconds, timings, present) + "\n")
-        write(log.counts(n, 0, int(counters.pairs), counters.builds - self.progress.builds,
-                         counters.dangerous - self.progress.dangerous if scene.neighbor.check else None))
+        write(log.counts(n, 0, int(engine.pairs), engine.builds - self.progress.builds,
+                         engine.dangerous - self.progress.dangerous if scene.neighbor.check else None))
 
 
 def _multiple(every: int, step: int) -> int:
@@ -246,18 +243,6 @@ def _multiple(every: int, step: int) -> int:
 
 def _due(every: int, step: int) -> bool:
     return bool(every) and step % every == 0
-
-
-def dump_wanted(dump, step: int) -> bool:
-    """False if this step was written already (runs share their first and last step)."""
-    if getattr(dump, "last_written", None) == step:
-        return False
-    dump.last_written = step
-    return True
-
-
-def _dump_needs(dump) -> set[str]:
-    return set(getattr(dump, "needs", ()))
 
 
 def memory() -> float:

@@ -140,7 +140,7 @@ def substitute(text: str, value: Callable[[str], str], formula: Callable[[str], 
 def _immediate(content: str, formula: Callable[[str], float]) -> str:
     expression, colon, form = content.rpartition(":%")
     if not colon:
-        return "%.20g" % formula(content)
+        return f"{formula(content):.20g}"
     form = "%" + form
     if form[-1:] not in "eEfFgG":
         raise InputError(f"format {form} of $({content}) must be one of %e, %f, %g")

@@ -7,8 +7,8 @@ import numpy as np
 
 from asemd import thermo, units
 from asemd.errors import InputError, nearest
+from asemd.formula import Clock
 from asemd.lammps import catalog
-from asemd.variable import Clock
 
 AXES = {"x": 0, "y": 1, "z": 2}
 TENSOR = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
@@ -53,12 +53,14 @@ class Providers:
 
     def per_atom(self, kind: str, id: str, column: int | None) -> np.ndarray:
         self.source(kind, id)
-        values = np.asarray(self.session.moment.per_atom(id) if kind == "c" else self.source("f", id).per_atom(self.session.moment.snapshot))
+        moment = self.session.moment
+        values = np.asarray(moment.per_atom(id) if kind == "c" else self.source("f", id).per_atom(moment.snapshot))
         if values.ndim == 1 and column is None:
             return values
         if values.ndim == 2 and column is not None and 1 <= column <= values.shape[1]:
             return values[:, column - 1]
-        raise InputError(f"{kind}_{id}{f'[{column}]' if column else ''}: the values per atom have {values.shape[1] if values.ndim == 2 else 'no'} columns")
+        shown, width = f"{kind}_{id}{f'[{column}]' if column else ''}", values.shape[1] if values.ndim == 2 else "no"
+        raise InputError(f"{shown}: the values per atom have {width} columns")
 
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray:
         source = self.source(kind, id)
@@ -168,7 +170,7 @@ class Body:
         return self.f.sum(axis=0)
 
     def gyration(self) -> float:
-        return float(np.sqrt(self._mean(((self.x - self.xcm())**2)).sum()))
+        return float(np.sqrt(self._mean((self.x - self.xcm()) ** 2).sum()))
 
     def angmom(self) -> np.ndarray:
         return (self.m[:, None] * np.cross(self.x - self.xcm(), self.v)).sum(axis=0)

@@ -8,8 +8,8 @@ from asemd.errors import InputError, Where
 from asemd.lammps import catalog, lex
 
 # command -> category of style, position of the style's name
-STYLED = {**{f"{c}_style": (c, 1) for c in catalog.FORCE_FIELD}, "kspace_style": ("kspace", 1), "fix": ("fix", 3), "compute": ("compute", 3),
-          "region": ("region", 2), "dump": ("dump", 3), "min_style": ("minimize", 1), "atom_style": ("atom", 1)}
+STYLED = {**{f"{c}_style": (c, 1) for c in catalog.FORCE_FIELD}, "kspace_style": ("kspace", 1), "fix": ("fix", 3),
+          "compute": ("compute", 3), "region": ("region", 2), "dump": ("dump", 3), "min_style": ("minimize", 1), "atom_style": ("atom", 1)}
 REGION_ACTIONS = ("delete",)
 
 
@@ -83,7 +83,7 @@ def check(commands: list[Command]) -> tuple[list[InputError], list[InputError]]:
             names.append("")
     jumps = [i for i, n in enumerate(names) if n == "jump"]
     marks = [i for i, n in enumerate(names) if n in ("jump", "label")]
-    loop = range(marks[0], len(commands)) if jumps else range(0)
+    loop = range(marks[0], marks[-1] + 1) if jumps else range(0)
     errors: list[InputError] = []
     warnings: list[InputError] = []
     for i, command in enumerate(commands):

@@ -72,13 +72,15 @@ class Session:
         self.observer: Any = None          # told about progress by the driver: .start(steps), .update(done), .stop()
         self.label: str | None = None      # text is skipped up to this label
         self.exhausted = False             # `next` ran out: the next `jump` is skipped
-        self._depth = 0
+        self._depth = 0                    # scripts within scripts
+        self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
 
     def _fresh_scene(self) -> Scene:
         scene = Scene()
         scene.threads, scene.precision, scene.compat = self.switches.threads, self.switches.precision, self.switches.compat
+        scene.interactions.compat = self.switches.compat
         return scene
 
     # ------------------------------------------------------------- commands ---
@@ -96,8 +98,12 @@ class Session:
         outer, self._position = self._position, command.where
         try:
             self._execute(command)
+        except Jump as jump:
+            if self._depth or self._lines:
+                raise
+            raise InputError(f"jump {jump.file}: only lines of a script can jump").at(command.where) from None
         except InputError as e:
-            raise e.at(command.where)
+            raise e.at(command.where) from e.__cause__
         except AsemdError as e:
             if not getattr(e, "placed", False):
                 e.args = (f"{e} ({command.where})",)
@@ -135,7 +141,11 @@ class Session:
 
     def commands(self, text: str) -> None:
         """Execute several lines of text."""
-        self._run(script.parse(text), "")
+        self._lines += 1
+        try:
+            self._run(script.parse(text), "")
+        finally:
+            self._lines -= 1
 
     def file(self, path: str | os.PathLike) -> None:
         """Check a script, then execute it."""

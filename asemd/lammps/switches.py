@@ -56,14 +56,14 @@ def parse(words: Sequence[str]) -> Switches:
         if not word.startswith("-") or name not in KNOWN:
             raise InputError(f"unknown switch {word!r}{nearest(name, KNOWN)}")
         end = i + 1
-        while end < len(words) and not _is_switch(words[end]):
+        while end < len(words) and not is_switch(words[end]):
             end += 1
         _apply(out, name, word, words[i + 1:end])
         i = end
     return out
 
 
-def _is_switch(word: str) -> bool:
+def is_switch(word: str) -> bool:
     """A word that starts a new switch; negative numbers are values."""
     return len(word) > 1 and word[0] == "-" and not (word[1].isdigit() or word[1] == ".")
 

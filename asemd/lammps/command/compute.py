@@ -11,7 +11,6 @@ from asemd.words import take
 def run(session, args):
     id, group, style = take(args, 3, "compute")[:3]
     scene = session.scene
-    scene.need_system(f"compute {style}")
     if not re.fullmatch(r"\w+", id):
         raise InputError(f"compute: ID {id!r} must have only letters, numbers and underscores")
     if id in scene.computes:

@@ -4,7 +4,8 @@ from __future__ import annotations
 from asemd.errors import InputError, nearest
 from asemd.words import bounds, choice, number, take, whole, yes_no
 
-KEYWORDS = ("delay", "every", "check", "once", "cluster", "include", "exclude", "page", "one", "binsize", "collection/type", "collection/interval")
+KEYWORDS = ("delay", "every", "check", "once", "cluster", "include", "exclude", "page", "one", "binsize", "collection/type",
+            "collection/interval")
 
 
 def run(session, args):

@@ -14,7 +14,8 @@ def run(session, args):
         reference = parse_reference(word)
         table = {"c": scene.computes, "f": scene.fixes}.get(reference[0]) if reference else None
         if table is not None and reference[1] not in table:
-            raise InputError(f"thermo_style: there is no {'compute' if reference[0] == 'c' else 'fix'} {reference[1]}{nearest(reference[1], table)}")
+            kind, id = "compute" if reference[0] == "c" else "fix", reference[1]
+            raise InputError(f"thermo_style: there is no {kind} {id}{nearest(id, table)}")
     before = scene.thermo
     lost = before != Thermo(before.style, before.words, before.every, before.style if before.style in ("multi", "yaml") else "one")
     before.set_style(args[0], args[1:])

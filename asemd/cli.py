@@ -1,0 +1,236 @@
+"""The command ``asemd``. One command, one entry of `COMMANDS`; its module is imported when it is used."""
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from asemd import __version__
+from asemd.errors import AsemdError, InputError
+from asemd.lammps import switches as lammps_switches
+from asemd.lammps.switches import Switches
+
+# name of the command -> "module:function"; the function is a typer command
+COMMANDS: dict[str, str] = {
+    "run": "asemd.cli:run",
+}
+INTERRUPTED = 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command line.
+
+    Returns
+    -------
+    int
+        Exit status: 0 fine, 1 failed (the last line printed says why), 130 interrupted.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        # LAMMPS's switches have one dash and several values, which typer cannot read: they are taken out first
+        words, taken = take_switches(words)
+        return int(application(words)(words, standalone_mode=False, obj=taken) or 0)
+    except KeyboardInterrupt:
+        return complain("interrupted", INTERRUPTED)
+    except AsemdError as e:
+        if os.environ.get("ASEMD_DEBUG"):
+            raise
+        for problem in getattr(e, "problems", [e]):
+            complain(str(problem))
+        return 1
+    except Exception as e:
+        if hasattr(e, "format_message"):        # typer: a wrong option
+            return complain(e.format_message())
+        if os.environ.get("ASEMD_DEBUG"):
+            raise
+        return complain(f"{type(e).__name__}: {' '.join(str(e).split())} (ASEMD_DEBUG=1 shows where)")
+
+
+def entry() -> None:
+    """The console script."""
+    sys.exit(main())
+
+
+def complain(message: str, status: int = 1) -> int:
+    """Print the last line; returns the exit status."""
+    sys.stdout.flush()
+    print(f"ERROR: {message}", file=sys.stderr, flush=True)
+    return status
+
+
+def take_switches(words: list[str]) -> tuple[list[str], Switches]:
+    """Split a command line into what typer reads and LAMMPS's own switches."""
+    rest: list[str] = []
+    taken: list[str] = []
+    names = {*lammps_switches.SHORT, *lammps_switches.SHORT.values(), "compat"}
+    i = 0
+    while i < len(words):
+        end = i + 1
+        if words[i].startswith("-") and not words[i].startswith("--") and words[i][1:] in names:
+            while end < len(words) and not lammps_switches.is_switch(words[end]):
+                end += 1
+            taken += words[i:end]
+        else:
+            rest.append(words[i])
+        i = end
+    return rest, lammps_switches.parse(taken)
+
+
+def application(words: list[str]) -> typer.Typer:
+    """The typer application with the command that is asked for, or with all of them for the help text."""
+    app = typer.Typer(name="asemd", help="LAMMPS input scripts as ASE objects.", add_completion=False, no_args_is_help=True,
+                      pretty_exceptions_enable=False)
+    app.callback()(_options)
+    for name in [w for w in words if w in COMMANDS][:1] or COMMANDS:
+        module, _, function = COMMANDS[name].partition(":")
+        app.command(name)(getattr(importlib.import_module(module), function))
+    return app
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"asemd {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Print the version.")]
+
+
+def _options(version: Version = False) -> None:
+    """LAMMPS input scripts as ASE objects."""
+
+
+def run(context: typer.Context,
+        script: Annotated[str | None, typer.Argument(help="LAMMPS input script.")] = None,
+        threads: Annotated[int, typer.Option(help="Number of threads.", min=1)] = 1,
+        precision: Annotated[str, typer.Option(help="double, or mixed: pair forces in single precision.")] = "double",
+        steps_cap: Annotated[int | None, typer.Option(help="Limit on the steps of every run and minimisation.", min=0)] = None,
+        log: Annotated[str | None, typer.Option(help="Log file, none for none.")] = None,
+        quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing; the log is written all the same.")] = False,
+        compat: Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")] = None,
+        ) -> int:
+    """Run a LAMMPS input script (LAMMPS's -var -in -log -echo -screen -nocite -sf -pk are accepted)."""
+    from asemd.lammps.session import Session, Stop
+    options: Switches = context.obj or Switches()
+    options.threads, options.cap = threads, steps_cap
+    options.precision = lammps_switches.one_of(precision, ("double", "mixed"), "--precision")
+    if compat is not None:
+        options.compat = lammps_switches.one_of(compat, ("lammps",), "--compat")
+    if log is not None:
+        options.log = log
+    path = script or options.input
+    if path is None:
+        raise InputError("asemd run needs a script: asemd run in.file (give the script before -var, or with -in)")
+    watcher = make_watcher(quiet or options.screen == "none")
+    session = Session(switches=options, screen=None if watcher.silent else watcher.write if options.screen is None else None)
+    if watcher.silent:
+        session.log.screen = None
+    session.observer = watcher
+    status = 0
+    with interruptible(session):
+        try:
+            session.file(path)
+        except Stop as stop:
+            status = stop.status
+        except KeyboardInterrupt:
+            session.log.write(f"interrupted at step {session.scene.step}\n")
+            status = INTERRUPTED
+        except Exception as e:
+            watcher.stop()
+            for problem in getattr(e, "problems", [e]):
+                session.log.to_file(f"ERROR: {problem}\n")
+            session.close_dumps()
+            session.log.close()
+            raise
+    session.close()
+    return complain("interrupted", INTERRUPTED) if status == INTERRUPTED else status
+
+
+class interruptible:     # noqa: N801  reads as a word in `with`
+    """Within it the first Ctrl-C ends the run in order, the second one at once."""
+
+    def __init__(self, session):
+        self.session = session
+
+    def __enter__(self):
+        try:
+            self.before = signal.signal(signal.SIGINT, self.stop)
+        except ValueError:      # not in the main thread
+            self.before = None
+
+    def stop(self, *_):
+        if self.session.interrupted or not self.session.running:
+            raise KeyboardInterrupt
+        self.session.interrupted = True
+
+    def __exit__(self, *error):
+        if self.before is not None:
+            signal.signal(signal.SIGINT, self.before)
+
+
+class Watcher:
+    """Looks at a run without a terminal: prints text as it comes."""
+
+    def __init__(self, silent: bool = False):
+        self.silent = silent
+
+    def write(self, text: str) -> None:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+
+    def start(self, steps: int) -> None:
+        """A run of that many steps begins."""
+
+    def update(self, done: int) -> None:
+        """That many steps are done."""
+
+    def stop(self) -> None:
+        """The run is over."""
+
+
+class Bar(Watcher):
+    """Progress bar with steps per second and time left; text appears above it."""
+
+    def __init__(self):
+        super().__init__()
+        from rich.console import Console
+        self.console = Console(highlight=False, markup=False, soft_wrap=True)
+        self.progress = None
+
+    def write(self, text: str) -> None:
+        if self.progress is None:
+            super().write(text)
+        else:
+            self.console.print(text, end="")
+
+    def start(self, steps: int) -> None:
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+        if steps > 0:
+            self.progress = Progress(BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[rate]} steps/s"), TimeRemainingColumn(),
+                                     console=self.console, transient=True)
+            self.task = self.progress.add_task("run", total=steps, rate="-")
+            self.progress.start()
+
+    def update(self, done: int) -> None:
+        if self.progress is not None:
+            elapsed = self.progress.tasks[0].elapsed or 0.0
+            self.progress.update(self.task, completed=done, rate=f"{done / elapsed:.4g}" if elapsed > 0.0 else "-")
+
+    def stop(self) -> None:
+        if self.progress is not None:
+            self.progress.stop()
+            self.progress = None
+
+
+def make_watcher(silent: bool) -> Watcher:
+    """A progress bar on a terminal, plain text elsewhere."""
+    return Bar() if sys.stdout.isatty() and not silent else Watcher(silent)
+
+
+if __name__ == "__main__":
+    entry()

@@ -1,0 +1,134 @@
+"""``minimize etol ftol maxiter maxeval``"""
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.lammps import log
+from asemd.lammps.driver import Driver, Plan, check, memory
+from asemd.minimize import Problem, find
+from asemd.thermo import Progress
+from asemd.words import number, whole
+
+DAMPED = ("fire", "quickmin")       # they move atoms with velocities, which stay
+
+
+def run(session, args):
+    session.scene.need_system("minimize")
+    if len(args) != 4:
+        raise InputError(f"minimize needs etol ftol maxiter maxeval, got {len(args)} values")
+    etol, ftol = (number(w, "minimize") for w in args[:2])
+    limits = [whole(w, "minimize") for w in args[2:]]
+    if etol < 0.0 or ftol < 0.0 or min(limits) < 0:
+        raise InputError("minimize: tolerances and limits must not be negative")
+    if session.switches.cap is not None:
+        limits[0] = min(limits[0], session.switches.cap)
+    Minimization(session, etol, ftol, *limits).run()
+
+
+class Landscape:
+    """Energy and forces as a function of unwrapped positions, with the fixes that act in minimisations.
+
+    The neighbour list is rebuilt only when some atom has moved more than half the skin.
+    """
+
+    def __init__(self, loop):
+        self.loop, self.system = loop, loop.system
+        self.image = loop.system.image.copy()
+        self.x0 = loop.system.x.copy()
+
+    def __call__(self, x: np.ndarray) -> tuple[float, np.ndarray]:
+        loop, system, engine = self.loop, self.system, self.loop.engine
+        system.x[:] = x - (system.image - self.image) @ system.box.cell
+        loop.sync_in()
+        if not engine.k.moved(engine.state.x, engine.held, engine.ns) <= (0.5 * loop.settings.skin) ** 2:
+            engine.rebuild()
+        engine.forces(True)
+        loop._hook("post_force")
+        loop.result = engine.collect()
+        fixes = sum(f.scalar() for f in loop.fixes if f.thermo_energy)
+        return loop.result.potential + fixes, system.f
+
+
+class Minimization(Driver):
+    """Carries out one minimisation, with the output of a run."""
+
+    def __init__(self, session, etol: float, ftol: float, maxiter: int, maxeval: int):
+        begin = session.scene.step
+        super().__init__(session, Plan(maxiter, begin, begin + maxiter))
+        self.arguments = (etol, ftol, maxiter, maxeval)
+
+    def run(self) -> None:
+        from asemd.loop import Loop
+        session, scene, begin = self.session, self.scene, self.scene.step
+        check(session)
+        session.close_loop()
+        fixes = [f for f in scene.fixes.values() if f.minimizes]
+        loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
+        loop.setup(begin, begin + self.plan.steps)
+        session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
+        self.progress = Progress(begin, begin, begin + self.plan.steps, builds=loop.engine.builds, dangerous=loop.engine.dangerous)
+        session.running = True
+        try:
+            result = self._minimize(loop, begin)
+        finally:
+            session.running = False
+            self._watch("stop")
+        seconds = time.perf_counter() - self.progress.started
+        if scene.thermo.footer():
+            session.log.write(scene.thermo.footer() + "\n")
+        loop.finish()
+        session.loop = None         # a run after a minimisation starts afresh
+        self._report(loop, result, seconds)
+        if session.interrupted:
+            raise KeyboardInterrupt
+
+    def _minimize(self, loop, begin: int):
+        session, scene = self.session, self.scene
+        self._provide(begin, begin + self.plan.steps, fresh=True)
+        if scene.thermo.header(self.words):
+            session.log.write(scene.thermo.header(self.words) + "\n")
+        self._output(begin, ends=True)
+        self._watch("start", self.plan.steps)
+        self.progress.started = time.perf_counter()
+        self.output_seconds = 0.0
+        landscape = Landscape(loop)
+        system, norm = scene.system, scene.thermo.is_normalised(scene.units)
+        problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0)
+
+        def look(iteration: int, x, v, energy, forces) -> bool:
+            loop.step = scene.step = begin + iteration
+            if scene.min_style in DAMPED:
+                system.v[:] = v
+            self._watch("update", iteration)
+            due = [d.every for d in scene.dumps.values()] + ([scene.thermo.every] if isinstance(scene.thermo.every, int) else [])
+            if any(every and scene.step % every == 0 for every in due):
+                began = time.perf_counter()
+                self._provide(scene.step, scene.step, fresh=True)
+                self._output(scene.step, ends=False)
+                self.output_seconds += time.perf_counter() - began
+            return session.interrupted
+
+        result = find(scene.min_style).minimize(problem, *self.arguments, scene.min_modify, look)
+        if scene.min_style in DAMPED:
+            system.v[:] = result.v
+        landscape(result.x)
+        loop.step = scene.step = begin + result.iterations
+        if result.iterations:
+            self._provide(scene.step, scene.step, fresh=True)
+            if session.last_thermo_step != scene.step:
+                self._output(scene.step, ends=True)
+        return result
+
+    def _report(self, loop, result, seconds: float) -> None:
+        scene, engine, write = self.scene, loop.engine, self.session.log.write
+        write(log.loop_line(seconds, result.iterations, scene.system.n) + "\n")
+        write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n\n{result.text()}\n\n")
+        timings = dict(engine.timings)
+        timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
+        present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0)
+        write(log.timing_table(seconds, timings, present) + "\n")
+        write(log.counts(scene.system.n, 0, int(engine.pairs), engine.builds, engine.dangerous if scene.neighbor.check else None))
+        self.session.log.flush()

@@ -1,0 +1,79 @@
+"""`asemd.read`: a LAMMPS script or data file as atoms with a calculator."""
+from __future__ import annotations
+
+import gzip
+import os
+import re
+
+from asemd.errors import InputError, Where
+from asemd.lammps.script import Command
+
+HEAD = 200      # lines that show what a file is
+
+
+def read(path: str | os.PathLike, units: str | None = None, atom_style: str | None = None):
+    """Atoms of a LAMMPS input script or data file.
+
+    A script is executed up to, not including, the first run, minimize or rerun that is reached. It writes no log and no dump and runs
+    no shell. A data file has a calculator only if a script says what the interactions are; alone it has none.
+
+    Parameters
+    ----------
+    path : str
+        Script or data file (also ``.gz``), told apart by what is in it. Relative paths in a script are relative to the working directory.
+    units, atom_style : str, optional
+        For a data file; by default what its first lines say, else ``lj`` and ``atomic``.
+
+    Returns
+    -------
+    asemd.system.Atoms
+        In order of id, in ASE's units (``units lj`` numbers pass unchanged).
+
+    Raises
+    ------
+    InputError
+        With the line of the script or data file.
+    """
+    from asemd.lammps.session import Session, Stop
+    path = os.fspath(path)
+    lines = head(path)
+    session = Session(passive=True)
+    if is_data(lines):
+        session.call("units", [units or hint(lines[:1], r"units = (\w+)") or "lj"])
+        session.call("atom_style", [atom_style or hint(lines, r"^\s*Atoms\s*#\s*(\w+)") or "atomic"])
+        session.execute(Command(f"read_data '{path}' nocoeff", Where("", 1, f"read_data {path}")))
+        return session.scene.system.to_ase()
+    if units or atom_style:
+        raise InputError(f"read: units and atom_style are for data files, {path} is a script and says them itself")
+    try:
+        session.file(path)
+    except Stop:
+        session.label = None
+    if session.scene.system is None:
+        raise InputError(f"read: {path} defines no atoms before its first run")
+    return session.scene.to_atoms()
+
+
+def head(path: str) -> list[str]:
+    """The first lines of a file."""
+    try:
+        with (gzip.open if path.endswith(".gz") else open)(path, "rt", encoding="utf-8", errors="replace") as f:
+            return [line for line, _ in zip(f, range(HEAD))]
+    except OSError as e:
+        raise InputError(f"cannot open {path}: {e.strerror or e}") from None
+
+
+def is_data(lines: list[str]) -> bool:
+    """A data file has counts and box bounds where a script has commands."""
+    body = [line.partition("#")[0] for line in lines[1:]]
+    counted = any(re.fullmatch(r"\s*\d+\s+atoms\s*", line) for line in body)
+    return counted and any(re.search(r"\bxlo\s+xhi\b|\bavec\b", line) for line in body)
+
+
+def hint(lines: list[str], pattern: str) -> str | None:
+    """The first match of a pattern in some lines."""
+    for line in lines:
+        match = re.search(pattern, line)
+        if match:
+            return match[1]
+    return None

@@ -1,0 +1,78 @@
+"""Thermo rows, character by character as LAMMPS (22 Jul 2025) writes them."""
+from __future__ import annotations
+
+import pytest
+
+from asemd.errors import InputError
+from asemd.thermo import Thermo
+
+ONE = [0, 1.44, -6.7733681, 0.0, -4.6218056, -5.0244179]
+
+
+def test_one():
+    thermo = Thermo()
+    columns = thermo.columns()
+    assert thermo.header(columns) == "   Step          Temp          E_pair         E_mol          TotEng         Press     "
+    assert thermo.row(columns, ONE) == "         0   1.44          -6.7733681      0             -4.6218056     -5.0244179    "
+
+
+def test_custom_mixes_integers_and_numbers():
+    thermo = Thermo()
+    thermo.set_style("custom", "step elapsed atoms dt time temp".split())
+    columns = thermo.columns()
+    assert thermo.header(columns) == "   Step       Elapsed      Atoms          Dt            Time           Temp     "
+    assert thermo.row(columns, [10, 0, 32, 0.005, 0.05, 1.0849398]) == (
+        "        10           0          32   0.005          0.05           1.0849398    ")
+
+
+def test_multi():
+    thermo = Thermo()
+    thermo.set_style("custom", "step press c_thermo_press[1] vol".split())
+    thermo.line = "multi"
+    assert thermo.row(thermo.columns(), [0, -2.97114, -3.011, 37.9057], 0, 0.0) == (
+        "------------ Step              0 ----- CPU =            0 (sec) -------------\n"
+        "Step     =              0 Press    =        -2.9711 c_thermo_press[1] =        -3.0110 \n"
+        "Volume   =        37.9057")
+
+
+def test_yaml():
+    thermo = Thermo()
+    thermo.set_style("custom", "step temp atoms".split())
+    thermo.line = "yaml"
+    columns = thermo.columns()
+    assert thermo.header(columns) == "---\nkeywords: ['Step', 'Temp', 'Atoms', ]\ndata:"
+    assert thermo.row(columns, [5, 1.3688330270177, 32]) == "  - [5, 1.3688330270177, 32, ]"
+    assert thermo.footer() == "..."
+
+
+def test_formats():
+    thermo = Thermo()
+    thermo.set_style("custom", ["step", "temp", "press"])
+    thermo.format_column[2], thermo.format_kind["int"], thermo.format_word["press"] = "%20.3f", "%6ld", "%g"
+    assert thermo.row(thermo.columns(), [10, -0.40438, 0.5]) == "    10               -0.404 0.5"
+    thermo.format_line = ("%d", "%g", "%g")
+    assert thermo.row(thermo.columns(), [0, 1.44, -5.504661]) == "0 1.44 -5.50466"
+
+
+def test_names():
+    thermo = Thermo()
+    thermo.names = {2: "TT", "press": "P"}
+    assert thermo.header(["step", "temp", "press"]).split() == ["Step", "TT", "P"]
+
+
+def test_volume_follows_a_changing_box():
+    thermo = Thermo()
+    assert thermo.columns(box_changes=True)[-1] == "vol"
+    thermo.set_style("custom", ["step"])
+    assert thermo.columns(box_changes=True) == ["step"]
+
+
+def test_unknown_keyword():
+    with pytest.raises(InputError, match="'tmp'.*did you mean temp"):
+        Thermo().set_style("custom", ["step", "tmp"])
+
+
+def test_a_new_style_forgets_what_was_modified():
+    thermo = Thermo(every=10, norm=False, lost="ignore")
+    thermo.set_style("one", [])
+    assert (thermo.every, thermo.norm, thermo.lost) == (10, None, "error")
