@@ -156,7 +156,9 @@ class Lattice:
         corners = np.array([(x, y, z) for x in (lo[0], hi[0]) for y in (lo[1], hi[1]) for z in (lo[2], hi[2])])
         cells = self.from_box(corners)
         first, last = np.floor(cells.min(axis=0)).astype(int) - 1, np.ceil(cells.max(axis=0)).astype(int) + 1
-        ni, nj, nk = last - first + 1
+        if self.dimension == 2:     # one plane of cells
+            first[2] = last[2] = 0
+        ni, nj, _ = last - first + 1
         nb = len(self.basis)
         portion = max(1, 500_000 // int(ni * nj * nb))
         plane = np.empty((nj, ni, nb, 3))

@@ -34,12 +34,12 @@ def run(session, args):
             raise InputError(f"create_atoms {style}: unknown region {values[-1]!r}{nearest(values[-1], scene.regions)}")
         region = scene.regions[values[-1]]
     if style == "single":
-        x, types, image = _single(values, system, lattice, options, kind)
+        x, types = _single(values, system, lattice, options, kind)
     elif style == "random":
-        x, types, image = _random(values, system, region, options["maxtry"], kind)
+        x, types = _random(values, system, region, options["maxtry"], kind)
     else:
-        x, types, image = _lattice(system, lattice, region, options["basis"], kind)
-    new = System(box=system.box, x=x, type=types, image=image, units=system.units, atom_style=system.atom_style,
+        x, types = _lattice(system, lattice, region, options["basis"], kind)
+    new = System(box=system.box, x=x, type=types, units=system.units, atom_style=system.atom_style,
                  dimension=system.dimension, counts=dict(system.counts), q=None if system.q is None else np.zeros(len(x)))
     scene.system = system.append(new)
     session.stale()
@@ -104,7 +104,7 @@ def _lattice(system, lattice: Lattice, region, basis_types: dict[int, int], kind
         xs.append(x[keep])
         ts.append(types[basis[keep]])
     x = np.concatenate(xs)
-    return x, np.concatenate(ts), np.zeros((len(x), 3), np.int32)
+    return x, np.concatenate(ts)
 
 
 def _single(values, system, lattice, options, kind):
@@ -113,11 +113,10 @@ def _single(values, system, lattice, options, kind):
         x *= lattice.spacings
     if system.dimension == 2 and x[0, 2] != 0.0:
         raise InputError(f"create_atoms single: z must be 0 in a 2d simulation, got {values[2]}")
-    image = np.zeros((1, 3), np.int32)
     if options["remap"]:
-        system.box.wrap(x, image)
+        system.box.wrap(x, np.zeros((1, 3), np.int32))      # the image flags of the new atom stay 0
     keep = _inside(x, system.box)
-    return x[keep], np.full(int(keep.sum()), kind), image[keep]
+    return x[keep], np.full(int(keep.sum()), kind)
 
 
 def _random(values, system, region, maxtry: int, kind: int):
@@ -133,11 +132,11 @@ def _random(values, system, region, maxtry: int, kind: int):
         lo, hi = np.maximum(lo, region.extent()[0]), np.minimum(hi, region.extent()[1])
         if np.any(lo > hi):
             raise InputError(f"create_atoms random: region {region.id} does not overlap the box")
-    per = 2 if system.dimension == 2 else 3
     found, failed = [], 0
     while len(found) < n:
-        x = np.zeros((max(64, n - len(found)), 3))
-        x[:, :per] = lo[:per] + generator.uniform(per * len(x)).reshape(-1, per) * (hi - lo)[:per]
+        x = lo + generator.uniform(3 * max(64, n - len(found))).reshape(-1, 3) * (hi - lo)
+        if system.dimension == 2:
+            x[:, 2] = lo[2] + 0.5 * (hi[2] - lo[2])
         good = _inside(x, box) if box.triclinic else np.ones(len(x), bool)
         if region is not None:
             good &= region.inside(x)
@@ -147,4 +146,4 @@ def _random(values, system, region, maxtry: int, kind: int):
         if failed >= maxtry:
             raise InputError(f"create_atoms random: no point found in {failed} tries, is the region in the box?")
     x = np.array(found[:n]).reshape(-1, 3)
-    return x, np.full(len(x), kind), np.zeros((len(x), 3), np.int32)
+    return x, np.full(len(x), kind)

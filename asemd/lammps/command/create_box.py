@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.box import Box
+from asemd.box import MARGIN, Box
 from asemd.errors import InputError, nearest
 from asemd.region.prism import Prism
 from asemd.system import COUNTS, MOLECULAR_STYLES, System
@@ -43,6 +43,7 @@ def run(session, args):
                           step=scene.step)
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
+    scene.system.box = _widened(scene.system.box)
 
 
 def _box(scene, region) -> Box:
@@ -62,6 +63,16 @@ def _box(scene, region) -> Box:
     if scene.dimension == 2 and not (lo[2] < 0.0 < hi[2]):
         raise InputError(f"create_box: a 2d box must have z = 0 between zlo {lo[2]:g} and zhi {hi[2]:g}")
     return Box.from_lammps(lo, hi, tilt, scene.boundary, triclinic)
+
+
+def _widened(box: Box) -> Box:
+    """The box with every shrink-wrapped face (s) moved out by its margin: atoms on the face are inside."""
+    margin = MARGIN * (box.hi - box.lo)
+    lo = box.lo - margin * [b[0] == "s" for b in box.boundary]
+    hi = box.hi + margin * [b[1] == "s" for b in box.boundary]
+    wide = Box.from_lammps(lo, hi, box.tilt, box.boundary, box.triclinic)
+    wide.initial = box.initial
+    return wide
 
 
 def describe(box: Box) -> str:

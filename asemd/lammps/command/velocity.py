@@ -110,7 +110,7 @@ class Velocity:
             if word == "NULL":
                 continue
             if word.startswith("v_"):
-                new = self.session.variables.per_atom(word[2:], self.system.n)[self.rows] * self.spacings[k]
+                new = self.session.variables.per_atom(word[2:], self.system.n)[self.rows]     # variables are not scaled
                 bad = np.flatnonzero(~np.isfinite(new))
                 if bad.size:
                     atom = self.system.id[self.rows[bad[0]]]
@@ -182,10 +182,12 @@ class Velocity:
         m, system = self.mass[self.rows], self.system
         x = system.box.unwrap(system.x, system.image)[self.rows]
         d = x - self._sum(x * m[:, None]) / float(self._sum(m))
-        momentum = self._sum(m[:, None] * np.cross(d, system.v[self.rows]))
-        inertia = np.eye(3) * float(self._sum(m * (d * d).sum(axis=1))) - self._sum(m[:, None, None] * d[:, :, None] * d[:, None, :])
-        # axes without inertia (one atom, atoms in a line) have no rotation to remove
-        system.v[self.rows] -= np.cross(np.linalg.pinv(inertia, rcond=1e-7, hermitian=True) @ momentum, d)
+        (x, y, z), (vx, vy, vz) = d.T, system.v[self.rows].T
+        momentum = self._sum(np.column_stack([m * (y * vz - z * vy), m * (z * vx - x * vz), m * (x * vy - y * vx)]))
+        xx, yy, zz = self._sum(np.column_stack([m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y)]))
+        xy, yz, xz = -self._sum(np.column_stack([m * x * y, m * y * z, m * x * z]))
+        wx, wy, wz = _solve(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), momentum)
+        system.v[self.rows] -= np.column_stack([wy * z - wz * y, wz * x - wx * z, wx * y - wy * x])
 
     def _current(self) -> float:
         """Temperature of the group: of the chosen compute, else 3 N - 3 degrees of freedom less those fixes remove."""
@@ -207,6 +209,18 @@ class Velocity:
                 return
             raise InputError(f"{self.what}: the temperature of group {self.group} is 0 and cannot be scaled")
         self.system.v[self.rows] *= math.sqrt(target / now)
+
+
+def _solve(inertia: np.ndarray, momentum: np.ndarray) -> np.ndarray:
+    """Angular velocity; about axes without inertia (one atom, atoms in a line) it is zero."""
+    (a, b, c), (_, e, f), (_, _, i) = inertia
+    determinant = a * e * i + b * f * c + c * b * f - a * f * f - b * b * i - c * e * c
+    if determinant <= 1e-6:
+        return np.linalg.pinv(inertia, rcond=1e-7, hermitian=True) @ momentum
+    inverse = np.array([[e * i - f * f, -(b * i - c * f), b * f - c * e],
+                        [-(b * i - f * c), a * i - c * c, -(a * f - c * b)],
+                        [b * f - e * c, -(a * f - b * c), a * e - b * b]]) / determinant
+    return np.array([row[0] * momentum[0] + row[1] * momentum[1] + row[2] * momentum[2] for row in inverse])
 
 
 class State:
