@@ -226,7 +226,8 @@ class System:
         arrays["image"] = np.zeros((self.n * copies, 3), np.int32)
         arrays["id"] = arrays["id"] + number * self.id.max(initial=0)
         if self.molecular:
-            arrays["molecule"] = arrays["molecule"] + number * self.molecule.max(initial=0)
+            m = arrays["molecule"]      # 0 means no molecule and stays
+            arrays["molecule"] = np.where(m > 0, m + number * self.molecule.max(initial=0), 0)
         box.wrap(arrays["x"], arrays["image"])
         return self._with(arrays, box=box, topology=top)
 

@@ -1,0 +1,388 @@
+"""Reading LAMMPS data files.
+
+Sections are parsed in bulk; only when that fails are their lines looked at one by one, to find the faulty one (or to read type labels).
+"""
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from asemd.box import Box
+from asemd.errors import InputError, Where, nearest
+from asemd.lammps.data_format import ATOM_STYLES, COEFFS, IMAGE, KIND_OF, LABELS, REAL_HEADER, TOPOLOGY
+from asemd.lammps.data_table import parse_table
+from asemd.lammps.data_text import DataText
+from asemd.system import System, id_range
+from asemd.topology import ATOMS, Topology
+
+
+@dataclass
+class DataFile:
+    """What a data file says.
+
+    Attributes
+    ----------
+    system : System
+        Atoms in order of id, inside the box.
+    coeffs : dict
+        Section -> list of (place, words); types as numbers, without comments.
+    styles_hint : dict
+        Section -> style named after ``#`` in its heading.
+    headings : dict
+        Section -> place of its heading.
+    title : str
+        First line.
+    """
+
+    system: System
+    coeffs: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
+    styles_hint: dict[str, str] = field(default_factory=dict)
+    headings: dict[str, Where] = field(default_factory=dict)
+    title: str = ""
+
+
+def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
+              dimension: int = 3, extra: dict[str, int] | None = None, onto: System | None = None,
+              shift: Sequence[float] = (0.0, 0.0, 0.0)) -> DataFile:
+    """Read a data file (``.gz``: compressed).
+
+    Parameters
+    ----------
+    units, atom_style, boundary, dimension
+        As in the script: the file does not say them.
+    extra : dict, optional
+        Added to the numbers of the header: names of `System.counts`.
+    onto : System, optional
+        What the atoms will be added to: its box is extended by that of the file.
+    shift : (3,) float
+        Added to coordinates and box bounds.
+
+    Returns
+    -------
+    DataFile
+
+    Raises
+    ------
+    InputError
+        Missing file, or any fault of it; names line and ids.
+
+    Warns
+    -----
+    InputWarning
+        What is legal but hardly meant: a bond listed twice, image flags that tear bonds apart, style hints that differ.
+    """
+    return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float)).read()
+
+
+class _Reader(DataText):
+    """The values of one file, section by section."""
+
+    def __init__(self, path, units, atom_style, boundary, dimension, extra, onto, shift):
+        super().__init__(path, atom_style)
+        self.units, self.boundary, self.dimension = units, boundary, dimension
+        self.extra, self.onto, self.shift = extra, onto, shift
+        self.labels: dict[str, dict[int, str]] = {}
+
+    # ---- the whole file
+    def read(self) -> DataFile:
+        if self.atom_style not in ATOM_STYLES:
+            raise InputError(f"read_data: atom_style {self.atom_style} is not supported; use one of {' '.join(ATOM_STYLES)}")
+        for section, kind in LABELS.items():
+            if section in self.sections:
+                self.labels[kind] = self.read_labels(section, kind)
+        counts = {"ntypes": self.number("atom types")} | {f"n{kind}types": self.number(f"{kind} types") for kind in ATOMS}
+        counts |= {f"extra_{kind}_per_atom": self.number(f"extra {kind} per atom") for kind in (*ATOMS, "special")}
+        self.types = {"atom": counts["ntypes"], **{kind: counts[f"n{kind}types"] for kind in ATOMS}}
+        counts = {name: n + self.extra.get(name, 0) for name, n in counts.items()}
+        box, rotation = self.read_box()
+        mass = self.read_masses(counts["ntypes"])
+        system = self.read_atoms(box, rotation, counts, mass)
+        coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
+        self.check_hints()
+        return DataFile(system, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
+                        {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip())
+
+    def check_hints(self) -> None:
+        hint = self.sections["Atoms"].hint if "Atoms" in self.sections else ""
+        if hint and hint != self.atom_style:
+            self.warn(f"Atoms section is said to be of style {hint}, but atom_style is {self.atom_style}", self.sections["Atoms"].line)
+        said = self.lines[0].rpartition("units = ")[2].split()[:1] if "units = " in self.lines[0] else []
+        if said and said[0] != self.units and self.units != "ase":
+            self.warn(f"the file was written in units {said[0]}, but units is {self.units}", 0)
+
+    # ---- box
+    def read_box(self) -> tuple[Box, np.ndarray | None]:
+        """The box of the file, and for general vectors the rotation into LAMMPS's frame."""
+        head = self.header
+        try:
+            if general := [w for w in ("avec", "bvec", "cvec") if w in head]:
+                if len(general) < 3:
+                    raise InputError("the header needs all of avec, bvec, cvec").at(self.where(self.header_line[general[0]]))
+                origin = np.array(head.get("abc origin", [0.0] * 3)) + self.shift
+                cell = np.array([head[w] for w in general])
+                if np.linalg.det(cell) < 0:
+                    raise InputError("avec, bvec, cvec must be right-handed").at(self.where(self.header_line["avec"]))
+                box, rotation = Box(origin, cell, self.boundary).to_lammps()
+                return Box(origin, box.cell, self.boundary, triclinic=True), rotation
+            bounds = np.array([head.get(f"{a}lo {a}hi", [-0.5, 0.5]) for a in "xyz"]) + self.shift[:, None]
+            box = Box.from_lammps(*bounds.T, head.get("xy xz yz", (0, 0, 0)), self.boundary, triclinic="xy xz yz" in head)
+        except InputError as e:
+            line = next((self.header_line[f"{a}lo {a}hi"] for a in "xyz" if f"{a}lo" in e.message and f"{a}lo {a}hi" in head),
+                        max((self.header_line[w] for w in head if w in REAL_HEADER), default=0))
+            raise e.at(self.where(line)) from None
+        if self.dimension == 2 and not box.lo[2] < 0.0 < box.hi[2]:
+            raise self.fail("zlo and zhi of a 2d system must lie on both sides of 0", self.header_line.get("zlo zhi", 0))
+        if self.dimension == 2 and box.tilt[1:].any():
+            raise self.fail("xz and yz of a 2d system must be 0", self.header_line["xy xz yz"])
+        return box, None
+
+    def union(self, box: Box) -> Box:
+        """The box of the file together with that of the system the atoms are added to."""
+        old = self.onto.box
+        if not old.is_lammps_frame or not np.array_equal(old.tilt, box.tilt):
+            raise self.fail("read_data add: the tilt factors of both boxes must be equal", self.header_line.get("xy xz yz"))
+        return Box.from_lammps(np.minimum(old.lo, box.lo), np.maximum(old.hi, box.hi), old.tilt, old.boundary, old.triclinic)
+
+    # ---- sections
+    def table(self, section: str, columns: Sequence[str], count: int, kind: str = "atom", optional: Sequence[str] = ()):
+        """Columns of a section as arrays, and a function row -> line index."""
+        s = self.sections[section]
+        try:
+            values, where = parse_table(self.lines, s.first, s.last, columns, {c: KIND_OF[c] for c in (*columns, *optional)}, optional,
+                                        self.labels.get(kind, {}))
+        except InputError as e:
+            style = f" (atom_style {self.atom_style})" if section == "Atoms" else ""
+            raise self.fail(f"{section} section: {e.message}{style}", e.line) from None
+        n = len(values[columns[0]])
+        if n > count:
+            raise self.fail(f"{section} section: extra line, the header says {count} (there are {n})", where(count))
+        if n < count:
+            raise self.fail(f"{section} section has {n} line{'s' * (n != 1)}, the header says {count} (truncated file?)",
+                            where(n - 1) if n else s.line)
+        for name, array in values.items():
+            if array.dtype == float and not np.isfinite(array).all():
+                row = int(np.argmin(np.isfinite(array)))
+                value = "NaN" if np.isnan(array[row]) else "infinite"
+                what = {"q": "charge"}.get(name, f"velocity {name}" if name.startswith("v") else f"coordinate {name}")
+                owner = f" of atom {values['id'][row]}" if "id" in values else ""
+                raise self.fail(f"{section} section: {what}{owner} is {value}, not a number", where(row))
+        return values, where
+
+    def in_range(self, section: str, types: np.ndarray, kind: str, where) -> None:
+        most = self.types[kind]
+        bad = (types < 1) | (types > most)
+        if bad.any():
+            row = int(np.argmax(bad))
+            valid = f"1-{most}" if most else f'none: the header has no "{kind} types" line'
+            raise self.fail(f"{section} section: {kind} type {types[row]} is out of range ({valid})", where(row))
+
+    def read_labels(self, section: str, kind: str) -> dict[int, str]:
+        out: dict[int, str] = {}
+        count, s = self.number(f"{kind} types"), self.sections[section]
+        for i in self.content(s):
+            words = self.lines[i].split("#", 1)[0].split()
+            if len(words) != 2 or not words[0].isdigit():
+                raise self.fail(f"{section} section: expected a type number and a label", i)
+            t, label = int(words[0]), words[1]
+            if not 1 <= t <= count:
+                raise self.fail(f"{section} section: {kind} type {t} is out of range (1-{count})", i)
+            if label[0].isdigit() or label[0] in "#*":
+                raise self.fail(f"{section} section: label {label!r} must not begin with a digit, # or *", i)
+            if t in out or label in out.values():
+                raise self.fail(f"{section} section: {f'type {t}' if t in out else f'label {label}'} appears twice", i)
+            out[t] = label
+        if len(out) != count:
+            raise self.fail(f"{section} section has {len(out)} lines, the header says {count} {kind} types", s.line)
+        return out
+
+    def type_number(self, section: str, word: str, kind: str, index: int) -> int:
+        known = {label: t for t, label in self.labels.get(kind, {}).items()}
+        if word in known:
+            return known[word]
+        try:
+            t = int(word)
+        except ValueError:
+            raise self.fail(f"{section} section: expected an {kind} type, got {word!r}{nearest(word, known)}", index) from None
+        self.in_range(section, np.array([t]), kind, lambda _: index)
+        return t
+
+    def read_masses(self, ntypes: int) -> np.ndarray:
+        mass = np.full(ntypes + 1, np.nan)
+        if "Masses" not in self.sections:
+            return mass
+        section = self.sections["Masses"]
+        for i in self.content(section):
+            words = self.lines[i].split("#", 1)[0].split()
+            if len(words) != 2:
+                raise self.fail(f"Masses section: expected an atom type and a mass, got {len(words)} words", i)
+            t = self.type_number("Masses", words[0], "atom", i)
+            try:
+                value = float(words[1])
+            except ValueError:
+                raise self.fail(f"Masses section: expected a mass, got {words[1]!r}", i) from None
+            if not 0.0 < value < np.inf:
+                raise self.fail(f"Masses section: the mass of type {t} must be a positive number, got {words[1]}", i)
+            if not np.isnan(mass[t]):
+                raise self.fail(f"Masses section: type {t} appears twice", i)
+            mass[t] = value
+        missing = np.flatnonzero(np.isnan(mass[1:self.types["atom"] + 1])) + 1
+        if len(missing):
+            raise self.fail(f"Masses section has no mass for atom type {missing[0]} of {self.types['atom']}", section.line)
+        return mass
+
+    def read_atoms(self, box: Box, rotation: np.ndarray | None, counts: dict[str, int], mass: np.ndarray) -> System:
+        columns, n = ATOM_STYLES[self.atom_style], self.number("atoms")
+        if n:
+            a, where = self.table("Atoms", columns, n, optional=IMAGE)
+        else:
+            a, where = {c: np.zeros(0) for c in columns}, None
+        ids = a["id"].astype(np.int64)
+        order = np.argsort(ids, kind="stable")
+        ids = ids[order]
+        line = {} if n == 0 else (lambda row: where(int(order[row])))     # line of an atom in order of id
+        if n and ids[0] < 1:
+            raise self.fail(f"Atoms section: atom ID {ids[0]} must be positive", line(0))
+        twice = np.flatnonzero(ids[1:] == ids[:-1])
+        if len(twice):
+            first, second = sorted((line(twice[0]), line(twice[0] + 1)))
+            raise self.fail(f"Atoms section: duplicate atom ID {ids[twice[0]]} on lines {first + 1} and {second + 1}", second)
+        self.in_range("Atoms", a["type"], "atom", where)
+        x = np.column_stack([a[c] for c in "xyz"])[order] + self.shift
+        image = np.zeros((n, 3), np.int32)
+        flagged = n > 0 and "nx" in a
+        if flagged:
+            image[:] = np.column_stack([a[c] for c in IMAGE])[order]
+            self.drop_flags(image, box, line)
+        if rotation is not None:
+            x = (x - box.origin) @ rotation + box.origin
+        whole = box if self.onto is None else self.union(box)
+        self.check_inside(x, ids, whole, line)
+        v = self.read_velocities(ids)
+        if rotation is not None:
+            v = v @ rotation
+        whole.wrap(x, image)
+        top = self.read_topology(ids)
+        known = {"id", "type", "molecule", "q", *"xyz", *IMAGE}
+        system = System(
+            box=whole.shrink_wrapped(x), x=x, id=ids, type=a["type"][order], image=image, v=v, mass=mass, topology=top, counts=counts,
+            molecule=a["molecule"][order] if "molecule" in a else None, q=a["q"][order] if "q" in a else None, labels=self.labels,
+            units=self.units, atom_style=self.atom_style, dimension=self.dimension,
+            extra={name: array[order] for name, array in a.items() if name not in known})
+        if flagged and self.onto is None:
+            self.check_images(system, line)
+        return system
+
+    def drop_flags(self, image: np.ndarray, box: Box, line) -> None:
+        useless = (image != 0) & ~box.periodic
+        if useless.any():
+            row = int(np.argmax(useless.any(axis=1)))
+            axis = "xyz"[int(np.argmax(useless[row]))]
+            self.warn(f"Atoms section: image flags in the non-periodic direction {axis} are set to 0", line(row))
+            image[useless] = 0
+
+    def check_inside(self, x, ids, box: Box, line) -> None:
+        """Atoms must be inside the faces that are not periodic."""
+        s = box.fractional(x)
+        open_above = np.array([b[1] == "f" for b in box.boundary])
+        outside = ~box.periodic & ((s < 0.0) | np.where(open_above, s >= 1.0, s > 1.0))
+        if outside.any():
+            row = int(np.argmax(outside.any(axis=1)))
+            k = int(np.argmax(outside[row]))
+            more = int(outside.any(axis=1).sum()) - 1
+            kind = {"f": "fixed"}.get(box.boundary[k][0], "shrink-wrapped")
+            raise self.fail(f"atom {ids[row]} at {'xyz'[k]}={x[row, k]:g} is outside the {kind} box [{box.lo[k]:g}, {box.hi[k]:g}]"
+                            + (f", and {more} more" if more else ""), line(row))
+
+    def check_images(self, system: System, line) -> None:
+        bad = system.image_conflicts()
+        if not len(bad):
+            return
+        i, j = system.topology.bonds[bad[0]]
+        far = system.box.unwrap(system.x[[i, j]], system.image[[i, j]])
+        suspect = i if np.abs(system.image[i]).sum() > np.abs(system.image[j]).sum() else j
+        more = f", and {len(bad) - 1} more" if len(bad) > 1 else ""
+        self.warn(f"inconsistent image flags: bond {bad[0] + 1} (atoms {system.id[i]}-{system.id[j]}): image flags put the atoms "
+                  f"{np.linalg.norm(far[1] - far[0]):g} apart, more than half the box{more}", line(suspect))
+
+    def read_velocities(self, ids: np.ndarray) -> np.ndarray:
+        v = np.zeros((len(ids), 3))
+        if "Velocities" not in self.sections:
+            return v
+        a, where = self.table("Velocities", ("id", "vx", "vy", "vz"), len(ids))
+        rows = self.rows("Velocities", a["id"][:, None], ids, where)[:, 0]
+        order = np.argsort(rows, kind="stable")
+        twice = np.flatnonzero(np.diff(rows[order]) == 0)
+        if len(twice):
+            first, second = (where(int(r)) for r in order[twice[0]:twice[0] + 2])
+            name = ids[rows[order[twice[0]]]]
+            raise self.fail(f"Velocities section: atom ID {name} appears on lines {first + 1} and {second + 1}", second)
+        v[rows] = np.column_stack([a["vx"], a["vy"], a["vz"]])
+        return v
+
+    def rows(self, section: str, atoms: np.ndarray, ids: np.ndarray, where) -> np.ndarray:
+        """Rows of atom ids (m, k)."""
+        at = np.minimum(np.searchsorted(ids, atoms), max(len(ids) - 1, 0))
+        bad = ids[at] != atoms if len(ids) else np.ones(atoms.shape, bool)
+        if bad.any():
+            row = int(np.argmax(bad.any(axis=1)))
+            raise self.fail(f"{section} section: atom ID {atoms[row][bad[row]][0]} does not exist ({id_range(ids)})", where(row))
+        return at
+
+    def read_topology(self, ids: np.ndarray) -> Topology:
+        parts = {}
+        for section, kind in TOPOLOGY.items():
+            n = self.number(kind + "s")
+            if section not in self.sections or not n:
+                continue
+            columns = ("number", "type", *(f"atom{k}" for k in range(1, ATOMS[kind] + 1)))
+            a, where = self.table(section, columns, n, kind)
+            self.in_range(section, a["type"], kind, where)
+            atoms = np.column_stack([a[c] for c in columns[2:]])
+            rows = self.rows(section, atoms, ids, where)
+            same = (np.diff(np.sort(rows, axis=1), axis=1) == 0).any(axis=1)
+            if same.any():
+                row = int(np.argmax(same))
+                raise self.fail(f"{section} section: an atom appears twice in {kind} {'-'.join(map(str, atoms[row]))}", where(row))
+            self.check_twice(section, kind, atoms, a["type"], where)
+            parts[kind + "s"], parts[kind + "_types"] = rows, a["type"]
+        return Topology(**parts)
+
+    def check_twice(self, section: str, kind: str, atoms: np.ndarray, types: np.ndarray, where) -> None:
+        """Warn of an item listed twice; of dihedrals and impropers only with the same type (sums of terms are usual)."""
+        flip = atoms[:, 0] > atoms[:, -1] if kind != "improper" else np.zeros(len(atoms), bool)
+        key = np.where(flip[:, None], atoms[:, ::-1], atoms)
+        if kind in ("dihedral", "improper"):
+            key = np.column_stack([key, types])
+        order = np.lexsort(key.T[::-1])
+        twice = np.flatnonzero((np.diff(key[order], axis=0) == 0).all(axis=1))
+        if len(twice):
+            first, second = (int(r) for r in order[twice[0]:twice[0] + 2])
+            pair = "pair" if kind == "bond" else kind
+            more = f", and {len(twice) - 1} more" if len(twice) > 1 else ""
+            self.warn(f"{section} section: {pair} {'-'.join(map(str, key[first][:ATOMS[kind]]))} listed twice (lines {where(first) + 1}, "
+                      f"{where(second) + 1}): duplicate {kind}, it counts double{more}", where(second))
+
+    def read_coeffs(self, name: str) -> list[tuple[Where, list[str]]]:
+        category, mark = COEFFS[name]
+        kind = "atom" if category == "pair" else category
+        ntypes, pairs = self.types[kind], name == "PairIJ Coeffs"
+        out, seen = [], {}
+        for i in self.content(self.sections[name]):
+            words = self.lines[i].split("#", 1)[0].split()
+            if len(words) < 1 + pairs:
+                raise self.fail(f"{name} section: expected two atom types", i)
+            types = [self.type_number(name, w, kind, i) for w in words[:1 + pairs]]
+            key = tuple(sorted(types))
+            if key in seen:
+                raise self.fail(f"{name} section: {kind} type {' '.join(map(str, types))} appears on lines {seen[key] + 1} and {i + 1}", i)
+            seen[key] = i
+            out.append((self.where(i), [*map(str, types), *words[1 + pairs:]]))
+        want = ntypes * (ntypes + 1) // 2 if pairs else ntypes
+        if len(out) != want:
+            place = self.sections[name].line
+            raise self.fail(f"{name} section has {len(out)} line{'s' * (len(out) != 1)}, but {want} "
+                            f"{'pairs of ' * pairs}{kind} types need {'a line' if want == 1 else 'lines'}", place)
+        return out

@@ -1,0 +1,161 @@
+"""The outline of a LAMMPS data file: its lines, the header, where each section begins and ends, and whether both belong together."""
+from __future__ import annotations
+
+import gzip
+import os
+import warnings
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from asemd.errors import InputError, InputWarning, Where, nearest
+from asemd.lammps.data_format import BONDED, COEFFS, HEADER, LABELS, REAL_HEADER, SECTIONS, TOPOLOGY, UNSUPPORTED
+
+
+def _lines(path: str | os.PathLike) -> list[str]:
+    path = os.fspath(path)
+    try:
+        with (gzip.open if path.endswith(".gz") else open)(path, "rb") as f:
+            raw = f.read()
+    except FileNotFoundError:
+        raise InputError(f"read_data: file {path} not found") from None
+    except (EOFError, zlib.error, gzip.BadGzipFile) as e:
+        raise InputError(f"read_data: {path} is not a complete gzip file: {e}") from None
+    except OSError as e:
+        raise InputError(f"read_data: cannot read {path}: {e.strerror or e}") from None
+    if b"\0" in raw:
+        raise InputError(f"read_data: {path} is not a text file")
+    text = raw.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    return text.split("\n")
+
+
+@dataclass
+class Section:
+    name: str
+    line: int            # index of the heading
+    first: int           # lines[first:last] hold the values
+    last: int
+    hint: str
+
+
+class DataText:
+    """Lines, header and sections of a data file.
+
+    Attributes
+    ----------
+    lines : list of str
+    header : dict
+        Header line -> its numbers; `header_line` has the index of the line.
+    sections : dict of str to Section
+    """
+
+    def __init__(self, path: str | os.PathLike, atom_style: str):
+        self.path, self.lines, self.atom_style = os.fspath(path), _lines(path), atom_style
+        self.header: dict[str, list[float]] = {}
+        self.header_line: dict[str, int] = {}
+        self.sections: dict[str, Section] = {}
+        self.read_sections(self.read_header())
+        self.check_promises()
+
+    # ---- places and messages
+    def where(self, index: int) -> Where:
+        return Where(self.path, index + 1, self.lines[index] if index < len(self.lines) else "")
+
+    def fail(self, message: str, index: int | None = None) -> InputError:
+        return InputError(message, None if index is None else self.where(index))
+
+    def warn(self, message: str, index: int) -> None:
+        warnings.warn(f"{message} ({self.where(index)})", InputWarning, stacklevel=5)
+
+    def content(self, section: Section) -> list[int]:
+        """Indices of the lines of a section that hold values."""
+        return [i for i in range(section.first, section.last) if self.lines[i].split("#", 1)[0].strip()]
+
+    def number(self, word: str) -> int:
+        return int(self.header.get(word, [0])[0])
+
+    def read_header(self) -> int:
+        """Header lines; returns the index of the first line of the body."""
+        i = 1
+        while i < len(self.lines):
+            words = self.lines[i].split("#", 1)[0].split()
+            if words:
+                if words[0][0].isalpha():
+                    break
+                values, word = _leading_numbers(words)
+                if word not in HEADER:
+                    raise self.fail(f"unknown header line {' '.join(words)!r}{nearest(word, HEADER)}", i)
+                if len(values) != HEADER[word]:
+                    raise self.fail(f"header line {word!r} needs {HEADER[word]} number{'s' * (HEADER[word] > 1)}, got {len(values)}", i)
+                if word not in REAL_HEADER and (values[0] < 0 or values[0] != int(values[0])):
+                    raise self.fail(f"the number of {word} must be a whole number, not negative", i)
+                self.header[word], self.header_line[word] = values, i
+            i += 1
+        return i
+
+    def read_sections(self, start: int) -> None:
+        """Find the headings."""
+        current = None
+        for i in (k for k in range(start, len(self.lines)) if self.lines[k].lstrip()[:1].isalpha()):
+            text, _, hint = self.lines[i].partition("#")
+            name = " ".join(text.split())
+            if name not in SECTIONS:
+                if current and (not _is_heading(name) or self.takes_words(current, name)):
+                    continue
+                raise self.fail(f"unknown section {name!r}{nearest(name, [*SECTIONS, *HEADER])}", i)
+            if name in UNSUPPORTED:
+                raise self.fail(f"section {name} belongs to atom_style {UNSUPPORTED[name]}, which is not supported", i)
+            if name in self.sections:
+                raise self.fail(f"section {name} appears twice (lines {self.sections[name].line + 1} and {i + 1})", i)
+            if current:
+                self.sections[current].last = i
+            current = name
+            self.sections[name] = Section(name, i, i + 1, len(self.lines), " ".join(hint.split()[:1]))
+
+    def takes_words(self, section: str, text: str) -> bool:
+        """Whether a line made of words only can be a line of values: coefficients under a type label."""
+        if section not in COEFFS:
+            return False
+        kind = "atom" if COEFFS[section][0] == "pair" else COEFFS[section][0]
+        label = next((name for name, k in LABELS.items() if k == kind and name in self.sections), None)
+        return label is not None and any(text.split()[0] in self.lines[i].split()[1:2] for i in self.content(self.sections[label]))
+
+    def check_promises(self) -> None:
+        """Header and sections must belong together."""
+        for word in UNSUPPORTED.values():
+            plural = {"tri": "triangles", "body": "bodies"}.get(word, word + "s")
+            if self.number(plural):
+                raise self.fail(f"{plural} need atom_style {word}, which is not supported", self.header_line[plural])
+        kinds = BONDED.get(self.atom_style, ())
+        for section, word in (("Atoms", "atoms"), *((s, k + "s") for s, k in TOPOLOGY.items())):
+            n, there = self.number(word), self.sections.get(section)
+            if section in TOPOLOGY and (n or there) and TOPOLOGY[section] not in kinds:
+                place = there.line if there else self.header_line[word]
+                raise self.fail(f"{word} are not possible with atom_style {self.atom_style}", place)
+            if n and not there:
+                raise self.fail(f"the header says {n} {word} but there is no {section} section (truncated file?)", self.header_line[word])
+            if there and word not in self.header and self.content(there):
+                raise self.fail(f'the header has no "{word}" line but there is a section {section}', there.line)
+        if not self.number("atom types") and self.number("atoms"):
+            raise self.fail(f'the header of {self.path} has no "atom types" line')
+
+
+def _leading_numbers(words: list[str]) -> tuple[list[float], str]:
+    """The numbers a header line begins with, and the words that follow."""
+    values = []
+    for w in words:
+        try:
+            value = float(w)
+        except ValueError:
+            break
+        if not np.isfinite(value):
+            break
+        values.append(value)
+    return values, " ".join(words[len(values):])
+
+
+def _is_heading(text: str) -> bool:
+    """Whether a line looks like a heading: a few words that all begin with a letter."""
+    words = text.split()
+    return len(words) <= 4 and all(w[0].isalpha() for w in words)

@@ -1,0 +1,165 @@
+"""Writing LAMMPS data files: everything a system and its interactions say, with all digits."""
+from __future__ import annotations
+
+import gzip
+import os
+import warnings
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from asemd.errors import InputError, InputWarning
+from asemd.forcefield import Interactions
+from asemd.lammps.data_format import ATOM_STYLES, BONDED, COEFFS, LABELS, TOPOLOGY
+from asemd.system import LABELLED, System
+
+MARKS = {category: {mark: name for name, (c, mark) in COEFFS.items() if c == category and mark}
+         for category in ("angle", "dihedral", "improper")}
+
+
+def write_data(path: str | os.PathLike, system: System, interactions: Interactions | None = None, *, pair: str = "ii",
+               types: str = "numeric", labels: bool = True) -> None:
+    """Write a data file; a path ending in ``.gz`` is compressed.
+
+    Parameters
+    ----------
+    system : System
+        Atoms are wrapped into the box; a box in another frame than LAMMPS's is rotated, with positions and velocities.
+    interactions : Interactions, optional
+        Its coefficients are written; by default none.
+    pair : str
+        ``ii``: a line for each atom type; ``ij``: a line for each pair of types, mixed ones included.
+    types : str
+        ``numeric``, or ``labels``: type labels instead of numbers in Masses, Atoms, Bonds, ...
+    labels : bool
+        Whether sections of type labels are written.
+
+    Raises
+    ------
+    InputError
+        What a data file cannot hold (masses by atom), missing masses, a path that cannot be written.
+
+    Warns
+    -----
+    InputWarning
+        Coefficients that a data file cannot hold (hybrid pair styles with several lines for one type).
+    """
+    if system.atom_style not in ATOM_STYLES:
+        raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
+    if system.rmass is not None:
+        raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
+    if types == "labels" and not labels:
+        raise InputError("write_data: types labels needs the sections of type labels")
+    text = "\n".join(_file(_lammps_frame(system), interactions, pair, types, labels)) + "\n"
+    path = os.fspath(path)
+    try:
+        with (gzip.open if path.endswith(".gz") else open)(path, "wt", encoding="utf-8") as f:
+            f.write(text)
+    except OSError as e:
+        raise InputError(f"write_data: cannot write {path}: {e.strerror or e}") from None
+
+
+def _lammps_frame(system: System) -> System:
+    out = system.copy()
+    if not system.box.is_lammps_frame:
+        out.box, rotation = system.box.to_lammps()
+        out.x, out.v = (system.x - system.box.origin) @ rotation, system.v @ rotation
+    out.box.wrap(out.x, out.image)
+    out.box = out.box.shrink_wrapped(out.x)
+    return out
+
+
+def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool) -> Iterator[str]:
+    units = "" if s.units == "ase" else f", units = {s.units}"
+    yield f"LAMMPS data file written by asemd, timestep = {s.step}{units}"
+    yield ""
+    yield f"{s.n} atoms"
+    yield f"{s.counts['ntypes']} atom types"
+    for section, kind in TOPOLOGY.items():
+        if kind in BONDED.get(s.atom_style, ()):
+            yield f"{len(s.topology.items(kind)[1])} {section.lower()}"
+            yield f"{s.counts[f'n{kind}types']} {kind} types"
+    yield ""
+    for axis, lo, hi in zip("xyz", s.box.lo.tolist(), s.box.hi.tolist()):
+        yield f"{lo!r} {hi!r} {axis}lo {axis}hi"
+    if s.box.triclinic:
+        yield " ".join(map(repr, s.box.tilt.tolist())) + " xy xz yz"
+    names = {kind: {t: str(t) for t in range(1, _count(s, kind) + 1)} for kind in LABELLED}
+    for section, kind in LABELS.items():
+        if labels and s.labels[kind]:
+            yield from _section(section, (f"{t} {label}" for t, label in sorted(s.labels[kind].items())))
+        if types == "labels":
+            names[kind] |= s.labels[kind]
+    if not np.isnan(s.mass[1:]).all():
+        s.check_masses()
+        yield from _section("Masses", (f"{names['atom'][t]} {m!r}" for t, m in enumerate(s.mass[1:].tolist(), 1)))
+    if interactions is not None:
+        yield from _coefficients(interactions, s, pair)
+    if s.n:
+        yield from _section(f"Atoms # {s.atom_style}", _atoms(s, names["atom"]))
+        yield from _section("Velocities", (f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in zip(s.id.tolist(), s.v.tolist())))
+    for section, kind in TOPOLOGY.items():
+        atoms, item_types = s.topology.items(kind)
+        if len(atoms):
+            yield from _section(section, (f"{k} {names[kind][t]} {' '.join(map(str, ids))}" for k, (t, ids) in
+                                          enumerate(zip(item_types.tolist(), s.id[atoms].tolist()), 1)))
+
+
+def _count(s: System, kind: str) -> int:
+    return s.counts["ntypes" if kind == "atom" else f"n{kind}types"]
+
+
+def _section(heading: str, lines: Iterable[str]) -> Iterator[str]:
+    yield ""
+    yield heading
+    yield ""
+    yield from lines
+
+
+def _atoms(s: System, names: dict[int, str]) -> Iterator[str]:
+    known = {"id": s.id, "molecule": s.molecule, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T)), **s.extra}
+    columns = [[names[t] for t in s.type.tolist()] if c == "type" else map(repr, known[c].tolist()) for c in ATOM_STYLES[s.atom_style]]
+    return map(" ".join, zip(*columns, *(map(str, flags) for flags in s.image.T.tolist())))
+
+
+def _coefficients(interactions: Interactions, s: System, pair: str) -> Iterator[str]:
+    for category in ("pair", *TOPOLOGY.values()):
+        style = interactions.style_name(category)
+        if style == "none" or not _count(s, "atom" if category == "pair" else category):
+            continue
+        if category == "pair":
+            sections = _pair_sections(interactions, s, pair)
+        else:
+            sections = _bonded_sections(interactions, category)
+        want = _count(s, "atom" if category == "pair" else category)
+        for name, lines in sections.items():
+            need = want * (want + 1) // 2 if name == "PairIJ Coeffs" else want
+            if len(lines) == need and len({tuple(line[:1 + (name == "PairIJ Coeffs")]) for line in lines}) == need:
+                yield from _section(f"{name} # {style}", map(" ".join, lines))
+            elif lines or style != "zero":
+                warnings.warn(f"write_data: section {name} is left out, it would need one line for each of {need} types or pairs of types "
+                              f"and {category}_style {style} has {len(lines)}: repeat its {category}_coeff commands in the script",
+                              InputWarning, stacklevel=2)
+
+
+def _bonded_sections(interactions: Interactions, category: str) -> dict[str, list[list[str]]]:
+    """Lines by section: those with the mark of a cross term go to the section of that term, without the mark."""
+    main = f"{category.capitalize()} Coeffs"
+    out: dict[str, list[list[str]]] = {main: []}
+    at = 2 if interactions.hybrid[category] else 1
+    for line in interactions.coeff_lines(category):
+        mark = line[at] if len(line) > at else ""
+        name = MARKS.get(category, {}).get(mark, main)
+        out.setdefault(name, []).append(line if name == main else [*line[:at], *line[at + 1:]])
+    return out
+
+
+def _pair_sections(interactions: Interactions, s: System, pair: str) -> dict[str, list[list[str]]]:
+    lines = interactions.coeff_lines("pair")
+    if pair == "ii":
+        return {"Pair Coeffs": [[line[0], *line[2:]] for line in lines if line[0] == line[1]]}
+    if not interactions.hybrid["pair"]:
+        use = interactions.uses["pair"][0]
+        filled = use.style.filled(use.coeff, use.settings, s.counts["ntypes"], interactions.modified(use, "mix"))
+        lines = [[str(i), str(j), *use.style.format_coeff(c)] for (i, j), c in sorted(filled.items())]
+    return {"PairIJ Coeffs": lines}
