@@ -5,6 +5,7 @@ import threading
 
 import numpy as np
 import pytest
+from numba import config
 
 from asemd import fix
 from asemd.box import Box
@@ -16,6 +17,9 @@ from asemd.kernels.state import Thread
 from asemd.kernels.threads import barrier, reduce_sum
 from asemd.loop import Loop
 from asemd.system import System
+
+
+one_thread = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="one thread only without the compiler")
 
 
 def gas(n=500, temperature=1.0, dimension=3, seed=1):
@@ -98,6 +102,7 @@ def test_langevin_zero_keeps_the_momentum_and_tally_the_energy():
     assert kinetic(system) - start == pytest.approx(-bath.scalar(), rel=1e-3)
 
 
+@one_thread
 @pytest.mark.parametrize("make", [
     lambda: [fix.NVE(), fix.Langevin(temperature=1.5, damping=0.5, seed=3, zero=True, tally=True)],
     lambda: [fix.NVE(), fix.Langevin("heavy", temperature=1.5, damping=0.5, seed=3)],
@@ -210,10 +215,9 @@ def test_degrees_of_freedom():
         Temp(extra_dof=5.0).dof(one)
 
 
+@one_thread
 def test_barrier_and_sum_with_threads():
-    from numba import config, njit
-    if config.DISABLE_JIT:
-        pytest.skip("one thread only without the compiler")
+    from numba import njit
 
     @njit(nogil=True)
     def work(th, rounds):
