@@ -18,8 +18,7 @@ from asemd.kernels.threads import barrier, reduce_sum
 from asemd.loop import Loop
 from asemd.system import System
 
-
-one_thread = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="one thread only without the compiler")
+compiled = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="needs threads, or too slow without the compiler")
 
 
 def gas(n=500, temperature=1.0, dimension=3, seed=1):
@@ -70,6 +69,7 @@ def test_nvt_needs_no_group_all():
     assert not np.array_equal(system.v[~light], before.v[~light])
 
 
+@compiled
 def test_langevin_reaches_its_temperature():
     system = gas(3000, temperature=0.2)
     run(loop(system, fix.NVE(), fix.Langevin(temperature=1.5, damping=0.2, seed=7)), 300)
@@ -79,6 +79,7 @@ def test_langevin_reaches_its_temperature():
         assert abs((v**4).mean() / (v**2).mean() ** 2 - 3.0) < 0.3      # a normal distribution
 
 
+@compiled
 def test_langevin_ramp_and_variable():
     ramp, follow = (gas(3000, temperature=1.0) for _ in range(2))
     run(loop(ramp, fix.NVE(), fix.Langevin(temperature=(1.0, 3.0), damping=0.05, seed=7)), 200)
@@ -102,7 +103,7 @@ def test_langevin_zero_keeps_the_momentum_and_tally_the_energy():
     assert kinetic(system) - start == pytest.approx(-bath.scalar(), rel=1e-3)
 
 
-@one_thread
+@compiled
 @pytest.mark.parametrize("make", [
     lambda: [fix.NVE(), fix.Langevin(temperature=1.5, damping=0.5, seed=3, zero=True, tally=True)],
     lambda: [fix.NVE(), fix.Langevin("heavy", temperature=1.5, damping=0.5, seed=3)],
@@ -215,7 +216,7 @@ def test_degrees_of_freedom():
         Temp(extra_dof=5.0).dof(one)
 
 
-@one_thread
+@compiled
 def test_barrier_and_sum_with_threads():
     from numba import njit
 
