@@ -176,7 +176,7 @@ class Engine:
         self.acc = np.zeros((self.threads, max(1, len(terms)), 8))
         self.bad = np.zeros((self.threads, max(1, len(terms)), 4))
         self._rows(n)
-        self.list = ClusterList(self.threads, self.reach) if self.mode == "cluster" else PlainList(self.reach)
+        self.list = ClusterList(self.threads, self.reach, 16 if single else 8) if self.mode == "cluster" else PlainList(self.reach)
         self.state = None
         self._offset = None
         self.ns = 0

@@ -77,8 +77,8 @@ class ClusterList:
         See `asemd.kernels.cluster`.
     """
 
-    def __init__(self, threads: int, reach: float):
-        self.threads, self.reach = threads, reach
+    def __init__(self, threads: int, reach: float, width: int = 8):
+        self.threads, self.reach, self.width = threads, reach, width
         self.codes = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
         self.capacity = 0
         self.nx = self.ny = self.nz = 0
@@ -95,10 +95,10 @@ class ClusterList:
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
             nx, ny, nz = max(1, nx * 3 // 4), max(1, ny * 3 // 4), max(1, nz * 3 // 4)
-        if (nx, ny, nz) == (self.nx, self.ny, self.nz) and self.capacity >= n + nx * ny * CLUSTER + CLUSTER:
+        if (nx, ny, nz) == (self.nx, self.ny, self.nz) and self.capacity >= n + nx * ny * CLUSTER + 2 * CLUSTER:
             return False
         self.nx, self.ny, self.nz = nx, ny, nz
-        self.capacity = n + nx * ny * CLUSTER + CLUSTER
+        self.capacity = n + nx * ny * CLUSTER + 2 * CLUSTER
         ncl, ncol = self.capacity // CLUSTER + 2, nx * ny
         self.cell_start = np.zeros((ncol, nz + 1), np.int32)
         self.column_start = np.zeros(ncol + 1, np.int32)
@@ -139,7 +139,7 @@ class ClusterList:
                 c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin, self.bins.inverse,
                                      self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach, c0, c1, self.first[t],
-                                     self.entries[t], self.unshifted, self.work[t], self.work_codes[t])
+                                     self.entries[t], self.unshifted, self.work[t], self.work_codes[t], self.width, ns)
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t],
                                      self.excluded_first[t], self.excluded[t], self.where[t])

@@ -90,6 +90,11 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
             column_of[k] = c
         p = q
     column_start[ncol] = p
+    for k in range(p, p + CLUSTER):      # one empty cluster behind: the target of padding entries
+        for d in range(3):
+            x[d, k] = far[d]
+            v[d, k] = 0.0
+        row[k] = -1
     for i in range(n):
         c = key[i] // nz
         z = key[i] - c * nz
@@ -107,11 +112,12 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, unshifted, work, codes):
+          first, entries, unshifted, work, codes, width, empty):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
     `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (4, w)`, `codes (w,)`: candidates of one cluster;
-    `unshifted[c]` is set if no entry of cluster c needs a shift.
+    `unshifted[c]` is set if no entry of cluster c needs a shift. Rows end with copies of the slot `empty`, so that cluster plus row fill whole
+    vectors of `width`.
     """
     n = 0
     r2 = reach * reach
@@ -230,11 +236,14 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                 f = ty[t] - yj
                 g = tz[t] - zj
                 td[t] = min(td[t], min(a * a + b * b + c * c, e * e + f * f + g * g))
-        if n + nt > entries.shape[0]:
+        if n + nt + width > entries.shape[0]:
             return -1
         for t in range(nt):
             entries[n] = codes[t]
             n += td[t] < r2
+        while (n - first[ci] + CLUSTER) % width != 0:
+            entries[n] = np.int32(empty) | np.int32(13 << 26)
+            n += 1
     first[c1] = n
     return n
 
@@ -295,6 +304,8 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
             for k in range(first[ci], first[ci + 1]):
                 e = entries[k]
                 j = e & SLOT_BITS
+                if row[j] < 0:
+                    continue
                 c = e >> 26
                 dx = x[0, s + a] - (x[0, j] + shifts[c, 0])
                 dy = x[1, s + a] - (x[1, j] + shifts[c, 1])

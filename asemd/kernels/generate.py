@@ -92,6 +92,8 @@ class _Plain(ast.NodeTransformer):
         if node.body and isinstance(node.body[0], ast.Expr) and isinstance(node.body[0].value, ast.Constant):
             node.body = node.body[1:]
         self.generic_visit(node)
+        if self.vector and node.args.args and node.args.args[0].arg == "r2":
+            node.args.args.insert(1, ast.arg("ir2"))
         return node
 
     def visit_BinOp(self, node):
@@ -99,6 +101,12 @@ class _Plain(ast.NodeTransformer):
             node.left = self.visit(node.left)      # the exponent stays an integer
             return node
         self.generic_visit(node)
+        if self.vector and isinstance(node.op, ast.Div) and isinstance(node.right, ast.Name) and node.right.id == "r2":
+            inverse = ast.Name("ir2", ast.Load())
+            one = isinstance(node.left, ast.Call) and getattr(node.left.func, "id", "") == "real" and node.left.args[0].value == 1.0
+            if one or (isinstance(node.left, ast.Constant) and node.left.value == 1):
+                return inverse
+            return ast.BinOp(node.left, ast.Mult(), inverse)
         return node
 
     def visit_Constant(self, node):
@@ -122,7 +130,8 @@ def plain_source(function: Callable, name: str | None = None, real: bool = False
     real : bool
         Wrap number literals as ``real(...)``, so that single-precision kernels stay in single precision.
     vector : bool
-        Replace ``math.exp`` and relatives by branch-free versions that vectorise (`asemd.kernels.vector_math`).
+        Replace ``math.exp`` and relatives by branch-free versions that vectorise (`asemd.kernels.vector_math`); a function of ``r2`` gets
+        a second argument ``ir2``, its inverse, which replaces divisions by ``r2`` (the kernel shares one division between two pairs).
     constants : mapping
         Names whose truth is known: ``if NAME:`` keeps one branch only, so that a variant holds nothing it does not need.
     """
@@ -190,6 +199,7 @@ def load(text: str) -> types.ModuleType:
     import numba
 
     import asemd
+    _wide_vectors(numba)
     key = f"{asemd.__version__}|{numba.__version__}|{np.__version__}|{sys.version_info[:2]}|{text}"
     stem = "k_" + hashlib.sha256(key.encode()).hexdigest()[:24]
     name = f"{PACKAGE}.{stem}"
@@ -213,6 +223,15 @@ def load(text: str) -> types.ModuleType:
         del sys.modules[name]
         raise
     return module
+
+
+def _wide_vectors(numba) -> None:
+    """Let LLVM use 512-bit vectors where the processor has them: it prefers 256 bits on Intel, which costs these kernels a fifth."""
+    if numba.config.CPU_FEATURES is None and numba.config.CPU_NAME is None and not numba.config.DISABLE_JIT:
+        import llvmlite.binding as llvm
+        features = llvm.get_host_cpu_features()
+        if features.get("avx512f"):
+            numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
 
 
 def _trim(folder: Path) -> None:

@@ -38,13 +38,13 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
     for u in uniform:
         where.append(f"p[{sum(1 for w in where if w[0] == 'p')}]" if u else f"b[o + {sum(1 for w in where if w[0] == 'b')} * ROW]")
     at_constant = sum(uniform)
-    lines = ["def pair_energy(r2, qq, p, b, o):" if energy else "def pair_force(r2, qq, p, b, o):"]
+    lines = ["def pair_energy(r2, ir2, qq, p, b, o):" if energy else "def pair_force(r2, ir2, qq, p, b, o):"]
     if any(part.coordinate == "r" for part in parts):
         lines.append("    r = math.sqrt(r2)")
     row, total, vdwl, coul = 0, [], [], []
     for k, (part, name) in enumerate(zip(parts, names)):
         cut2, offset = where[row], where[row + 1]
-        args = [part.coordinate] + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
+        args = (["r2", "ir2"] if part.coordinate == "r2" else ["r"]) + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
         args += [f"p[{at_constant + i}]" for i in range(len(part.constants))]
         at_constant += len(part.constants)
         row += 2 + len(part.rows)
@@ -79,9 +79,10 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     """
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
+    b.line("from asemd.kernels.fuse import madd")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
-                            CHARGED=style.charged, VARYING=bool(varying), EXCLUDE=exclude, SLOT_BITS=pair_cluster.SLOT_BITS).items():
+                            CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
     if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(inspect.getsource, style.functions())):
         from asemd.kernels import vector_math

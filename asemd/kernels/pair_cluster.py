@@ -5,17 +5,19 @@ the compiler sees no aliasing): x y z, force x y z, charge, then the coefficient
 in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient differs between
-type pairs), EXCLUDE; `real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
+type pairs), EXCLUDE, SHARE (one division for two pairs); `real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
 """
 from __future__ import annotations
 
 import numpy as np
 
+from asemd.kernels.fuse import madd
+
 CLUSTER = 8
 ROW = 1048
 WIDTH = 8
 NROWS = 0
-ENERGY = CHARGED = VARYING = False
+ENERGY = CHARGED = VARYING = SHARE = False
 EXCLUDE = True
 SLOT_BITS = 0x3FFFFFF
 real = np.float64
@@ -37,6 +39,15 @@ def inner_two(b, n, xa, ya, za, qa, xb, yb, zb, qb, p):
         dxb = xb - xk
         dyb = yb - yk
         dzb = zb - zk
+        ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
+        rb = madd(dxb, dxb, madd(dyb, dyb, dzb * dzb))
+        if SHARE:
+            inverse = real(1) / (ra * rb)     # one division for two pairs
+            ia = inverse * rb
+            ib = inverse * ra
+        else:
+            ia = real(1) / ra
+            ib = real(1) / rb
         if CHARGED:
             qk = b[k + 6 * ROW]
             qka = qa * qk
@@ -45,35 +56,28 @@ def inner_two(b, n, xa, ya, za, qa, xb, yb, zb, qb, p):
             qka = zero
             qkb = zero
         if ENERGY:
-            pa, eva, eca = pair_energy(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + 7 * ROW)
-            pb, evb, ecb = pair_energy(dxb * dxb + dyb * dyb + dzb * dzb, qkb, p, b, k + (7 + NROWS) * ROW)
+            pa, eva, eca = pair_energy(ra, ia, qka, p, b, k + 7 * ROW)
+            pb, evb, ecb = pair_energy(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW)
             ev += eva + evb
             ec += eca + ecb
+            v0 = madd(dxa * dxa, pa, madd(dxb * dxb, pb, v0))
+            v1 = madd(dya * dya, pa, madd(dyb * dyb, pb, v1))
+            v2 = madd(dza * dza, pa, madd(dzb * dzb, pb, v2))
+            v3 = madd(dxa * dya, pa, madd(dxb * dyb, pb, v3))
+            v4 = madd(dxa * dza, pa, madd(dxb * dzb, pb, v4))
+            v5 = madd(dya * dza, pa, madd(dyb * dzb, pb, v5))
         else:
-            pa = pair_force(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + 7 * ROW)
-            pb = pair_force(dxb * dxb + dyb * dyb + dzb * dzb, qkb, p, b, k + (7 + NROWS) * ROW)
-        gx = dxa * pa
-        gy = dya * pa
-        gz = dza * pa
-        hx = dxb * pb
-        hy = dyb * pb
-        hz = dzb * pb
-        fxa += gx
-        fya += gy
-        fza += gz
-        fxb += hx
-        fyb += hy
-        fzb += hz
-        if ENERGY:
-            v0 += dxa * gx + dxb * hx
-            v1 += dya * gy + dyb * hy
-            v2 += dza * gz + dzb * hz
-            v3 += dxa * gy + dxb * hy
-            v4 += dxa * gz + dxb * hz
-            v5 += dya * gz + dyb * hz
-        b[k + 3 * ROW] -= gx + hx
-        b[k + 4 * ROW] -= gy + hy
-        b[k + 5 * ROW] -= gz + hz
+            pa = pair_force(ra, ia, qka, p, b, k + 7 * ROW)
+            pb = pair_force(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW)
+        fxa = madd(dxa, pa, fxa)
+        fya = madd(dya, pa, fya)
+        fza = madd(dza, pa, fza)
+        fxb = madd(dxb, pb, fxb)
+        fyb = madd(dyb, pb, fyb)
+        fzb = madd(dzb, pb, fzb)
+        b[k + 3 * ROW] = madd(-dxa, pa, madd(-dxb, pb, b[k + 3 * ROW]))
+        b[k + 4 * ROW] = madd(-dya, pa, madd(-dyb, pb, b[k + 4 * ROW]))
+        b[k + 5 * ROW] = madd(-dza, pa, madd(-dzb, pb, b[k + 5 * ROW]))
     return fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5
 
 
@@ -87,28 +91,29 @@ def inner_one(b, n, xa, ya, za, qa, p, o):
         dya = ya - b[k + ROW]
         dza = za - b[k + 2 * ROW]
         qka = qa * b[k + 6 * ROW] if CHARGED else zero
+        ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
         if ENERGY:
-            pa, eva, eca = pair_energy(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + o)
+            pa, eva, eca = pair_energy(ra, real(1) / ra, qka, p, b, k + o)
             ev += eva
             ec += eca
         else:
-            pa = pair_force(dxa * dxa + dya * dya + dza * dza, qka, p, b, k + o)
-        gx = dxa * pa
-        gy = dya * pa
-        gz = dza * pa
-        fxa += gx
-        fya += gy
-        fza += gz
+            pa = pair_force(ra, real(1) / ra, qka, p, b, k + o)
         if ENERGY:
+            gx = dxa * pa
+            gy = dya * pa
+            gz = dza * pa
             v0 += dxa * gx
             v1 += dya * gy
             v2 += dza * gz
             v3 += dxa * gy
             v4 += dxa * gz
             v5 += dya * gz
-        b[k + 3 * ROW] -= gx
-        b[k + 4 * ROW] -= gy
-        b[k + 5 * ROW] -= gz
+        fxa = madd(dxa, pa, fxa)
+        fya = madd(dya, pa, fya)
+        fza = madd(dza, pa, fza)
+        b[k + 3 * ROW] = madd(-dxa, pa, b[k + 3 * ROW])
+        b[k + 4 * ROW] = madd(-dya, pa, b[k + 4 * ROW])
+        b[k + 5 * ROW] = madd(-dza, pa, b[k + 5 * ROW])
     return fxa, fya, fza, ev, ec, v0, v1, v2, v3, v4, v5
 
 
@@ -122,9 +127,8 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
         oy = x[1, s]
         oz = x[2, s]
         f0 = first[ci]
-        nj = first[ci + 1] - f0
-        n = nj + CLUSTER
-        full = ((n + WIDTH - 1) // WIDTH) * WIDTH
+        full = ((first[ci + 1] - f0 + CLUSTER) // WIDTH) * WIDTH     # rows are padded: whole vectors
+        nj = full - CLUSTER
         for k in range(CLUSTER):
             b[k] = x[0, s + k] - ox
             b[k + ROW] = x[1, s + k] - oy
@@ -143,10 +147,6 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                 b[k + CLUSTER] = (x[0, j] + shifts[c, 0]) - ox
                 b[k + ROW + CLUSTER] = (x[1, j] + shifts[c, 1]) - oy
                 b[k + 2 * ROW + CLUSTER] = (x[2, j] + shifts[c, 2]) - oz
-        for k in range(n, full):
-            b[k] = far
-            b[k + ROW] = far
-            b[k + 2 * ROW] = far
         for k in range(full):
             b[k + 3 * ROW] = real(0)
             b[k + 4 * ROW] = real(0)
@@ -156,15 +156,11 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                 b[k + 6 * ROW] = q[s + k]
             for k in range(nj):
                 b[k + 6 * ROW + CLUSTER] = q[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
-            for k in range(n, full):
-                b[k + 6 * ROW] = real(0)
         if VARYING:
             for k in range(CLUSTER):
                 types[k] = type_of[s + k]
             for k in range(nj):
                 types[k + CLUSTER] = type_of[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
-            for k in range(n, full):
-                types[k] = 0
             last0 = np.uint32(1 << 30)
             last1 = np.uint32(1 << 30)
         if EXCLUDE:
@@ -225,12 +221,13 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                 dx = xa - xb
                 dy = ya - yb
                 dz = za - zb
+                rr = dx * dx + dy * dy + dz * dz
                 qk = real(0)
                 if CHARGED:
                     qk = qa * b[a + 1 + 6 * ROW]
                 # the coefficients of the pair (a, b) stand in a's rows at b's place
                 if ENERGY:
-                    pa, eva, eca = pair_energy(dx * dx + dy * dy + dz * dz, qk, p, b, a + 1 + 7 * ROW)
+                    pa, eva, eca = pair_energy(rr, real(1) / rr, qk, p, b, a + 1 + 7 * ROW)
                     ev += eva
                     ec += eca
                     v0 += dx * dx * pa
@@ -240,7 +237,7 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                     v4 += dx * dz * pa
                     v5 += dy * dz * pa
                 else:
-                    pa = pair_force(dx * dx + dy * dy + dz * dz, qk, p, b, a + 1 + 7 * ROW)
+                    pa = pair_force(rr, real(1) / rr, qk, p, b, a + 1 + 7 * ROW)
                 fxa += dx * pa
                 fya += dy * pa
                 fza += dz * pa

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 def gather(ns, row, slot_of, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
     """Per-atom constants into slot order, the inverse of `row`, and the positions from which displacements count."""
-    for i in range(ns):
+    for i in range(min(ns + 8, row.shape[0])):      # the empty cluster behind, too
         r = row[i]
         if r >= 0:
             slot_of[r] = i
