@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, MutableMapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from asemd import units
+from asemd.engine import Settings
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
 from asemd.minimize import Options
@@ -15,7 +16,6 @@ from asemd.thermo import Thermo
 
 if TYPE_CHECKING:
     from asemd.compute import Compute
-    from asemd.engine import Settings
     from asemd.fix import Fix
     from asemd.system import System
 
@@ -89,20 +89,6 @@ class GroupTable(MutableMapping):
         self._masks = {name: mask[index] for name, mask in self._masks.items()}
 
 
-@dataclass
-class Neighbor:
-    """What ``neighbor`` and ``neigh_modify`` say.
-
-    `exclude` holds ("type", i, j), ("group", a, b), ("molecule/intra", group) and ("molecule/inter", group), with names of groups.
-    """
-
-    skin: float
-    every: int = 1
-    delay: int = 0
-    check: bool = True
-    exclude: list[tuple] = field(default_factory=list)
-
-
 def default_computes() -> dict[str, Compute]:
     """``thermo_temp``, ``thermo_press`` and ``thermo_pe``, which every scene has."""
     from asemd.compute.pe import PE
@@ -145,7 +131,7 @@ class Scene:
     dumps: dict[str, Any] = field(default_factory=dict)
     thermo: Thermo = field(default_factory=Thermo)
     dt: float = 0.005
-    neighbor: Neighbor = field(default_factory=lambda: Neighbor(0.3))
+    neighbor: Settings = field(default_factory=Settings)     # its exclusions name groups
     threads: int = 1
     precision: str = "double"
     compat: str = ""
@@ -197,12 +183,10 @@ class Scene:
 
     def settings(self) -> Settings:
         """The neighbour and threading settings in the form the engine takes."""
-        from asemd.engine import Settings
         exclude = []
         for kind, *words in self.neighbor.exclude:
             exclude.append((kind, *words) if kind == "type" else (kind, *(self.groups.mask(w, "neigh_modify exclude") for w in words)))
-        return Settings(skin=self.neighbor.skin, every=self.neighbor.every, delay=self.neighbor.delay, check=self.neighbor.check,
-                        exclude=exclude, threads=self.threads, precision=self.precision)
+        return replace(self.neighbor, exclude=exclude, threads=self.threads, precision=self.precision)
 
     def to_atoms(self):
         """`asemd.system.Atoms` in order of id, with the force field as calculator."""

@@ -290,7 +290,8 @@ class Lammps:
         """A count or a flag; -1 if unknown."""
         scene, system = self.scene, self.scene.system
         simple = {"dimension": scene.dimension, "box_exist": int(system is not None), "nthreads": scene.threads, "nghost": 0,
-                  "tagint": 4, "bigint": 8, "imageint": 4, "newton_pair": int(scene.newton[0]), "newton_bond": int(scene.newton[1]), "world_size": 1, "world_rank": 0,
+                  "tagint": 4, "bigint": 8, "imageint": 4, "newton_pair": int(scene.newton[0]),
+                  "newton_bond": int(scene.newton[1]), "world_size": 1, "world_rank": 0,
                   "universe_size": 1, "universe_rank": 0, "nprocs": 1}
         if name in simple:
             return simple[name]

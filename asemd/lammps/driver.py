@@ -55,7 +55,8 @@ def check_integration(session) -> None:
             mask = scene.groups.mask(fix.group)
             for other, before in movers:
                 if (mask & before).any():
-                    session.log.warn(f"one or more atoms are time integrated more than once: by fix {other} and fix {id}")
+                    session.warn(f"one or more atoms are time integrated more than once: by fix {other} and fix {id}",
+                                 session.places.get(f"fix {id}"))
             movers.append((id, mask))
     if not movers:
         session.log.warn("no fixes with time integration, atoms won't move")

@@ -53,6 +53,7 @@ class Log:
 
     def echo(self, text: str) -> None:
         """A command as it was read, or after a variable was replaced."""
+        text = text.rstrip()
         if self.echo_style in ("log", "both"):
             self.to_file(text + "\n")
         if self.echo_style in ("screen", "both"):

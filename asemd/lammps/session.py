@@ -75,6 +75,7 @@ class Session:
         self._depth = 0                    # scripts within scripts
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
+        self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
 
     def _fresh_scene(self) -> Scene:
@@ -193,9 +194,15 @@ class Session:
         """Forget the loop of the last run."""
         self.loop = None
 
-    def warn(self, message: str) -> None:
-        """Warn, naming the command that is being executed."""
-        self.log.warn(f"{message} ({self._position})" if self._position and self._position.file else message)
+    def warn(self, message: str, where: Where | None = None) -> None:
+        """Warn, naming the command that is being executed, or another place."""
+        where = where or self._position
+        self.log.warn(f"{message} ({where})" if where and where.file else message)
+
+    def remember(self, what: str) -> None:
+        """Note that `what` was defined by the command that is being executed."""
+        if self._position:
+            self.places[what] = self._position
 
     # ---------------------------------------------------------------- state ---
 

@@ -21,4 +21,5 @@ def run(session, args):
     new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
     new.id = id
     scene.fixes[id] = new
+    session.remember(f"fix {id}")
     session.loop = None
