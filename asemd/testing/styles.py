@@ -147,8 +147,8 @@ def check_slope(style: Style) -> None:
     rng = np.random.default_rng(3)
     length = float(np.linalg.norm(s.x[:, 0] - s.x[:, 1]))
     for _ in range(20):
-        values = [length * rng.uniform(0.9, 1.2) if n.startswith("r") else rng.uniform(0.2, 2.9) * (rng.choice([1, -1]) if n == "phi" else 1)
-                  for n in names]
+        values = [length * rng.uniform(0.9, 1.2) if n.startswith("r") else rng.uniform(0.2, 2.9) for n in names]
+        values[0] *= rng.choice([1, -1]) if names[0] == "phi" else 1
         answer = evaluate(*values, 1, s.packed.coeff, s.packed.arrays)
         if not math.isfinite(answer[0]):
             continue
@@ -156,7 +156,7 @@ def check_slope(style: Style) -> None:
         for i, name in enumerate(names):
             def energy(h, i=i, values=values):
                 return evaluate(*(v + h * (j == i) for j, v in enumerate(values)), 1, s.packed.coeff, s.packed.arrays)[0]
-            want = _derivative(energy, STEP)
+            want = _derivative(energy, 0.05 * STEP)
             if math.isfinite(want):
                 _close(style, f"dE/d{name} is not the derivative of the energy at {name} = {values[i]:.4g}", answer[1 + i], want, 1e-6,
                        abs(want) + 1e-3 * abs(answer[0]) + 1e-9)
@@ -167,8 +167,7 @@ def check_twin(style: Style) -> None:
     s = sample(style)
     skewed = cell_arrays(np.array([[BOX, 0, 0], [0.4 * BOX, BOX, 0], [0.3 * BOX, -0.2 * BOX, BOX]]), np.ones(3, bool))
     reference = s.run()
-    for energy, per_atom, periodic, orthogonal in ((True, True, False, True), (True, False, True, True), (False, False, True, False),
-                                                   (False, True, True, True), (False, False, False, True)):
+    for energy, per_atom, periodic, orthogonal in ((True, True, False, True), (True, False, True, True), (False, False, True, False)):
         cell = s.cell if orthogonal else skewed
         x = s.x if not periodic else s.x + (cell.vectors.T @ np.random.default_rng(0).integers(-2, 3, s.x.shape))
         variant = dict(energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal)
