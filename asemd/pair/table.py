@@ -1,8 +1,8 @@
 r"""Energy and force read from a file.
 
 ``pair_style table linear 1000`` and ``pair_coeff 1 2 file KEYWORD [cut]``. Cubic splines through the values of the file give energy
-and force/r at the N points of ``pair_style``, equally spaced in r^2 (bitmap: at the 2^N values of r^2 in single precision whose trailing bits
-are zero). In between they are interpolated: ``lookup`` takes the value at the middle of the interval, ``linear`` and ``bitmap`` a line,
+and force/r at the N points of ``pair_style``, equally spaced in r^2 (bitmap: at 2^N values of r^2 in single precision with trailing bits
+zero). In between they are interpolated: ``lookup`` takes the value at the middle of the interval, ``linear`` and ``bitmap`` a line,
 ``spline`` a cubic spline. The force is that of the file, not the derivative of the interpolated energy. A distance below the table is an
 error.
 """

@@ -4,7 +4,8 @@ from __future__ import annotations
 from asemd.errors import InputError, nearest
 from asemd.style import plain_name
 
-PERIODIC = ("ewald", "ewald/disp", "ewald/dipole", "pppm", "pppm/cg", "pppm/disp", "pppm/tip4p", "pppm/disp/tip4p", "pppm/stagger", "pppm/dipole")
+PERIODIC = ("ewald", "ewald/disp", "ewald/dipole", "pppm", "pppm/cg", "pppm/disp", "pppm/tip4p", "pppm/disp/tip4p", "pppm/stagger",
+            "pppm/dipole")
 ANY_BOX = ("msm", "msm/cg", "scafacos")
 
 
