@@ -22,7 +22,7 @@ class Formula:
     name : str
         Name of the variable.
     session
-        Its ``variables`` evaluate it.
+        Its ``variables`` evaluate it; its ``moment`` is what they see of computes.
 
     Raises
     ------
@@ -32,14 +32,17 @@ class Formula:
 
     def __init__(self, name: str, session):
         session.variables.find(name)
-        self.name, self.variables = name, session.variables
+        self.name, self.session = name, session
 
     def __call__(self, loop: Loop) -> float | np.ndarray:
         """One number, or (n,) values by atom row."""
+        variables = self.session.variables
         loop.sync_out()
-        if self.variables.find(self.name).style == "atom":
-            return self.variables.per_atom(self.name, loop.system.n)
-        return self.variables.number(self.name)
+        loop.system.step = loop.step
+        self.session.moment.forget()
+        if variables.find(self.name).style == "atom":
+            return variables.per_atom(self.name, loop.system.n)
+        return variables.number(self.name)
 
     def __str__(self) -> str:
         return f"v_{self.name}"
