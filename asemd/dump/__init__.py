@@ -135,10 +135,11 @@ class Dump:
 
     def format(self) -> str:
         """The format of one line, with its newline."""
-        if self.line:
+        if self.line and not self.formats:
             return self.line + "\n"
-        kinds = [kind_of(c) for c in self.columns]
-        return " ".join(self.formats.get(n, self.formats.get(k, DEFAULT[k])) for n, k in enumerate(kinds, 1)) + "\n"
+        kinds, words = [kind_of(c) for c in self.columns], self.line.split()
+        base = words if len(words) == len(kinds) else [DEFAULT[k] for k in kinds]
+        return " ".join(self.formats.get(n, self.formats.get(k, b)) for n, (k, b) in enumerate(zip(kinds, base), 1)) + "\n"
 
     def lines(self, view: View) -> str:
         """All lines of atoms."""
@@ -296,7 +297,7 @@ class Dump:
             kind = kind_of(self.columns[key - 1])
         if len(found) != 1 or not _fits(found[0], kind):
             raise InputError(f"{what} {which}: {text!r} is not a format for one {kind} value")
-        self.formats[key], self.line = text, ""
+        self.formats[key] = text
 
     def _modify_pad(self, values, what, session):
         self.pad = max(0, whole(values[0], what))

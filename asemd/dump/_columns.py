@@ -61,7 +61,7 @@ class View:
         box, d = self.box, self.x - self.box.lo
         lx, ly, lz = box.hi - box.lo
         if not box.triclinic:
-            return d / (lx, ly, lz)
+            return d * (1.0 / lx, 1.0 / ly, 1.0 / lz)
         xy, xz, yz = box.tilt
         return np.column_stack([d[:, 0] / lx - xy / (lx * ly) * d[:, 1] + (yz * xy - ly * xz) / (lx * ly * lz) * d[:, 2],
                                 d[:, 1] / ly - yz / (ly * lz) * d[:, 2], d[:, 2] / lz])

@@ -16,3 +16,7 @@ class Custom(Dump):
         if not words:
             raise InputError("dump custom needs at least one column, for example: id type x y z")
         return (list(words),)
+
+    def _modify_format(self, values, what, session):
+        super()._modify_format(values, what, session)
+        self.line = " ".join(self.line.split())

@@ -136,7 +136,7 @@ def _random(values, system, region, maxtry: int, kind: int):
     while len(found) < n:
         x = lo + generator.uniform(3 * max(64, n - len(found))).reshape(-1, 3) * (hi - lo)
         if system.dimension == 2:
-            x[:, 2] = lo[2] + 0.5 * (hi[2] - lo[2])
+            x[:, 2] = 0.0
         good = _inside(x, box) if box.triclinic else np.ones(len(x), bool)
         if region is not None:
             good &= region.inside(x)

@@ -38,7 +38,7 @@ def run(session, args):
 
 
 def _write(path: str, system) -> None:
-    lines = [f"labelmap {kind} " + " ".join(f'{n} """ {label} """' for n, label in sorted(labels.items()))
+    lines = [f"labelmap {kind} " + " ".join(f'{n} """{label}"""' for n, label in sorted(labels.items()))
              for kind, labels in system.labels.items() if labels]
     try:
         with open(path, "w", encoding="utf-8") as file:

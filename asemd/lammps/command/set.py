@@ -46,7 +46,7 @@ def _selected(scene, system, style: str, name: str) -> np.ndarray:
     elif style == "mol":
         if not system.molecular:
             raise InputError(f"set mol: atom_style {system.atom_style} has no molecules")
-        values, (first, last) = system.molecule, bounds(name, 0, LARGEST, "set mol")
+        values, (first, last) = system.molecule, bounds(name, 1, LARGEST, "set mol")
     else:
         raise InputError(f"set: unknown style {style!r}{nearest(style, ('atom', 'type', 'mol', 'group', 'region'))}")
     return (values >= first) & (values <= last)

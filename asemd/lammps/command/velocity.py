@@ -124,11 +124,7 @@ class Velocity:
             self.system.v[self.rows, k] = self.system.v[self.rows, k] + new if self.sum else new
 
     def scale(self, words: list[str]) -> None:
-        target = self._temperature(words[0])
-        old = self.system.v.copy()
-        self._rescale(target)
-        if self.sum:
-            self.system.v[self.rows] += old[self.rows]
+        self._rescale(self._temperature(words[0]))
 
     def ramp(self, words: list[str]) -> None:
         v = ("vx", "vy", "vz").index(choice(words[0], ("vx", "vy", "vz"), self.what))

@@ -1,0 +1,200 @@
+"""create_box, create_atoms, mass, labelmap, displace_atoms, delete_atoms against LAMMPS."""
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from both import asemd, assert_same, lammps
+
+from asemd.errors import InputError
+
+FCC = """
+units lj
+lattice fcc 0.8442
+region b block 0 4 0 4 0 4
+create_box 2 b
+create_atoms 1 box
+mass 1 1
+mass 2 2.5
+"""
+TRICLINIC = FCC.replace("block 0 4 0 4 0 4", "prism 0 4 0 3 0 5 0.5 -0.3 1.1")
+FLAT = """
+units lj
+dimension 2
+lattice hex 0.7
+region b block 0 10 0 6 -4 5
+create_box 1 b
+create_atoms 1 box
+mass 1 1
+"""
+PAIR = "pair_style lj/cut 2.5\npair_coeff * * 1 1\n"
+
+
+def lattice(words: str, units: str = "metal", boundary: str = "p p p", region: str = "block 0 3 0 2 0 3", more: str = "") -> str:
+    return f"units {units}\nboundary {boundary}\nlattice {words}\nregion b {region}\ncreate_box 2 b\ncreate_atoms 1 box {more}"
+
+
+CASES = {
+    "fcc": FCC,
+    "fcc fixed": FCC.replace("units lj", "units lj\nboundary f f f"),
+    "fcc shrink": FCC.replace("units lj", "units lj\nboundary s p f"),
+    "fcc minimum": FCC.replace("units lj", "units lj\nboundary m fs p"),
+    "fcc at faces": lattice("fcc 1.0", boundary="f p f"),
+    "bcc": lattice("bcc 3.1 origin 0.1 0.25 0.5", boundary="f p f"),
+    "hcp": lattice("hcp 3.1"),
+    "diamond": lattice("diamond 5.4"),
+    "oriented": lattice("fcc 3.52 orient x 1 1 1 orient y 1 -1 0 orient z 1 1 -2 origin 0.1 0 0"),
+    "custom": lattice("custom 3.52 a1 1 0 0 a2 0.5 1 0 a3 0 0 0.5 basis 0 0 0 basis .5 .5 .5"),
+    "basis": lattice("fcc 3.52", more="basis 2 2 basis 4 2"),
+    "hex": FLAT,
+    "triclinic": TRICLINIC,
+    "single": FCC + """
+        create_atoms 2 single 1.1 1.2 1.3
+        create_atoms 2 single 5 1.2 -1.3 remap yes
+        create_atoms 2 single 5 1.2 -1.3
+        create_atoms 1 single 1 1 1 units box""",
+    "random": FCC + "create_atoms 2 random 50 991 NULL",
+    "random region": FCC + """
+        region s sphere 2 2 2 1.5
+        create_atoms 2 random 50 991 s
+        region o sphere 2 2 2 1.5 side out
+        create_atoms 1 random 10 5 o""",
+    "random triclinic": TRICLINIC + "create_atoms 2 random 60 991 NULL",
+    "random flat": FLAT + "create_atoms 1 random 7 33 NULL",
+    "displace random": FCC + "displace_atoms all random 0.1 0.2 0.3 4711",
+    "displace move": FCC + "displace_atoms all move 10 0.3 -7\ndisplace_atoms all move 0.1 0.2 0.3 units box",
+    "displace variable": FCC + "variable a atom x*0.1\nvariable b equal 0.3\ndisplace_atoms all move v_a v_b 0.1",
+    "displace ramp": FCC + "displace_atoms all ramp x 0 1 y 0.5 2",
+    "displace shrink": FCC.replace("units lj", "units lj\nboundary s s s") + "displace_atoms all move 1 1 1",
+    "displace rotate": FCC + "displace_atoms all move 2 0 0\ndisplace_atoms all rotate 1 1 1 0.3 0.4 0.5 33",
+    "delete region": FCC + "region s sphere 2 2 2 1.5\ndelete_atoms region s",
+    "delete group": FCC + "group g id 1:100:3\ndelete_atoms group g",
+    "delete keep ids": FCC + "group g id 1:100:3\ndelete_atoms group g compress no",
+    "delete variable": FCC + "variable far atom x>3\ndelete_atoms variable far",
+    "overlap": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR + "delete_atoms overlap 0.5 all all",
+    "overlap groups": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR + "group a type 1\ngroup b type 2\ndelete_atoms overlap 0.7 b all",
+}
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return lammps(CASES)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_same_atoms_as_lammps(theirs, name):
+    assert_same(asemd(CASES[name]), theirs[name], x=1e-14 if name == "displace rotate" else 0.0)
+
+
+def test_text():
+    told = "".join(asemd(FCC).told)
+    assert "Created orthogonal box = (0 0 0) to (6.7183848 6.7183848 6.7183848)\n" in told
+    assert "Created 256 atoms\n  using lattice units in orthogonal box = (0 0 0) to (6.7183848 6.7183848 6.7183848)\n" in told
+    told = "".join(asemd(TRICLINIC).told)
+    assert "Created triclinic box = (0 0 0) to (6.7183848 5.0387886 8.397981) with tilt (0.8397981 -0.50387886 1.8475558)\n" in told
+
+
+def test_speed():
+    script = FCC.replace("0 4 0 4 0 4", "0 20 0 20 0 20")
+    asemd(FCC)
+    start = time.perf_counter()
+    assert asemd(script + "velocity all create 1.44 87287").scene.system.n == 32000
+    assert time.perf_counter() - start < 1.0
+
+
+def test_counts_of_create_box():
+    counts = asemd("""
+        atom_style full
+        region b block 0 1 0 1 0 1
+        create_box 3 b bond/types 2 angle/types 1 extra/bond/per/atom 4 extra/special/per/atom 5""").scene.system.counts
+    assert (counts["ntypes"], counts["nbondtypes"], counts["nangletypes"]) == (3, 2, 1)
+    assert (counts["extra_bond_per_atom"], counts["extra_special_per_atom"]) == (4, 5)
+
+
+def test_mass_and_labels():
+    session = asemd(FCC + "labelmap atom 1 A 2 B\nmass * 3\nmass B 7")
+    assert session.scene.system.mass[1:].tolist() == [3, 7]
+    assert session.scene.system.labels["atom"] == {1: "A", 2: "B"}
+    session.execute("create_atoms B single 1 1 1")
+    assert session.scene.system.type[-1] == 2
+
+
+def test_write_labels(tmp_path):
+    session = asemd(FCC + "labelmap atom 1 A 2 B")
+    session.execute(f"labelmap write {tmp_path / 'labels'}")
+    session.execute("labelmap clear")
+    assert session.scene.system.labels["atom"] == {}
+    session.execute(f"include {tmp_path / 'labels'}")
+    assert session.scene.system.labels["atom"] == {1: "A", 2: "B"}
+
+
+def test_groups_follow_the_atoms():
+    session = asemd(FCC + "group a id 1:10\ngroup b type 1\ncreate_atoms 2 single 1 1 1 units box\ngroup d id 3:5\ndelete_atoms group d")
+    groups, system = session.scene.groups, session.scene.system
+    assert groups["all"].all() and groups["a"].sum() == 7 and groups["b"].sum() == 253 and len(groups["a"]) == system.n == 254
+
+
+@pytest.mark.parametrize("line, message", [
+    ("create_box 1 b", "defined already"), ("create_atoms 3 box", "valid range 1 to 2"), ("create_atoms 1 bix", "did you mean box"),
+    ("create_atoms 1 region q", "unknown region"), ("create_atoms 1 single 1 1", "3 values"), ("create_atoms 1 box basis 5 1", "4 basis atoms"),
+    ("create_atoms 0 box mol m 1", "valid range"), ("create_atoms 1 box mol m 1", "not supported"), ("create_atoms 1 random 5 0 NULL", "seed"),
+    ("create_atoms 1 random 5 9 far", "does not overlap"), ("mass 3 1.0", "valid range"), ("mass 1 0", "positive"), ("mass 1 x", "number"),
+    ("mass 1", "1 words"), ("mass 1 nan", "finite"), ("labelmap atom 3 C", "valid range"), ("labelmap atom 1 2B", "digit"),
+    ("labelmap atom 1 A 2 A", "two types"), ("labelmap atoms 1 A", "did you mean atom"), ("displace_atoms all mov 1 1 1", "did you mean move"),
+    ("displace_atoms all move 1 1", "3 values"), ("displace_atoms non move 1 1 1", "unknown group"),
+    ("displace_atoms all rotate 0 0 0 0 0 0 10", "axis"), ("displace_atoms all ramp x 0 1 y 2 1", "below"),
+    ("displace_atoms all move 1 1 1 unit box", "unknown keyword"), ("delete_atoms group g", "unknown group"),
+    ("delete_atoms group all mol yes", "no molecules"), ("delete_atoms overlap 0 all all", "positive"), ("delete_atoms porosity b 0.1 1", "not supported"),
+    ("delete_atoms group all compress maybe", "yes or no"),
+])
+def test_mistakes(line, message):
+    session = asemd(FCC + "region far block 100 101 0 1 0 1")
+    before = session.scene.system.x.copy()
+    with pytest.raises(InputError, match=message):
+        session.execute(line)
+    assert np.array_equal(session.scene.system.x, before)
+
+
+@pytest.mark.parametrize("script, message", [
+    ("mass 1 1", "before simulation box"), ("region b sphere 0 0 0 1 side out\ncreate_box 1 b", "no bounds"),
+    ("region b block 0 1 0 1 0 1\ncreate_box 0 b", "positive"), ("create_box 1 b", "unknown region"),
+    ("region b block 0 1 0 1 0 1\ncreate_box 1 b bond/types 1", "no bonds"), ("dimension 2\nregion b block 0 1 0 1 1 2\ncreate_box 1 b", "z = 0"),
+    ("boundary p f p\nregion b prism 0 1 0 1 0 1 0.2 0 0\ncreate_box 1 b", "periodic"),
+    ("region b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 box", "no lattice"),
+])
+def test_mistakes_before_the_box(script, message):
+    with pytest.raises(InputError, match=message):
+        asemd(script)
+
+
+BONDED = """
+units lj
+atom_style bond
+region b block 0 10 0 10 0 10
+create_box 1 b bond/types 1
+"""
+
+
+def chain():
+    from asemd.topology import Topology
+    session = asemd(BONDED)
+    system = session.scene.system
+    new = type(system)(box=system.box, x=np.arange(18.0).reshape(6, 3) / 2, type=1, molecule=[1, 1, 1, 2, 2, 2], atom_style="bond", units="lj",
+                       counts=system.counts, topology=Topology(bonds=[(0, 1), (1, 2), (3, 4), (4, 5)]))
+    session.scene.system = new
+    session.scene.sync_groups()
+    return session
+
+
+def test_delete_molecules_and_bonds():
+    session = chain()
+    session.execute("group g id 2")
+    with pytest.raises(InputError, match="2 bonds would lose"):
+        session.execute("delete_atoms group g compress no")
+    session.execute("delete_atoms group g bond yes compress no")
+    system = session.scene.system
+    assert sorted(system.id) == [1, 3, 4, 5, 6] and len(system.topology.bonds) == 2
+    session.execute("group h id 5")
+    session.execute("delete_atoms group h mol yes compress no")
+    assert sorted(session.scene.system.id) == [1, 3] and session.scene.system.topology.is_empty

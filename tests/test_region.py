@@ -1,0 +1,94 @@
+"""Regions: membership of points, sides, lattice units, mistakes."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from both import asemd, assert_same, lammps
+
+from asemd.errors import InputError
+from asemd.region.block import Block
+from asemd.region.cone import Cone
+from asemd.region.cylinder import Cylinder
+from asemd.region.intersect import Intersect
+from asemd.region.plane import Plane
+from asemd.region.prism import Prism
+from asemd.region.sphere import Sphere
+from asemd.region.union import Union
+
+BOX = """
+units metal
+lattice fcc 3.52 orient x 1 1 0 orient y -1 1 0 orient z 0 0 1
+region b block 0 4 0 4 0 4
+create_box 2 b
+region s sphere 2 2 2 1.6
+region c cylinder x 2 2 0.7 0.5 3
+region o cylinder z 7 7 5 INF INF side out units box
+region u union 2 s c
+region i intersect 2 s c side out
+region k cone z 2 2 0.2 1.5 1 3
+region q prism 0.5 2 0.6 3 0.3 2 0.3 0.2 0.1
+region h plane 2 2 2 1 1 0.3 side out
+region e block 1 EDGE INF 2 0 1.5 units box
+region n intersect 2 u e
+"""
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return lammps({r: BOX + f"create_atoms 1 region {r}" for r in "bscouikqhen"})
+
+
+@pytest.mark.parametrize("region", "bscouikqhen")
+def test_same_lattice_points_as_lammps(theirs, region):
+    assert_same(asemd(BOX + f"create_atoms 1 region {region}"), theirs[region])
+
+
+POINTS = np.random.default_rng(5).uniform(-1, 5, (400, 3))
+
+
+@pytest.mark.parametrize("region, rule", [
+    (Block((0, 0, 0), (1, 2, 3)), lambda x, y, z: 0 <= x <= 1 and 0 <= y <= 2 and 0 <= z <= 3),
+    (Sphere((1, 1, 1), 2), lambda x, y, z: (x - 1)**2 + (y - 1)**2 + (z - 1)**2 <= 4),
+    (Cylinder(1, (1, 2), 1.5, 0, 3), lambda x, y, z: (x - 1)**2 + (z - 2)**2 <= 1.5**2 and 0 <= y <= 3),
+    (Cone(0, (1, 1), 0, 2, 0, 4), lambda x, y, z: (y - 1)**2 + (z - 1)**2 <= (x / 2)**2 and 0 <= x <= 4),
+    (Plane((0, 0, 1), (0, 0, 5)), lambda x, y, z: z >= 1),
+    (Prism((0, 0, 0), (2, 2, 2), (1, 0, 0)), lambda x, y, z: 0 <= y <= 2 and 0 <= z <= 2 and 0 <= x - y / 2 <= 2),
+])
+def test_inside_and_outside(region, rule):
+    expected = [rule(*p) for p in POINTS]
+    assert region.inside(POINTS).tolist() == expected
+    region.side = "out"
+    assert (~region.inside(POINTS)).tolist() == expected
+
+
+def test_boundary_belongs_to_the_inside():
+    on = np.array([[1.0, 0.0, 0.0]])
+    assert Sphere((0, 0, 0), 1).inside(on)[0] and not Sphere((0, 0, 0), 1, side="out").inside(on)[0]
+
+
+def test_union_and_intersection_with_sides():
+    a, b = Block((0, 0, 0), (2, 2, 2)), Sphere((2, 2, 2), 1, side="out")
+    inside_a, inside_b = a.inside(POINTS), b.inside(POINTS)
+    assert (Union([a, b]).inside(POINTS) == (inside_a | inside_b)).all()
+    assert (Intersect([a, b]).inside(POINTS) == (inside_a & inside_b)).all()
+    assert (Intersect([a, b], side="out").inside(POINTS) == ~(inside_a & inside_b)).all()
+    assert Union([a, b]).extent() is None and np.array_equal(Intersect([a, b]).extent()[1], [2, 2, 2])
+
+
+@pytest.mark.parametrize("words, message", [
+    ("r blok 0 1 0 1 0 1", "did you mean block"), ("r block 0 1 0 1 0", "6 values"), ("r block 1 0 0 1 0 1", "above"),
+    ("r block 0 1 0 1 0 x", "number"), ("r block INF 1 0 1 0 1", "not defined yet"), ("r sphere 0 0 0 -1", "negative"),
+    ("r sphere 0 0 0 v_r", "variable"), ("r cylinder w 0 0 1 0 1", "expected one of x y z"), ("r plane 0 0 0 0 0 0", "normal"),
+    ("r union 2 a b", "unknown region"), ("r union 1 a", "two"), ("r block 0 1 0 1 0 1 move v_a NULL NULL", "not supported"),
+    ("r block 0 1 0 1 0 1 open 1", "not supported"), ("r block 0 1 0 1 0 1 side up", "in out"), ("r block 0 1 0 1 0 1 foo 1", "unknown keyword"),
+    ("r delete", "no such region"),
+])
+def test_mistakes(words, message):
+    with pytest.raises(InputError, match=message):
+        asemd(f"lattice none 1.0\nregion {words}")
+
+
+def test_defined_twice_and_deleted():
+    session = asemd("region r block 0 1 0 1 0 1\nregion r delete\nregion r sphere 0 0 0 1")
+    with pytest.raises(InputError, match="defined already"):
+        session.execute("region r block 0 1 0 1 0 1")
