@@ -11,6 +11,8 @@ from asemd.errors import InputError, SimulationError
 BOUNDARIES = {"p": "periodic", "f": "fixed", "s": "shrink-wrapped", "m": "shrink-wrapped with a minimum"}
 MARGIN = 1e-4      # LAMMPS keeps a shrink-wrapped face this part of the initial box length away from the outermost atom
 
+FARTHEST = 1e9     # boxes; image flags are 32-bit numbers
+
 
 def _boundary(words: Sequence[str]) -> tuple[str, str, str]:
     """Three two-letter boundaries; one letter stands for both faces."""
@@ -187,11 +189,15 @@ class Box:
         Raises
         ------
         SimulationError
-            A position that is NaN or infinite.
+            A position that is NaN or infinite, or more than 1e9 boxes away.
         """
         if not np.isfinite(x).all():
             row = int(np.argmin(np.isfinite(x).all(axis=1)))
             raise SimulationError(f"the position of atom row {row} is not finite: {x[row]}")
+        if len(x) and self.periodic.any():
+            far = np.abs(self.fractional(x)[:, self.periodic]).max(axis=1)
+            if far.max() > FARTHEST:
+                raise SimulationError(f"atom row {int(np.argmax(far))} is {far.max():.3g} boxes away, too far to be wrapped")
         (self._wrap_aligned if self.aligned else self._wrap_general)(x, image)
 
     def _wrap_aligned(self, x, image):

@@ -78,6 +78,8 @@ def test_wrap_names_the_atom_that_is_not_finite():
     box = Box.from_lammps([0, 0, 0], [10, 10, 10])
     with pytest.raises(SimulationError, match="row 1"):
         box.wrap(np.array([[0, 0, 0], [0, np.nan, 0]]), np.zeros((2, 3), np.int32))
+    with pytest.raises(SimulationError, match="row 1 is 1e\\+299 boxes away"):
+        box.wrap(np.array([[0, 0, 0], [0, 1e300, 0]]), np.zeros((2, 3), np.int32))
 
 
 @settings(max_examples=60)

@@ -246,6 +246,7 @@ BAD = {   # name: (text, line of the place or text in it, words of the message)
     "id 0": (swap("2 1 1 0.0", "0 1 1 0.0"), "0 1 1 0.0", ["ID 0", "positive"]),
     "infinite": (swap("0.0 5.0 5.2", "0.0 inf 5.2"), "inf 5.2", ["infinite", "x", "atom 2"]),
     "overflow": (swap("0.0 5.0 5.2", "0.0 5.0 1e999"), "1e999", ["infinite", "y", "atom 2"]),
+    "boxes away": (swap("0.0 5.0 5.2", "0.0 5.0 1e300"), "1e300", ["atom 2", "boxes away"]),
     "nan": (swap("0.0 5.0 5.2", "nan 5.0 5.2"), "nan 5.0", ["NaN", "charge", "atom 2"]),
     "nan velocity": (swap("2 1 2 3\n4", "2 1 nan 3\n4"), "2 1 nan 3", ["NaN", "vy", "atom 2"]),
     "not a number": (swap("0.0 5.0 5.2", "0.0 5.0 five"), "five", ["Atoms", "'five'", "y"]),
@@ -398,8 +399,8 @@ def everything(seed=3, n=9):
     s = System(box=box, x=rng.uniform(-30, 30, (n, 3)), type=1 + i % 2, id=rng.permutation(n) + 1, v=rng.normal(size=(n, 3)),
                molecule=1 + i // 4, q=rng.normal(size=n), mass=[np.nan, 12.01, 1 / 3], atom_style="full", step=17,
                topology=Topology(bonds=np.column_stack([i[:-1], i[1:]]), bond_types=1 + i[:-1] % 2,
-                                 angles=np.column_stack([i[:-2], i[1:-1], i[2:]]), dihedrals=np.column_stack([i[:-3], i[1:-2], i[2:-1], i[3:]]),
-                                 impropers=[[1, 0, 2, 3]]))
+                                 angles=np.column_stack([i[:-2], i[1:-1], i[2:]]),
+                                 dihedrals=np.column_stack([i[:-3], i[1:-2], i[2:-1], i[3:]]), impropers=[[1, 0, 2, 3]]))
     box.wrap(s.x, s.image)
     return s
 
@@ -410,7 +411,8 @@ def by_id(s):
 
 def items_by_id(s, kind):
     atoms, types = s.topology.items(kind)
-    return sorted((t, min(tuple(a), tuple(a[::-1])) if kind != "improper" else tuple(a)) for t, a in zip(types.tolist(), s.id[atoms].tolist()))
+    same_backwards = kind != "improper"
+    return sorted((t, min(a, a[::-1]) if same_backwards else a) for t, a in zip(types.tolist(), s.id[atoms].tolist()))
 
 
 def assert_same(a, b, rtol=0.0):

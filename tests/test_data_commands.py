@@ -98,7 +98,7 @@ answer = "written"
 def test_add_is_that_of_lammps(folder, words):
     lines = ["read_data first.data", f"read_data second.data {words}"]
     mine = session(*lines).scene.system
-    absolute = [line.replace("first.data", str(folder / "first.data")).replace("second.data", str(folder / "second.data")) for line in lines]
+    absolute = [line.replace("first.data", f"{folder}/first.data").replace("second.data", f"{folder}/second.data") for line in lines]
     ask(WHEEL, lines=START + absolute, out=str(folder / "out.data"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
@@ -109,8 +109,10 @@ def test_add_is_that_of_lammps(folder, words):
 
 
 def test_merge_interleaves_ids_and_groups(folder):
-    (folder / "second.data").write_text(SECOND.replace("\n2 2 1 12", "\n1 2 1 12", 1).replace("\n1 0 1 -3", "\n7 0 1 -3").replace(
-        "\n2 1 2 3", "\n7 1 2 3").replace("1 1 1 2", "1 1 1 7"))
+    text = SECOND
+    for old, new in (("\n2 2 1 12", "\n1 2 1 12"), ("\n1 0 1 -3", "\n7 0 1 -3"), ("\n2 1 2 3", "\n7 1 2 3"), ("1 1 1 2", "1 1 1 7")):
+        text = text.replace(old, new)
+    (folder / "second.data").write_text(text)
     (folder / "first.data").write_text(FIRST.replace("1 3 1 1 1 1", "5 3 1 1 1 1").replace("1 1 1 2", "1 1 5 2"))
     s = session("read_data first.data group old", "read_data second.data add merge group new")
     assert s.scene.system.id.tolist() == [1, 2, 5, 7]

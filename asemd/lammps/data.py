@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from asemd.box import Box
+from asemd.box import FARTHEST, Box
 from asemd.errors import InputError, Where, nearest
 from asemd.lammps.data_format import ATOM_STYLES, COEFFS, IMAGE, KIND_OF, LABELS, REAL_HEADER, TOPOLOGY
 from asemd.lammps.data_table import parse_table
@@ -254,12 +254,16 @@ class _Reader(DataText):
         image = np.zeros((n, 3), np.int32)
         flagged = n > 0 and "nx" in a
         if flagged:
-            image[:] = np.column_stack([a[c] for c in IMAGE])[order]
+            image[:] = np.clip(np.column_stack([a[c] for c in IMAGE])[order], -2**31 + 1, 2**31 - 1)
             self.drop_flags(image, box, line)
         if rotation is not None:
             x = (x - box.origin) @ rotation + box.origin
         whole = box if self.onto is None else self.union(box)
         self.check_inside(x, ids, whole, line)
+        far = (np.abs(whole.fractional(x)) + np.abs(image.astype(float)) > FARTHEST) & whole.periodic
+        if far.any():
+            row = int(np.argmax(far.any(axis=1)))
+            raise self.fail(f"atom {ids[row]} is more than {FARTHEST:g} boxes away", line(row))
         v = self.read_velocities(ids)
         if rotation is not None:
             v = v @ rotation
