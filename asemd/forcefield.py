@@ -145,6 +145,9 @@ class Interactions:
             if name in HYBRID or name == "none":
                 raise InputError(f"{command} cannot have {name} as a sub-style")
             style = find(category, name)
+            strange = [w for w in rest if w[0].isalpha()]
+            if strange and not any(p.unit == "word" for p in style.settings):
+                find(category, strange[0])        # a style that does not exist: say so, not that there are too many values
             uses.append(Use(style, style.parse_settings(rest), label=name))
         names = [use.label for use in uses]
         for k, use in enumerate(uses):

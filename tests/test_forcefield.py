@@ -60,7 +60,9 @@ def test_none_and_names():
         i.set_style("pair", ["none", "3"])
     for words, message in (([], "needs the name"), (["lj/cutt", "2"], "did you mean lj/cut"), (["hybrid"], "sub-styles"),
                            (["hybrid", "3.0"], "unknown pair style '3.0'"), (["hybrid", "lj/cut", "2", "hybrid", "morse"], "cannot have"),
-                           (["hybrid", "lj/cut", "2", "none"], "cannot have none")):
+                           (["hybrid", "lj/cut", "2", "none"], "cannot have none"),
+                           (["hybrid", "lj/cut", "2", "lj96/cutt", "3"], "unknown pair style 'lj96/cutt'.*did you mean lj96/cut"),
+                           (["hybrid", "lj/cut", "2", "zero", "3", "full", "lj/cut"], "lj/cut needs cut")):
         with pytest.raises(InputError, match=message):
             i.set_style("pair", words)
     with pytest.raises(InputError, match="twice"):

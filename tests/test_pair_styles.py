@@ -235,7 +235,8 @@ def wheel(jobs):
                   "thermo_style custom step c_s", "neighbor 0.1 bin", "run 0 post no"]:
             lmp.command(c)
         order = np.argsort(lmp.numpy.extract_atom("id")[:2 * n])
-        e, f, x = (a[:2 * n][order] for a in (lmp.numpy.extract_compute("e", 1, 1), lmp.numpy.extract_atom("f"), lmp.numpy.extract_atom("x")))
+        arrays = (lmp.numpy.extract_compute("e", 1, 1), lmp.numpy.extract_atom("f"), lmp.numpy.extract_atom("x"))
+        e, f, x = (a[:2 * n][order] for a in arrays)
         out.append({"qqr2e": lmp.extract_global("qqrd2e"), "r": (x[1::2, 0] - x[::2, 0]).tolist(), "e": (e[::2] + e[1::2]).tolist(),
                     "f": f[1::2, 0].tolist()})
         lmp.close()

@@ -17,7 +17,7 @@ class Zero(PairStyle):
         return values | {"nocoeff": "nocoeff" in flags, "full": "full" in flags}
 
     def format_settings(self, settings):
-        return super().format_settings(settings) + [w for w in ("nocoeff", "full") if settings.get(w)]
+        return super().format_settings({"cut": settings["cut"]}) + [w for w in ("nocoeff", "full") if settings[w]]
 
     def parse_coeff(self, words, settings):
         return {} if settings["nocoeff"] else super().parse_coeff(words, settings)
@@ -26,5 +26,5 @@ class Zero(PairStyle):
         return coeff["cut"]
 
 
-register(Zero("zero", [], settings="cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="10.0", example="8.0",
-              doc=__doc__, see="LAMMPS manual, pair_style zero"))
+register(Zero("zero", [], settings="cut [nocoeff] [full]", coeff="[cut]", units={"nocoeff": "word", "full": "word"}, mix={"cut": "distance"},
+              settings_example="10.0", example="8.0", doc=__doc__, see="LAMMPS manual, pair_style zero"))
