@@ -73,7 +73,8 @@ CASES = {
     "delete keep ids": FCC + "group g id 1:100:3\ndelete_atoms group g compress no",
     "delete variable": FCC + "variable far atom x>3\ndelete_atoms variable far",
     "overlap": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR + "delete_atoms overlap 0.5 all all",
-    "overlap groups": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR + "group a type 1\ngroup b type 2\ndelete_atoms overlap 0.7 b all",
+    "overlap groups": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR
+    + "group a type 1\ngroup b type 2\ndelete_atoms overlap 0.7 b all",
 }
 
 
@@ -137,15 +138,17 @@ def test_groups_follow_the_atoms():
 
 @pytest.mark.parametrize("line, message", [
     ("create_box 1 b", "defined already"), ("create_atoms 3 box", "valid range 1 to 2"), ("create_atoms 1 bix", "did you mean box"),
-    ("create_atoms 1 region q", "unknown region"), ("create_atoms 1 single 1 1", "3 values"), ("create_atoms 1 box basis 5 1", "4 basis atoms"),
-    ("create_atoms 0 box mol m 1", "valid range"), ("create_atoms 1 box mol m 1", "not supported"), ("create_atoms 1 random 5 0 NULL", "seed"),
-    ("create_atoms 1 random 5 9 far", "does not overlap"), ("mass 3 1.0", "valid range"), ("mass 1 0", "positive"), ("mass 1 x", "number"),
-    ("mass 1", "1 words"), ("mass 1 nan", "finite"), ("labelmap atom 3 C", "valid range"), ("labelmap atom 1 2B", "digit"),
-    ("labelmap atom 1 A 2 A", "two types"), ("labelmap atoms 1 A", "did you mean atom"), ("displace_atoms all mov 1 1 1", "did you mean move"),
-    ("displace_atoms all move 1 1", "3 values"), ("displace_atoms non move 1 1 1", "unknown group"),
-    ("displace_atoms all rotate 0 0 0 0 0 0 10", "axis"), ("displace_atoms all ramp x 0 1 y 2 1", "below"),
-    ("displace_atoms all move 1 1 1 unit box", "unknown keyword"), ("delete_atoms group g", "unknown group"),
-    ("delete_atoms group all mol yes", "no molecules"), ("delete_atoms overlap 0 all all", "positive"), ("delete_atoms porosity b 0.1 1", "not supported"),
+    ("create_atoms 1 region q", "unknown region"), ("create_atoms 1 single 1 1", "3 values"),
+    ("create_atoms 1 box basis 5 1", "4 basis atoms"), ("create_atoms 0 box mol m 1", "valid range"),
+    ("create_atoms 1 box mol m 1", "not supported"), ("create_atoms 1 random 5 0 NULL", "seed"),
+    ("create_atoms 1 random 5 9 far", "does not overlap"), ("mass 3 1.0", "valid range"), ("mass 1 0", "positive"),
+    ("mass 1 x", "number"), ("mass 1", "1 words"), ("mass 1 nan", "finite"), ("labelmap atom 3 C", "valid range"),
+    ("labelmap atom 1 2B", "digit"), ("labelmap atom 1 A 2 A", "two types"), ("labelmap atoms 1 A", "did you mean atom"),
+    ("displace_atoms all mov 1 1 1", "did you mean move"), ("displace_atoms all move 1 1", "3 values"),
+    ("displace_atoms non move 1 1 1", "unknown group"), ("displace_atoms all rotate 0 0 0 0 0 0 10", "axis"),
+    ("displace_atoms all ramp x 0 1 y 2 1", "below"), ("displace_atoms all move 1 1 1 unit box", "unknown keyword"),
+    ("delete_atoms group g", "unknown group"), ("delete_atoms group all mol yes", "no molecules"),
+    ("delete_atoms overlap 0 all all", "positive"), ("delete_atoms porosity b 0.1 1", "not supported"),
     ("delete_atoms group all compress maybe", "yes or no"),
 ])
 def test_mistakes(line, message):
@@ -159,7 +162,8 @@ def test_mistakes(line, message):
 @pytest.mark.parametrize("script, message", [
     ("mass 1 1", "before simulation box"), ("region b sphere 0 0 0 1 side out\ncreate_box 1 b", "no bounds"),
     ("region b block 0 1 0 1 0 1\ncreate_box 0 b", "positive"), ("create_box 1 b", "unknown region"),
-    ("region b block 0 1 0 1 0 1\ncreate_box 1 b bond/types 1", "no bonds"), ("dimension 2\nregion b block 0 1 0 1 1 2\ncreate_box 1 b", "z = 0"),
+    ("region b block 0 1 0 1 0 1\ncreate_box 1 b bond/types 1", "no bonds"),
+    ("dimension 2\nregion b block 0 1 0 1 1 2\ncreate_box 1 b", "z = 0"),
     ("boundary p f p\nregion b prism 0 1 0 1 0 1 0.2 0 0\ncreate_box 1 b", "periodic"),
     ("region b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 box", "no lattice"),
 ])
@@ -180,7 +184,7 @@ def chain():
     from asemd.topology import Topology
     session = asemd(BONDED)
     system = session.scene.system
-    new = type(system)(box=system.box, x=np.arange(18.0).reshape(6, 3) / 2, type=1, molecule=[1, 1, 1, 2, 2, 2], atom_style="bond", units="lj",
+    new = type(system)(box=system.box, x=np.arange(18.0).reshape(6, 3) / 2, type=1, molecule=[1, 1, 1, 2, 2, 2], atom_style="bond",
                        counts=system.counts, topology=Topology(bonds=[(0, 1), (1, 2), (3, 4), (4, 5)]))
     session.scene.system = new
     session.scene.sync_groups()

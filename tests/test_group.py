@@ -74,11 +74,12 @@ def test_labels():
 
 
 @pytest.mark.parametrize("line, message", [
-    ("group g foo 1", "unknown style"), ("group g typ 1", "did you mean type"), ("group g id", "1 value"), ("group g id x", "whole"),
-    ("group g id 5:1", "start:end"), ("group g id <> 5", "2 values"), ("group g id < 5 6", "1 value"), ("group g subtract all nope", "unknown group"),
-    ("group g region nope", "unknown region"), ("group g variable nope", "undefined variable"), ("group all delete", "cannot be changed"),
-    ("group g delete", "no such group"), ("group g dynamic all every 10", "not supported"), ("group g include atoms", "molecule"),
-    ("group g! id 1", "letters"), ("group g", "2 values"),
+    ("group g foo 1", "unknown style"), ("group g typ 1", "did you mean type"), ("group g id", "1 value"),
+    ("group g id x", "whole"), ("group g id 5:1", "start:end"), ("group g id <> 5", "2 values"), ("group g id < 5 6", "1 value"),
+    ("group g subtract all nope", "unknown group"), ("group g region nope", "unknown region"),
+    ("group g variable nope", "undefined variable"), ("group all delete", "cannot be changed"), ("group g delete", "no such group"),
+    ("group g dynamic all every 10", "not supported"), ("group g include atoms", "molecule"), ("group g! id 1", "letters"),
+    ("group g", "2 values"),
 ])
 def test_mistakes(line, message):
     session = asemd(ATOMS)

@@ -80,8 +80,8 @@ def test_union_and_intersection_with_sides():
     ("r block 0 1 0 1 0 x", "number"), ("r block INF 1 0 1 0 1", "not defined yet"), ("r sphere 0 0 0 -1", "negative"),
     ("r sphere 0 0 0 v_r", "variable"), ("r cylinder w 0 0 1 0 1", "expected one of x y z"), ("r plane 0 0 0 0 0 0", "normal"),
     ("r union 2 a b", "unknown region"), ("r union 1 a", "two"), ("r block 0 1 0 1 0 1 move v_a NULL NULL", "not supported"),
-    ("r block 0 1 0 1 0 1 open 1", "not supported"), ("r block 0 1 0 1 0 1 side up", "in out"), ("r block 0 1 0 1 0 1 foo 1", "unknown keyword"),
-    ("r delete", "no such region"),
+    ("r block 0 1 0 1 0 1 open 1", "not supported"), ("r block 0 1 0 1 0 1 side up", "in out"),
+    ("r block 0 1 0 1 0 1 foo 1", "unknown keyword"), ("r delete", "no such region"),
 ])
 def test_mistakes(words, message):
     with pytest.raises(InputError, match=message):

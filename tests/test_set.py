@@ -70,9 +70,9 @@ def test_bonded_types():
     ("set atom 1 type 4", "valid range 1 to 3"), ("set type 4 x 1", "valid range"), ("set atom 1 typ 1", "did you mean type"),
     ("set atm 1 type 1", "did you mean atom"), ("set atom 1", "keyword"), ("set atom 1 x", "1 value"), ("set atom 1 x y", "number"),
     ("set atom 1 x nan", "finite"), ("set group nope x 1", "unknown group"), ("set region nope x 1", "unknown region"),
-    ("set atom 1 diameter 2", "not supported"), ("set atom 1 type/fraction 2 1.5 1", "from 0 to 1"), ("set atom 1 type/fraction 2 0.5 0", "seed"),
-    ("set atom 1 mass 2", "mass command"), ("set atom 1 mol -1", "negative"), ("set atom 1 charge v_nope", "undefined"),
-    ("set atom x type 1", "range"), ("set group all type v_even", "valid range"),
+    ("set atom 1 diameter 2", "not supported"), ("set atom 1 type/fraction 2 1.5 1", "from 0 to 1"),
+    ("set atom 1 type/fraction 2 0.5 0", "seed"), ("set atom 1 mass 2", "mass command"), ("set atom 1 mol -1", "negative"),
+    ("set atom 1 charge v_nope", "undefined"), ("set atom x type 1", "range"), ("set group all type v_even", "valid range"),
 ])
 def test_mistakes(line, message):
     session = asemd(ATOMS)

