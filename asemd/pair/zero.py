@@ -26,5 +26,5 @@ class Zero(PairStyle):
         return coeff["cut"]
 
 
-register(Zero("zero", [], settings="cut [nocoeff] [full]", coeff="[cut]", units={"nocoeff": "word", "full": "word"}, mix={"cut": "distance"},
-              settings_example="10.0", example="8.0", doc=__doc__, see="LAMMPS manual, pair_style zero"))
+register(Zero("zero", [], settings="cut [nocoeff] [full]", coeff="[cut]", units={"nocoeff": "word", "full": "word"},
+              mix={"cut": "distance"}, settings_example="10.0", example="8.0", doc=__doc__, see="LAMMPS manual, pair_style zero"))
