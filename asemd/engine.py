@@ -447,6 +447,7 @@ class Engine:
         if self.interactions.tail and self.pair_terms:
             e, p = self.interactions.tail_correction(self.system, self.units)
             energy["etail"] = e
+            p *= abs(np.linalg.det(self.vectors)) / self.units.nktv2p
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])
         self.store()
         if not np.isfinite(acc).all() or not np.isfinite(self.system.f).all():

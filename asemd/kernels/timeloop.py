@@ -51,6 +51,8 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             b.line(f"from {g.__module__} import {g.__name__} as {alias}")
     for n, fix in enumerate(hooks):
         for name, f in fix.items():
+            for helper in getattr(f, "uses", ()):
+                b.function(helper, fast=True)
             b.text(plain_source(f, f"fix{n}_{name}"), f"fastmath={FAST}")
 
     def calls(name: str, indent: int) -> str:
