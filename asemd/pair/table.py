@@ -218,7 +218,8 @@ def unit_factor(section: tabulated.Section, units) -> float:
 
 
 OPTIONS = dict(settings="style N [keywords]", coeff="file keyword [cut]",
-               units=dict(file="path", keyword="word", style="word", keywords="word"), domain="the distance is below the inner end of the table",
+               units=dict(file="path", keyword="word", style="word", keywords="word"),
+               domain="the distance is below the inner end of the table",
                settings_example="linear 1000", example="file KEYWORD 2.5",
                doc=__doc__, see="LAMMPS manual, pair_style table")
 style = register(Table("table", [(table, "cut")], rows="index inner2 scale last", **OPTIONS))
