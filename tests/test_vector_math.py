@@ -1,0 +1,129 @@
+"""exp, log, erfc of the pair kernels: digits against mpmath, the plain Python twins, and whether loops become vector code."""
+from __future__ import annotations
+
+import math
+import os
+import platform
+import re
+import time
+
+import mpmath as mp
+import numba
+import numpy as np
+import pytest
+
+from asemd.kernels import bits, vector_math
+from asemd.kernels.generate import Builder
+
+mp.mp.dps = 40
+LOOPS = """
+def loop_{name}(x, out):
+    for k in range(x.size):
+        out[k] = vector_{name}(x[k])
+"""
+
+
+def build(single: bool):
+    b = Builder("vector functions in loops")
+    b.line("real = np.float32" if single else "real = np.float64")
+    vector_math.paste(b, single)
+    for name in ("exp", "log", "erfc"):
+        b.text(LOOPS.format(name=name).strip())
+    return b.build()
+
+
+@pytest.fixture(scope="module")
+def double():
+    return build(False)
+
+
+@pytest.fixture(scope="module")
+def single():
+    return build(True)
+
+
+def points(name: str, single: bool) -> np.ndarray:
+    rng = np.random.default_rng(11)
+    if name == "exp":
+        top, low = (88.0, -87.0) if single else (709.0, -708.0)
+        x = np.concatenate([rng.uniform(low, top, 1500), rng.uniform(-1, 1, 700), rng.normal(size=300) * 1e-6, [0.0, 1.0, low, top]])
+    elif name == "log":
+        span = 37 if single else 300
+        x = np.concatenate([10.0 ** rng.uniform(-span, span, 1200), rng.uniform(0.6, 1.6, 1200), 1 + rng.normal(size=300) * 1e-7, [1.0]])
+    else:
+        top = 9.0 if single else 26.0
+        x = np.concatenate([rng.uniform(0, 6, 1500), rng.uniform(-6, top, 700), 10.0 ** rng.uniform(-8, 0, 300), [0.0, 1.0]])
+    return x.astype(np.float32 if single else np.float64)
+
+
+def ulps(name: str, got: np.ndarray, x: np.ndarray) -> float:
+    """The largest error in units of the last digit."""
+    worst = 0.0
+    for g, v in zip(got, x):
+        want = getattr(mp, name)(mp.mpf(float(v)))
+        last = abs(np.spacing(got.dtype.type(want))) if want else np.finfo(got.dtype).tiny
+        worst = max(worst, float(abs(mp.mpf(float(g)) - want) / mp.mpf(float(last))))
+    return worst
+
+
+@pytest.mark.parametrize(("name", "limit"), [("exp", 1.5), ("log", 1.5), ("erfc", 4.0)])
+@pytest.mark.parametrize("single_precision", [False, True])
+def test_digits(name, limit, single_precision, double, single):
+    module = single if single_precision else double
+    x = points(name, single_precision)
+    out = np.empty_like(x)
+    getattr(module, f"loop_{name}")(x, out)
+    error = ulps(name, out, x)
+    assert error <= limit * (1.5 if single_precision else 1.0), f"{name}: {error:.2f} ulp"
+    print(f"{name} {'single' if single_precision else 'double'}: {error:.2f} ulp")
+
+
+@pytest.mark.parametrize("name", ["exp", "log", "erfc"])
+def test_plain_python_agrees(name, double):
+    x = points(name, False)[::20]
+    out = np.empty_like(x)
+    getattr(double, f"loop_{name}")(x, out)
+    plain = np.array([getattr(vector_math, f"vector_{name}")(float(v)) for v in x])
+    assert plain == pytest.approx(out, rel=2e-15, abs=1e-300)
+
+
+def test_pow(double):
+    for x, y in ((2.0, 0.5), (1.3, 12.0), (7.5, -6.0), (0.01, 2.25)):
+        assert double.vector_pow(x, y) == pytest.approx(x**y, rel=1e-14)
+
+
+def test_edges(double):
+    x = np.array([-708.5, -1e9, -math.inf, 1e9, math.nan, -0.0])
+    out = np.empty_like(x)
+    double.loop_exp(x, out)
+    assert not out[:3].any() and out[3] == pytest.approx(math.exp(709.4), rel=1e-12) and math.isnan(out[4]) and out[5] == 1.0
+    double.loop_erfc(np.array([30.0, 1e300, math.inf, -30.0, math.nan, 0.0]), out)
+    assert not out[:3].any() and out[3] == 2.0 and math.isnan(out[4]) and out[5] == pytest.approx(1.0, rel=1e-15)
+
+
+def test_bits():
+    for x in (1.0, 0.7, 0.71, 3.5, 1e-200, 7e180, math.sqrt(0.5), math.sqrt(2.0)):
+        k, m = bits.exponent(x), bits.significand(x)
+        assert math.ldexp(m, int(k)) == x and 0.7071 < m < 1.41422
+    assert bits.power_of_two(-3.0) == 0.125
+    assert bits.upper_half(1.0 + 2.0**-50) == 1.0
+
+
+@pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
+@pytest.mark.parametrize("name", ["exp", "log", "erfc"])
+def test_loops_are_vectorised(name, double):
+    x = points(name, False)[:2000]
+    out = np.empty_like(x)
+    loop = numba.njit(error_model="numpy")(getattr(double, f"loop_{name}").py_func)      # code from the disk cache cannot be looked at
+    loop(x, out)
+    best = math.inf
+    for _ in range(20):
+        start = time.perf_counter()
+        for _ in range(10):
+            loop(x, out)
+        best = min(best, time.perf_counter() - start)
+    print(f"{name}: {best / 10 / x.size * 1e9:.2f} ns each")
+    if platform.machine() not in ("x86_64", "AMD64"):
+        pytest.skip("looks at x86 registers only")
+    code = "".join(loop.inspect_asm().values())
+    assert re.search(r"mulpd|fmadd\d+pd", code), f"{name}: no packed arithmetic"
