@@ -1,4 +1,4 @@
-r"""Lattices: a unit cell with basis atoms, scaled, rotated and shifted into the box. Their spacings are the unit "lattice" of other commands."""
+r"""Lattices: a unit cell with basis atoms, scaled, rotated and shifted into the box; their spacings are a unit of length elsewhere."""
 from __future__ import annotations
 
 import math
