@@ -126,10 +126,10 @@ def run(context: typer.Context,
     path = script or options.input
     if path is None:
         raise InputError("asemd run needs a script: asemd run in.file (give the script before -var, or with -in)")
-    watcher = make_watcher(quiet or options.screen == "none")
-    session = Session(switches=options, screen=None if watcher.silent else watcher.write if options.screen is None else None)
-    if watcher.silent:
-        session.log.screen = None
+    if quiet:
+        options.screen = "none"
+    watcher = make_watcher(options.screen is not None)
+    session = Session(switches=options, screen=watcher.write if options.screen is None else None)
     session.observer = watcher
     status = 0
     with interruptible(session):

@@ -123,8 +123,12 @@ class Moment:
         return float(sum(f.scalar() for f in self.scene.fixes.values() if f.ecouple))
 
     def volume(self) -> float:
+        """Volume, or area in two dimensions."""
         box = self.system.box
-        return box.volume if self.scene.dimension == 3 else float(np.linalg.norm(np.cross(box.cell[0], box.cell[1])))
+        edges = np.diag(box.cell) if box.is_lammps_frame else None
+        if self.scene.dimension == 3:
+            return float(np.prod(edges)) if edges is not None else box.volume
+        return float(edges[0] * edges[1]) if edges is not None else float(np.linalg.norm(np.cross(box.cell[0], box.cell[1])))
 
     def forces(self) -> np.ndarray:
         return self.snapshot.system.f

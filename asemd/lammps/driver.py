@@ -110,6 +110,7 @@ class Driver:
             session.running = False
             self._watch("stop")
         loop.finish()
+        scene.set_dt(scene.dt)
         if scene.thermo.footer():
             session.log.write(scene.thermo.footer() + "\n")
         steps = scene.step - begin

@@ -65,6 +65,8 @@ class Minimization(Driver):
         session, scene, begin = self.session, self.scene, self.scene.step
         check(session)
         session.close_loop()
+        if scene.min_style in DAMPED:
+            scene.system.v[:] = 0.0
         fixes = [f for f in scene.fixes.values() if f.minimizes]
         loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
         loop.setup(begin, begin + self.plan.steps)
@@ -80,6 +82,7 @@ class Minimization(Driver):
         if scene.thermo.footer():
             session.log.write(scene.thermo.footer() + "\n")
         loop.finish()
+        scene.set_dt(scene.dt)
         session.loop = None         # a run after a minimisation starts afresh
         self._report(loop, result, seconds)
         if session.interrupted:
