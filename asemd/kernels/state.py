@@ -56,10 +56,12 @@ def cell_arrays(vectors: np.ndarray, periodic: np.ndarray) -> Cell:
     if periodic.any() and np.count_nonzero(vectors - np.diag(np.diag(vectors))):
         from ase.geometry import minkowski_reduce
         reduced = np.ascontiguousarray(minkowski_reduce(vectors, periodic)[0])
-    widths = 1.0 / np.linalg.norm(np.linalg.inv(reduced), axis=0)
-    safe = 0.5 * widths[periodic].min() if periodic.any() else np.inf
+    reduced_inverse, safe = np.zeros((3, 3)), np.inf
+    if periodic.any():      # from the periodic vectors alone: the others may be tilted
+        reduced_inverse[:, periodic] = np.linalg.pinv(reduced[periodic])
+        safe = 0.5 / np.linalg.norm(reduced_inverse[:, periodic], axis=0).max()
     diagonal = np.diag(vectors).copy()
     with np.errstate(divide="ignore"):
         inverse_lengths = np.where(periodic & (diagonal != 0), 1.0 / diagonal, 0.0)
     return Cell(vectors, np.ascontiguousarray(inverse * periodic), diagonal, inverse_lengths, reduced,
-                np.ascontiguousarray(np.linalg.inv(reduced) * periodic), float(safe * safe))
+                reduced_inverse, float(safe * safe))
