@@ -22,6 +22,7 @@ STYLES = {
 FLOAT, INTEGER = "%- 14.8g", "%10d "
 MULTI_FLOAT, MULTI_INTEGER = "%14.4f", "%14d"
 WIDTH = {"float": 14, "int": 11}
+LENGTHS = frozenset("lhzj")     # C length modifiers, which Python's formats do not need
 
 
 @dataclass
@@ -321,7 +322,9 @@ def evaluate(moment: Moment, word: str, norm: bool) -> float:
 
 def c_format(form: str, value: float) -> str:
     """printf of one number; integers may be written with a format for floats and the other way round."""
-    return re.sub(r"(?<=[\d%.+\- #])(?:ll|l|h|z|j)+(?=[diugGeEfF])", "", form) % value
+    if not LENGTHS.isdisjoint(form):
+        form = re.sub(r"(?<=[\d%.+\- #])[lhzj]+(?=[diugGeEfF])", "", form)
+    return form % value
 
 
 @dataclass

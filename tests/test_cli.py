@@ -86,7 +86,7 @@ def test_interrupt_ends_in_order(script):
 
 
 def test_read_stops_before_the_first_run(script):
-    (script / "in.r").write_text(BASE + "dump d all atom 1 d.txt\nshell touch touched\nprint x file p.txt\nrun 10\nmass 1 nonsense\n")
+    (script / "in.r").write_text(BASE + "dump d all atom 1 d.txt\nshell touch touched\nprint x file p.txt\nrun 10\nno_such_command\n")
     atoms = asemd.read("in.r")
     assert len(atoms) == 32 and atoms.get_potential_energy() == pytest.approx(32 * -5.5046614, rel=1e-6)
     assert not {"d.txt", "touched", "p.txt", "log.lammps"} & set(os.listdir(script))

@@ -86,6 +86,11 @@ def test_all_unknown_names_are_found_at_once():
     assert "in.x:2" in str(caught.value) and "in.x:7" in str(caught.value)
 
 
+def test_a_command_of_lammps_that_is_missing_here_is_not_called_unknown():
+    errors, _ = script.check(script.parse("write_restart a\nwrite_restrat a\n"))
+    assert "not supported yet" in str(errors[0]) and "did you mean write_restart?" in str(errors[1])
+
+
 def test_names_inside_a_loop_are_only_doubtful():
     errors, doubtful = script.check(script.parse("label a\nfoo 1\njump SELF a\nbar 2\n"))
     assert [e.where.line for e in doubtful] == [2] and [e.where.line for e in errors] == [4]

@@ -203,6 +203,29 @@ def test_loop_if_label_jump_include(make, tmp_path):
     assert printed == ["inc 1", "one", "inc 2", "two", "inc 3", "more", "done"]
 
 
+def test_jump_out_of_a_loop(make, tmp_path):
+    (tmp_path / "in.x").write_text("variable i loop 5\nlabel top\nprint 'i $i'\nif '$i >= 2' then 'jump SELF out'\nnext i\njump SELF top\n"
+                                   "label out\nvariable i delete\nprint end\n")
+    s = make()
+    s.file("in.x")
+    assert str(s.text).splitlines()[1:] == ["i 1", "i 2", "end"]
+
+
+def test_velocities_set_between_runs_count_without_setup_too(session):
+    session.commands("run 2\nvelocity all set 0.0 0.0 0.0\nrun 0 pre no")
+    assert session.text.rows()[-1][1] == 0.0
+
+
+def test_values_per_atom_on_every_step_that_shows_them(session, tmp_path):
+    session.commands("compute pa all pe/atom\ndump d all custom 2 d.txt id c_pa\nthermo 3\nvariable first equal c_pa[1]\n"
+                     "thermo_style custom step v_first\nthermo_modify norm no\nrun 6")
+    blocks = (tmp_path / "d.txt").read_text().split("ITEM: TIMESTEP\n")[1:]
+    dumped = {int(b.split()[0]): float(b.splitlines()[-32].split()[1]) for b in blocks}
+    rows = dict(session.text.rows())
+    assert sorted(dumped) == [0, 2, 4, 6] and sorted(rows) == [0, 3, 6]
+    assert rows[0] == pytest.approx(dumped[0], rel=1e-5) and rows[6] == pytest.approx(dumped[6], rel=1e-5) and rows[0] != rows[3] != rows[6]
+
+
 def test_if_compares_text_and_numbers(make):
     s = make()
     s.commands("if 'abc == abc' then 'print A'\nif 'a != b' then 'print B'\nif '1.0 == 1' then 'print C'\nif '1 > 2' then 'print D'\n"

@@ -7,6 +7,7 @@ import re
 from functools import cache
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.names import COMMANDS
 from asemd.style import ACCELERATED, module_of
 
 FORCE_FIELD = ("bond", "angle", "dihedral", "improper", "pair")
@@ -107,5 +108,7 @@ def load(category: str, name: str) -> type:
 def unknown(category: str, name: str) -> InputError:
     """The error for a name that does not exist here."""
     if category == "command":
-        return InputError(f"unknown command {name!r}{nearest(name, names('command'))}")
+        if name in COMMANDS:
+            return InputError(f"command {name} of LAMMPS is not supported yet: remove it, or run this script with LAMMPS")
+        return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
     return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")

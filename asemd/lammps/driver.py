@@ -90,6 +90,8 @@ class Driver:
                                        scene.groups, scene.dt, step=begin)
             loop.setup(plan.first, plan.last, virial=True)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
+        else:
+            loop.sync_in()      # commands between the runs may have changed velocities
         loop.begin, loop.end, loop.dt = plan.first, plan.last, scene.dt
         engine = loop.engine
         self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=engine.builds, dangerous=engine.dangerous)

@@ -22,7 +22,7 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
     path : str
         Script or data file (also ``.gz``), told apart by what is in it. Relative paths in a script are relative to the working directory.
     units, atom_style : str, optional
-        For a data file; by default what its first lines say, else ``lj`` and ``atomic``.
+        For a data file; by default what it says itself, else ``lj`` and what fits the number of columns.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
     session = Session(passive=True)
     if is_data(lines):
         session.call("units", [units or hint(lines[:1], r"units = (\w+)") or "lj"])
-        session.call("atom_style", [atom_style or hint(lines, r"^\s*Atoms\s*#\s*(\w+)") or "atomic"])
+        session.call("atom_style", [atom_style or hint(lines, r"^\s*Atoms\s*#\s*(\w+)") or guess_style(lines)])
         session.execute(Command(f"read_data '{path}' nocoeff", Where("", 1, f"read_data {path}")))
         return session.scene.system.to_ase()
     if units or atom_style:
@@ -68,6 +68,16 @@ def is_data(lines: list[str]) -> bool:
     body = [line.partition("#")[0] for line in lines[1:]]
     counted = any(re.fullmatch(r"\s*\d+\s+atoms\s*", line) for line in body)
     return counted and any(re.search(r"\bxlo\s+xhi\b|\bavec\b", line) for line in body)
+
+
+def guess_style(lines: list[str]) -> str:
+    """The atom style that fits the first line of ``Atoms``; image flags are the last three of 8 or more columns."""
+    body = [line.partition("#")[0].split() for line in lines]
+    start = next((i for i, words in enumerate(body) if words == ["Atoms"]), len(body))
+    first = next((words for words in body[start + 1:] if words), [])
+    columns = len(first) - 3 * (len(first) >= 8)
+    bonded = any(len(w) == 2 and w[1] in ("bonds", "angles", "dihedrals", "impropers") and w[0] != "0" for w in body)
+    return {6: "molecular" if bonded else "charge", 7: "full"}.get(columns, "atomic")
 
 
 def hint(lines: list[str], pattern: str) -> str | None:

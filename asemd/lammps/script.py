@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from asemd.errors import InputError, Where
@@ -93,6 +94,17 @@ def check(commands: list[Command]) -> tuple[list[InputError], list[InputError]]:
         if names[i] == "quit" and i not in loop:
             break
     return errors, warnings
+
+
+def before(commands: Iterable[Command], names: Sequence[str]) -> Iterator[Command]:
+    """The commands before the first one with one of these names."""
+    for command in commands:
+        try:
+            if command.name in names:
+                return
+        except InputError:
+            pass        # found again, with its place, by `check`
+        yield command
 
 
 def _problem(command: Command) -> InputError | None:

@@ -151,7 +151,7 @@ class Session:
     def file(self, path: str | os.PathLike) -> None:
         """Check a script, then execute it."""
         commands = script.read(path)
-        errors, doubtful = script.check(commands)
+        errors, doubtful = script.check(list(script.before(commands, ACTIONS)) if self.passive else commands)
         script.raise_problems(errors)
         for problem in doubtful:
             self.log.warn(str(problem))
