@@ -29,12 +29,16 @@ TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<
 
 @dataclass
 class Clock:
-    """Steps and timestep that ``ramp``, ``stagger`` and their relatives look at."""
+    """Steps and timestep that ``ramp``, ``stagger`` and their relatives look at.
+
+    Outside a run, ``ramp`` has its first value.
+    """
 
     step: int = 0
     begin: int = 0
     end: int = 0
     dt: float = 0.0
+    running: bool = True
 
 
 class Provider(Protocol):
@@ -137,7 +141,7 @@ def _require(ok: bool, name: str, rule: str) -> None:
 
 
 def _ramp(c: Clock, x: float, y: float) -> float:
-    return x + (y - x) * ((c.step - c.begin) / (c.end - c.begin) if c.end != c.begin else 0.0)
+    return x + (y - x) * ((c.step - c.begin) / (c.end - c.begin) if c.running and c.end != c.begin else 0.0)
 
 
 def _stagger(c: Clock, x: float, y: float) -> float:

@@ -17,6 +17,7 @@ from asemd.errors import InputError, nearest
 
 STYLES = {
     "one": "step temp epair emol etotal press",
+    "yaml": "step temp ke pe ebond eangle edihed eimp evdwl ecoul elong press",
     "multi": "etotal ke temp pe ebond eangle edihed eimp evdwl ecoul elong press",
 }
 FLOAT, INTEGER = "%- 14.8g", "%10d "
@@ -33,7 +34,7 @@ class Progress:
     first: int = 0              # first step of a series of runs (run ... start)
     last: int = 0
     started: float = field(default_factory=time.perf_counter)
-    previous: tuple[float, int] | None = None
+    previous: dict[str, tuple[float, int]] = field(default_factory=dict)      # time and step tpcpu and spcpu were asked for last
     builds: int = 0             # neighbour list counters when the run began
     dangerous: int = 0
 
@@ -152,10 +153,10 @@ def _time(m: Moment) -> float:
     return m.scene.time(m.scene.step)
 
 
-def _rate(m: Moment, per_step: float) -> float:
+def _rate(m: Moment, name: str, per_step: float) -> float:
     p = m.progress
     now = (p.cpu(), m.scene.step)
-    before, p.previous = p.previous or (0.0, p.begin), now
+    before, p.previous[name] = p.previous.get(name, (0.0, p.begin)), now
     return (now[1] - before[1]) * per_step / (now[0] - before[0]) if now[1] > before[1] and now[0] > before[0] else 0.0
 
 
@@ -213,8 +214,8 @@ KEYWORDS: dict[str, Keyword] = {
     "dt": Keyword("Dt", lambda m: m.scene.dt),
     "time": Keyword("Time", _time),
     "cpu": Keyword("CPU", _cpu),
-    "tpcpu": Keyword("T/CPU", lambda m: _rate(m, m.scene.dt)),
-    "spcpu": Keyword("S/CPU", lambda m: _rate(m, 1.0)),
+    "tpcpu": Keyword("T/CPU", lambda m: _rate(m, "tpcpu", m.scene.dt)),
+    "spcpu": Keyword("S/CPU", lambda m: _rate(m, "spcpu", 1.0)),
     "cpuremain": Keyword("CPULeft", _remaining),
     "timeremain": Keyword("TimeoutLeft", lambda m: 0.0),
     "part": _integer("Part", lambda m: 0),
@@ -254,9 +255,9 @@ KEYWORDS: dict[str, Keyword] = {
     **{t: Keyword(t.capitalize(), lambda m, i=i: float(m.system.box.tilt[i])) for i, t in enumerate(("xy", "xz", "yz"))},
     **{d + "lat": Keyword(d.upper() + "lat", _lattice(i)) for i, d in enumerate("xyz")},
     **{"p" + t: _pressure("P" + t, i) for i, t in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))},
-    **{f"{v}vec{d}": Keyword(f"{v.capitalize()}vec{d.upper()}", lambda m, i=i, j=j: float(m.system.box.cell[i, j]))
+    **{f"{v}vec{d}": Keyword(f"{v.upper()}vec{d}", lambda m, i=i, j=j: float(m.system.box.cell[i, j]))
        for i, v in enumerate("abc") for j, d in enumerate("xyz")},
-    **{"cell" + v: Keyword("Cell" + v.upper(), _edge(i)) for i, v in enumerate("abc")},
+    **{"cell" + v: Keyword("Cell" + v, _edge(i)) for i, v in enumerate("abc")},
     "cellalpha": Keyword("CellAlpha", _angle(1, 2)),
     "cellbeta": Keyword("CellBeta", _angle(0, 2)),
     "cellgamma": Keyword("CellGamma", _angle(0, 1)),
@@ -364,7 +365,7 @@ class Thermo:
         for word in words:
             if not known(word):
                 raise InputError(f"unknown thermo keyword {word!r} in thermo_style custom{nearest(word, KEYWORDS)}")
-        fresh = Thermo(style=style, words=tuple(words) or tuple(STYLES["one" if style == "yaml" else style].split()), every=self.every,
+        fresh = Thermo(style=style, words=tuple(words) or tuple(STYLES.get(style, "").split()), every=self.every,
                        line=style if style in ("multi", "yaml") else "one")
         self.__dict__.update(fresh.__dict__)
 

@@ -106,7 +106,7 @@ class Providers:
 
     def clock(self) -> Clock:
         p = self.session.moment.progress
-        return Clock(self.scene.step, p.first, max(p.last, p.first), self.scene.dt)
+        return Clock(self.scene.step, p.first, max(p.last, p.first), self.scene.dt, self.session.running)
 
     def exists(self, category: str, name: str) -> bool:
         tables = {"compute": self.scene.computes, "fix": self.scene.fixes, "group": self.scene.groups, "region": self.scene.regions,

@@ -34,9 +34,6 @@ def run(session, args):
             setattr(thermo, key, yes_no(value, what))
         elif key == "line":
             thermo.line = choice(value, ("one", "multi", "yaml"), what)
-            thermo.format_line = ()
-            for table in (thermo.format_kind, thermo.format_word, thermo.format_column):
-                table.clear()
         elif key == "temp":
             set_temp(scene, value)
         elif key == "press":
