@@ -78,8 +78,8 @@ def main() -> None:
     o = p.parse_args()
     o.folder.mkdir(parents=True, exist_ok=True)
     build(o.folder / "melt.data", o.chains, o.beads, seed=o.seed)
-    subprocess.run([sys.executable, "-m", "asemd.cli", "run", str(HERE / "in.melt"), "--threads", str(o.threads), "-var", "steps", str(o.steps)],
-                   cwd=o.folder, check=True)
+    command = [sys.executable, "-m", "asemd.cli", "run", str(HERE / "in.melt"), "--threads", str(o.threads), "-var", "steps", str(o.steps)]
+    subprocess.run(command, cwd=o.folder, check=True)
     result = analyse(o.folder, o.chains, o.beads)
     (o.folder / "result.json").write_text(json.dumps(result))
     draw(result, o.folder / "melt.png")

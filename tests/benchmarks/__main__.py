@@ -1,0 +1,62 @@
+"""All benchmarks, as a Markdown table: ``python -m tests.benchmarks [--samples 7] [--threads 1 2] [--json results.json]``.
+
+On a processor with AVX-512, ``NUMBA_CPU_NAME=haswell python -m tests.benchmarks`` gives the figures of one with AVX2.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from tests.benchmarks import compare, memory, neighbour, run_chain, run_lj, run_small, startup
+
+SCENES = (("LJ melt, 32,000 atoms", run_lj), ("bead-spring melt, 32,000 atoms", run_chain), ("LJ, 500 atoms", run_small))
+
+
+def rows(title: str, result: dict, key: str, unit: str) -> list[str]:
+    """One row for each engine LAMMPS ran as, or one for asemd alone."""
+    first, *others = result[key]
+    ours = f"{result[key][first]['median']:.4g}"
+    out = []
+    for other in others:
+        r = result["ratio"][other]
+        out.append(f"| {title}, {first} | {ours} {unit} | {other}: {result[key][other]['median']:.4g} | "
+                   f"{r['median']:.2f} [{r['q1']:.2f}, {r['q3']:.2f}] |")
+    return out or [f"| {title}, {first} | {ours} {unit} | - | - |"]
+
+
+def main() -> None:
+    p = argparse.ArgumentParser(description="All benchmarks.")
+    p.add_argument("--samples", type=int, default=7)
+    p.add_argument("--threads", type=int, nargs="+", default=[1, 2])
+    p.add_argument("--json")
+    p.add_argument("--quick", action="store_true", help="short runs that only show that the scripts work")
+    o = p.parse_args()
+    short = {"steps": 20} if o.quick else {}
+    samples = 2 if o.quick else o.samples
+    results: dict = {"machine": compare.machine()}
+    table = ["| scene | asemd | LAMMPS | times faster [quartiles] |", "|---|---|---|---|"]
+    for threads in o.threads:
+        for precision in ("double", "mixed"):
+            for title, module in SCENES:
+                if (module is run_small and threads > 1) or (module is not run_lj and precision == "mixed"):
+                    continue
+                result = module.measure(samples=samples, threads=threads, precision=precision, **short)
+                results[f"{title}, {precision}, {threads}"] = result
+                table += rows(title, result, "steps_per_second", "steps/s")
+                print(table[-1], flush=True)
+    result = results["neighbour build"] = neighbour.measure(samples=samples)
+    table += rows("neighbour list, 32,000 atoms", result, "ms_per_build", "ms")
+    results["memory"], results["startup"] = memory.measure(samples=1 if o.quick else 3), startup.measure(2 if o.quick else 5)
+    print("\n" + ", ".join(f"{k} {v}" for k, v in results["machine"].items()) + "\n")
+    print("\n".join(table) + "\n")
+    for name, value in results["memory"].items():
+        print(f"memory, {name}: {value}")
+    for name, value in results["startup"].items():
+        print(f"start-up, {name}: {value}")
+    if o.json:
+        Path(o.json).write_text(json.dumps(results, indent=1))
+
+
+if __name__ == "__main__":
+    main()

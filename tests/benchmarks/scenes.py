@@ -1,0 +1,68 @@
+"""The scenes that are timed, built from lattices and random walks; no file of LAMMPS is needed."""
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+MELT = ROOT / "workflows" / "polymer-melt"
+
+LJ = """units lj
+atom_style atomic
+lattice fcc 0.8442
+region box block 0 {cells[0]} 0 {cells[1]} 0 {cells[2]}
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0 2.5
+neighbor 0.3 bin
+neigh_modify {neigh}
+fix 1 all nve
+thermo 100
+"""
+CHAIN = """units lj
+atom_style bond
+special_bonds fene
+bond_style fene
+read_data {data}
+bond_coeff 1 30.0 1.5 1.0 1.0
+neighbor 0.4 bin
+neigh_modify every 1 delay 1
+pair_style lj/cut 1.12
+pair_modify shift yes
+pair_coeff 1 1 1.0 1.0 1.12
+fix 1 all nve
+fix 2 all langevin 1.0 1.0 10.0 904297
+timestep 0.012
+thermo 100
+"""
+
+
+def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
+    """The melt of LAMMPS's ``bench/in.lj``: 4 atoms per cell, 32,000 by default."""
+    return LJ.format(cells=cells, neigh=neigh)
+
+
+def chain(chains: int = 320, beads: int = 100) -> str:
+    """The melt of LAMMPS's ``bench/in.chain``: FENE chains at density 0.8442 with a Langevin thermostat.
+
+    The chains are random walks, pushed off and run for 2000 steps once; the data file is kept in the temporary folder.
+    """
+    folder = Path(tempfile.gettempdir()) / f"asemd-benchmarks-{os.getuid() if hasattr(os, 'getuid') else 0}"
+    data = folder / f"chain-{chains}x{beads}.data"
+    if not data.exists():
+        folder.mkdir(exist_ok=True)
+        spec = importlib.util.spec_from_file_location("polymer_melt", MELT / "run.py")
+        melt = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(melt)
+        melt.build(folder / "melt.data", chains, beads, density=0.8442)
+        subprocess.run([sys.executable, "-m", "asemd.cli", "run", str(MELT / "in.melt"), "--quiet", "-var", "steps", "2000"], check=True,
+                       cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)})
+        os.replace(folder / "melt.final.data", data)
+    return CHAIN.format(data=data)

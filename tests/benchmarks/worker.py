@@ -1,0 +1,51 @@
+"""One engine in one process (under mpiexec: one rank of it). It executes the lists of commands it finds in its folder.
+
+``python worker.py asemd|lammps FOLDER switches...``. ``0.go``, ``1.go`` ... hold one JSON list of commands each; ``0.done`` ... tell the
+seconds they took and the largest memory so far. A file ``stop`` ends it. Waiting costs no processor time, so engines can alternate.
+"""
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import resource
+import sys
+import time
+from pathlib import Path
+
+
+def engine(name: str, switches: list[str]):
+    if name == "asemd":
+        from asemd.lammps import Lammps
+        return Lammps(cmdargs=switches)
+    library = Path(sys.prefix) / "lib" / "libmpi.so.12"     # the mpich wheel puts it there
+    if library.exists():
+        ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+    from lammps import lammps
+    return lammps(cmdargs=switches)
+
+
+def main() -> None:
+    folder = Path(sys.argv[2])
+    first = os.environ.get("PMI_RANK", "0") == "0"
+    lmp, number = engine(sys.argv[1], sys.argv[3:]), 0
+    while not (folder / "stop").exists():
+        ticket = folder / f"{number}.go"
+        if not ticket.exists():
+            time.sleep(0.002)
+            continue
+        commands = json.loads(ticket.read_text())
+        began = time.perf_counter()
+        for command in commands:
+            lmp.command(command)
+        seconds = time.perf_counter() - began
+        if first:
+            answer = {"seconds": seconds, "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
+            (folder / "answer").write_text(json.dumps(answer))
+            os.replace(folder / "answer", folder / f"{number}.done")
+        number += 1
+    lmp.close()
+
+
+if __name__ == "__main__":
+    main()
