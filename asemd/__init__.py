@@ -13,6 +13,8 @@ _LAZY = {
     "Session": "asemd.lammps.session",
     "Scene": "asemd.scene",
     "ForceField": "asemd.calculator",
+    "plan": "asemd.lammps.plan",
+    "validate": "asemd.testing.validate",
     "Atoms": "asemd.system",
     "System": "asemd.system",
     "Box": "asemd.box",

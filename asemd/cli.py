@@ -18,6 +18,10 @@ from asemd.lammps.switches import Switches
 # name of the command -> "module:function"; the function is a typer command
 COMMANDS: dict[str, str] = {
     "run": "asemd.cli:run",
+    "validate": "asemd.cli_inspect:validate",
+    "plan": "asemd.cli_inspect:plan",
+    "styles": "asemd.cli_inspect:styles",
+    "doctor": "asemd.cli_inspect:doctor",
 }
 INTERRUPTED = 130
 

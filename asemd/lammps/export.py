@@ -1,0 +1,120 @@
+"""A scene as LAMMPS commands and a data file, in LAMMPS's frame."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from asemd import units as unit_styles
+from asemd.engine import Settings
+from asemd.forcefield import CATEGORIES, Interactions
+from asemd.lammps.data_write import write_data
+from asemd.system import System
+
+
+def commands(system: System, interactions: Interactions, settings: Settings | None = None, data: str | os.PathLike = "data.lammps") -> list[str]:
+    """Commands that make LAMMPS see the same atoms under the same forces; writes the data file they read.
+
+    Parameters
+    ----------
+    system : System
+        A box in another frame than LAMMPS's is rotated (see `asemd.box.Box.to_lammps`), a left-handed one reflected. Units ``ase`` become
+        ``metal``; the tiny difference of their Coulomb constants is made up by ``dielectric``.
+    interactions : Interactions
+    settings : Settings, optional
+        Skin and exclusions of the neighbour list.
+    data : path
+        The data file to write.
+
+    Returns
+    -------
+    list of str
+        One command each, in order, without fixes and runs.
+
+    Raises
+    ------
+    InputError
+        What a data file cannot hold.
+    """
+    settings = settings or Settings()
+    native = system.units == "ase"
+    name = "metal" if native else system.units
+    factor = unit_styles.get(name).qqr2e / unit_styles.get(system.units).qqr2e
+    boundary = list(system.box.boundary)
+    out = [f"units {name}", f"dimension {system.dimension}", f"boundary {' '.join(boundary)}", f"atom_style {system.atom_style}"]
+    out += [f"{category}_style {' '.join(interactions.style_line(category))}" for category in CATEGORIES if interactions.uses[category]]
+    written = system.copy()
+    written.mass[1:] = np.where(np.isnan(written.mass[1:]), 1.0, written.mass[1:])      # forces do not need them, LAMMPS does
+    write_data(data, written, types="numeric", labels=False)
+    out.append(f"read_data {quoted(os.fspath(data))}")
+    for category in CATEGORIES:
+        out += [f"{category}_coeff {' '.join(map(quoted, line))}" for line in interactions.coeff_lines(category)]
+    out += [f"pair_modify {' '.join(line)}" for line in interactions.modify_lines()]
+    if interactions.uses["pair"]:
+        out.append(f"special_bonds {' '.join(interactions.special_line())}")
+    else:
+        out.append(f"comm_modify cutoff {reach_of_items(system) + settings.skin!r}")
+    out.append(f"dielectric {interactions.dielectric * factor!r}")
+    out += [f"neighbor {settings.skin!r} bin", "neigh_modify every 1 delay 0 check yes", *exclusions(system, settings)]
+    return out
+
+
+def script(system: System, interactions: Interactions, folder: str | os.PathLike, settings: Settings | None = None,
+           name: str = "scene") -> Path:
+    """Write ``in.NAME`` and ``data.NAME`` into a folder; the script reads the data file from the working directory.
+
+    Returns
+    -------
+    Path
+        The script.
+    """
+    folder = Path(folder)
+    lines = commands(system, interactions, settings, folder / f"data.{name}")
+    lines = [f"read_data data.{name}" if line.startswith("read_data ") else line for line in lines]
+    path = folder / f"in.{name}"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def quoted(word: str) -> str:
+    """A word as LAMMPS's input needs it: in quotes if it holds blanks or characters that mean something."""
+    if word and not any(c.isspace() or c in "#$&\"'" for c in word):
+        return word
+    for quote in ('"', "'", '"""'):
+        if quote not in word and not word.endswith(quote[0]):
+            return f"{quote}{word}{quote}"
+    return f"'{word}'"
+
+
+def reach_of_items(system: System) -> float:
+    """How far apart atoms of one bonded item are at most, which LAMMPS must know where no pair style says it."""
+    longest = 1.0
+    for _, items, _ in system.topology:
+        for a, b in zip(range(items.shape[1] - 1), range(1, items.shape[1])):
+            d, _ = system.box.minimum_image(system.x[items[:, a]] - system.x[items[:, b]])
+            longest = max(longest, float(np.sqrt((d * d).sum(axis=1)).max(initial=0.0)))
+    return 3.0 * longest
+
+
+def exclusions(system: System, settings: Settings) -> list[str]:
+    """``neigh_modify exclude`` and the groups it needs."""
+    out = []
+    for kind, *values in settings.exclude:
+        if kind == "type":
+            out.append(f"neigh_modify exclude type {values[0]} {values[1]}")
+            continue
+        names = []
+        for mask in values:
+            names.append(f"excluded{len(out)}")
+            out.append(f"group {names[-1]} id {id_ranges(system.id[mask])}" if mask.any() else f"group {names[-1]} empty")
+        out.append(f"neigh_modify exclude {kind} {' '.join(names)}")
+    return out
+
+
+def id_ranges(ids: np.ndarray) -> str:
+    """``1:5 8``: ids as the command group takes them."""
+    ids = np.sort(ids)
+    breaks = np.flatnonzero(np.diff(ids) != 1)
+    firsts, lasts = ids[np.r_[0, breaks + 1]], ids[np.r_[breaks, len(ids) - 1]]
+    return " ".join(str(a) if a == b else f"{a}:{b}" for a, b in zip(firsts.tolist(), lasts.tolist()))

@@ -1,0 +1,379 @@
+"""A scene on asemd and on LAMMPS: energies, forces and virials term by term, and the rows of its runs side by side."""
+from __future__ import annotations
+
+import copy
+import os
+import tempfile
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asemd.engine import Engine, Settings
+from asemd.errors import InputError
+from asemd.forcefield import CATEGORIES, Interactions
+from asemd.lammps import export
+from asemd.lammps.session import Stop
+from asemd.lammps.switches import Switches
+from asemd.system import System
+from asemd.testing.lammps_side import ROWS, ZERO_STEP
+from asemd.testing.oracle import OracleError, ask, lammps_available, lammps_version, why_not
+from asemd.text_table import Table
+
+TOLERANCE = {"double": 1e-9, "mixed": 1e-4}
+ENERGIES = {"evdwl": "pair vdwl", "ecoul": "pair coul", "ebond": "bond", "eangle": "angle", "edihed": "dihedral", "eimp": "improper",
+            "elong": "k-space", "etail": "tail"}
+SETTINGS = frozenset("fix fix_modify unfix compute compute_modify uncompute thermo thermo_style thermo_modify velocity min_style min_modify "
+                     "run_style timestep reset_timestep".split())
+CLOCK = frozenset(("CPU", "T/CPU", "S/CPU", "CPULeft", "TimeoutLeft", "Nbuild", "Ndanger", "Part"))
+VIRIAL = ("xx", "yy", "zz", "xy", "xz", "yz")
+
+
+@dataclass
+class Energy:
+    """One energy, in units of the scene; `error` relative to its size (at least a thousandth of all energies)."""
+
+    term: str
+    asemd: float
+    lammps: float
+    error: float
+
+
+@dataclass
+class Force:
+    """Forces and virial of one category of terms, or of all.
+
+    `largest` is the largest force component of LAMMPS, `worst` and `rms` the differences (force units), `error` is `worst` relative to
+    `scale`; `virial_asemd`, `virial_lammps` (6,): xx yy zz xy xz yz, energy units, `virial_error` relative to the size of the virials.
+    """
+
+    term: str
+    largest: float
+    worst: float
+    rms: float
+    error: float
+    virial_asemd: list[float]
+    virial_lammps: list[float]
+    virial_error: float
+
+
+@dataclass
+class Cell:
+    """One column of one thermo row."""
+
+    run: int
+    step: int
+    column: str
+    asemd: float
+    lammps: float
+    error: float
+
+
+@dataclass
+class Report:
+    """The result of `validate`; ``print(report)`` shows it.
+
+    Attributes
+    ----------
+    source : str
+    atoms : int
+    units : str
+    version : str
+        Of LAMMPS.
+    tolerance : float
+        Largest relative difference that counts as agreement.
+    scale : float
+        What force differences are relative to: the largest force, or the force that the virial of an atom means if that is larger.
+    energies, forces, rows : list
+        Rows of the three tables.
+    notes : list of str
+        What was not compared, and why.
+    documented : list of str
+        Differences to LAMMPS that are meant; ``compat="lammps"`` takes LAMMPS's side.
+    failures : list of str
+        What ended one of the programs.
+    """
+
+    source: str
+    atoms: int
+    units: str
+    version: str
+    tolerance: float
+    scale: float
+    energies: list[Energy] = field(default_factory=list)
+    forces: list[Force] = field(default_factory=list)
+    rows: list[Cell] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    documented: list[str] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+
+    @property
+    def worst(self) -> float:
+        """The largest relative difference."""
+        values = [e.error for e in self.energies] + [x for f in self.forces for x in (f.error, f.virial_error)] + [r.error for r in self.rows]
+        return max(values, default=0.0)
+
+    @property
+    def ok(self) -> bool:
+        """Whether asemd and LAMMPS agree."""
+        return not self.failures and self.worst <= self.tolerance
+
+    def parts(self) -> list[Table | str]:
+        """Tables and paragraphs, in order."""
+        out: list[Table | str] = [f"{self.source}: {self.atoms} atoms, units {self.units}, asemd and LAMMPS {self.version}"]
+        out.append(Table("Energies at the first step", ("term", "asemd", "LAMMPS", "difference", "relative"),
+                         [(e.term, f"{e.asemd:.15g}", f"{e.lammps:.15g}", f"{e.asemd - e.lammps:.2g}", f"{e.error:.1e}") for e in self.energies]))
+        out.append(Table("Forces and virials at the first step",
+                         ("term", "largest force", "max difference", "rms difference", "relative", "virial difference", "relative"),
+                         [(f.term, f"{f.largest:.6g}", f"{f.worst:.2g}", f"{f.rms:.2g}", f"{f.error:.1e}",
+                           f"{max(abs(a - b) for a, b in zip(f.virial_asemd, f.virial_lammps)):.2g}", f"{f.virial_error:.1e}")
+                          for f in self.forces]))
+        if self.forces:
+            whole = self.forces[-1]
+            out.append(Table("Virial of all terms", ("", *VIRIAL), [
+                (name, *(f"{v:.10g}" for v in values)) for name, values in (("asemd", whole.virial_asemd), ("LAMMPS", whole.virial_lammps))] + [
+                ("difference", *(f"{a - b:.2g}" for a, b in zip(whole.virial_asemd, whole.virial_lammps)))]))
+        out += self._row_tables()
+        out += [f"Note: {n}" for n in self.notes] + [f"Documented difference: {d}" for d in self.documented] + self.failures
+        return [*out, self.verdict]
+
+    def _row_tables(self) -> list[Table]:
+        tables = []
+        for run in dict.fromkeys(r.run for r in self.rows):
+            cells = [r for r in self.rows if r.run == run]
+            columns = list(dict.fromkeys(c.column for c in cells))
+            table = Table(f"Thermo rows of run {run + 1}", ("Step", "", *columns))
+            for step in dict.fromkeys(c.step for c in cells):
+                row = {c.column: c for c in cells if c.step == step}
+                for name in ("asemd", "LAMMPS", "relative"):
+                    table.rows.append((str(step) if name == "asemd" else "", name, *(_shown(row.get(c), name) for c in columns)))
+            tables.append(table)
+        return tables
+
+    @property
+    def verdict(self) -> str:
+        """The last line."""
+        if self.failures:
+            return "DISAGREE: the two programs did not both get to the end"
+        text = f"the largest relative difference is {self.worst:.1e}, the tolerance {self.tolerance:g}"
+        if self.ok:
+            return f"AGREE: {text}"
+        return f"DISAGREE: {text}" + ("; --compat lammps compares with LAMMPS's own forces" if self.documented else "")
+
+    def __str__(self) -> str:
+        return "\n\n".join(map(str, self.parts()))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything, JSON-able."""
+        return {"ok": self.ok, "worst": self.worst, "verdict": self.verdict, **asdict(self)}
+
+
+def _shown(cell: Cell | None, name: str) -> str:
+    if cell is None:
+        return ""
+    return f"{cell.error:.0e}" if name == "relative" else f"{getattr(cell, name.lower()):.10g}"
+
+
+def validate(source, *, steps: int = 20, tolerance: float | None = None, compat: str = "", precision: str = "double", threads: int = 1,
+             switches: Switches | None = None) -> Report:
+    """Compare asemd with LAMMPS, which runs in a process of its own.
+
+    Parameters
+    ----------
+    source : path or ase.Atoms
+        A LAMMPS script, executed up to its first run for energies and forces, and then with runs of at most `steps` steps for the thermo
+        rows; or atoms whose calculator is `asemd.ForceField`, in any frame: LAMMPS gets them rotated, its forces are rotated back.
+    steps : int
+        Limit on every run and minimisation of the script; 0 compares first rows only.
+    tolerance : float, optional
+        Largest relative difference of energies, forces, virials and thermo rows that counts as agreement; 1e-9 in double precision.
+    compat : str
+        ``"lammps"``: follow LAMMPS where its forces are not minus the gradient of its energy.
+    precision, threads
+        As in `asemd.engine.Settings`, for scripts.
+    switches : Switches, optional
+        LAMMPS's command line switches, for scripts.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    OracleError
+        LAMMPS is not installed or does not take the commands.
+    InputError
+        A mistake in the script, or atoms without a force field.
+    """
+    if not lammps_available():
+        raise OracleError(why_not())
+    if isinstance(source, (str, os.PathLike)):
+        switches = copy.deepcopy(switches) if switches else Switches()
+        switches.compat, switches.precision, switches.threads, switches.cap = compat or switches.compat, precision, threads, steps
+        return _script(os.fspath(source), switches, tolerance)
+    return _atoms(source, tolerance, compat)
+
+
+def _script(path: str, switches: Switches, tolerance: float | None) -> Report:
+    from asemd.testing.recorder import Recorder
+    session = Recorder(switches)
+    try:
+        session.file(path)
+    except Stop:
+        session.label = None
+    if session.first is None:
+        if session.scene.system is None:
+            raise InputError(f"validate: {path} defines no atoms")
+        session.first, session.start = session.scene, len(session.commands)
+    words = [w for name, values in switches.variables for w in ("-var", name, *values)]
+    setup = [c for c in session.commands[:session.start] if c.split()[0] not in SETTINGS]
+    scene = session.first
+    report = _zero_step(path, scene.system, scene.interactions, scene.settings(), setup, words,
+                        TOLERANCE[switches.precision] if tolerance is None else tolerance)
+    report.notes += session.notes
+    if session.failed:
+        report.failures.append(f"asemd stopped: {session.failed}")
+    if session.runs:
+        _rows(report, session, words)
+    return report
+
+
+def _atoms(atoms, tolerance: float | None, compat: str) -> Report:
+    from asemd.calculator import ForceField
+    calc = getattr(atoms, "calc", None)
+    if not isinstance(calc, ForceField):
+        raise InputError("validate needs the path of a LAMMPS script, or atoms whose calculator is asemd.ForceField")
+    system = calc._system(atoms)
+    interactions = copy.deepcopy(calc.interactions)
+    interactions.compat = compat or interactions.compat
+    interactions.check_complete(system)
+    with tempfile.TemporaryDirectory(prefix="asemd-validate-") as folder:
+        setup = export.commands(system, interactions, calc.settings, Path(folder) / "data.scene")
+        return _zero_step(repr(calc), system, interactions, calc.settings, setup, [],
+                          TOLERANCE[calc.settings.precision] if tolerance is None else tolerance)
+
+
+# --------------------------------------------------------------------------------------------- energies, forces, virials ---
+
+def removal_order(interactions: Interactions) -> list[str]:
+    """Categories in the order in which they are taken away to see the forces of each; the pair style goes last if a dihedral style needs it."""
+    weighted = any(use.style.weight_14 for use in interactions.uses["dihedral"])
+    order = [c for c in (("bond", "angle", "improper", "dihedral", "pair") if weighted else ("pair", "bond", "angle", "dihedral", "improper"))
+             if interactions.uses[c]]
+    return order
+
+
+def _zero_step(source: str, system: System, interactions: Interactions, settings: Settings, setup: list[str], switches: list[str],
+               tolerance: float) -> Report:
+    order = removal_order(interactions)
+    cutoff = interactions.cutoff(system.counts["ntypes"], None) if interactions.uses["pair"] else 0.0
+    theirs = ask(ZERO_STEP, commands=setup, order=order, categories=list(CATEGORIES), cutoff=max(cutoff, 1e-6), switches=switches,
+                 energies=list(ENERGIES))
+    if "error" in theirs:
+        raise OracleError(f"LAMMPS stops at {theirs['command']!r}: {theirs['error']}")
+    rows = np.argsort(system.id)
+    if not np.array_equal(system.id[rows], theirs["id"]):
+        raise OracleError(f"asemd has {system.n} atoms, LAMMPS {len(theirs['id'])}, or their ids differ: forces cannot be compared")
+    rotation = system.box.to_lammps()[1]
+    ours = [_evaluate(system, interactions, settings)]
+    less = copy.deepcopy(interactions)
+    for category in order:
+        less.uses[category], less.hybrid[category] = [], ""
+        less.tail = less.tail and bool(less.uses["pair"])
+        ours.append(_evaluate(system, less, settings) if category != order[-1] else None)
+    result = ours[0]
+    report = Report(source, system.n, system.units, lammps_version() or "", tolerance, 0.0,
+                    documented=documented(interactions) if interactions.compat != "lammps" else [])
+    _energies(report, result, theirs["energy"], interactions)
+    to_virial = theirs["volume"] / theirs["nktv2p"]
+    their_virial = {c: _back(rotation, np.asarray(v) * to_virial) for c, v in theirs["virial"].items()}
+    our_virial = dict(result.virial_of)
+    our_virial["pair"] = our_virial.get("pair", np.zeros(6)) + our_virial.pop("tail", np.zeros(6))
+    sizes = [np.abs(v).max() for v in our_virial.values()]
+    length = (system.box.volume / max(system.n, 1)) ** (1 / 3)
+    their_forces = [f @ rotation.T for f in theirs["forces"]]
+    report.scale = max(float(np.abs(their_forces[0]).max(initial=0.0)), sum(sizes) / max(system.n, 1) / length, 1e-300)
+    for k, category in enumerate(order):
+        now, next_ = ours[k].forces, ours[k + 1].forces if ours[k + 1] is not None else 0.0
+        _forces(report, category, (now - next_)[rows], their_forces[k] - their_forces[k + 1], our_virial.get(category, np.zeros(6)),
+                their_virial[category], sum(sizes))
+    whole = result.virial + result.virial_of.get("tail", 0.0)
+    _forces(report, "all", result.forces[rows], their_forces[0], whole, sum(their_virial.values(), np.zeros(6)), sum(sizes))
+    return report
+
+
+def _evaluate(system: System, interactions: Interactions, settings: Settings):
+    """The result of a copy of the system under these interactions."""
+    return Engine(system.copy(), interactions, settings).compute()
+
+
+def _energies(report: Report, result, theirs: dict[str, float], interactions: Interactions) -> None:
+    theirs = dict(theirs, evdwl=theirs["evdwl"] - theirs["etail"])
+    total = sum(abs(v) for v in theirs.values())
+    shown = {"evdwl", "ecoul"} if interactions.uses["pair"] else set()
+    for key, name in ENERGIES.items():
+        a, b = result.energy[key], theirs[key]
+        if a or b or key in shown or (key[1:] in ("bond", "angle") and interactions.uses[key[1:]]):
+            report.energies.append(Energy(name, a, b, abs(a - b) / max(abs(a), abs(b), 1e-3 * total, 1e-300)))
+    a, b = result.potential, sum(theirs.values())
+    report.energies.append(Energy("all", a, b, abs(a - b) / max(abs(b), 1e-3 * total, 1e-300)))
+
+
+def _forces(report: Report, term: str, a, b, virial_a, virial_b, size: float) -> None:
+    d = a - b
+    worst = float(np.abs(d).max(initial=0.0))
+    largest = float(np.abs(b).max(initial=0.0))
+    scale = max(report.scale, largest)
+    virial_error = float(np.abs(virial_a - virial_b).max()) / max(size, 1e-300)
+    report.forces.append(Force(term, largest, worst, float(np.sqrt((d * d).mean())) if d.size else 0.0, worst / scale,
+                               np.asarray(virial_a).tolist(), np.asarray(virial_b).tolist(), virial_error))
+
+
+def _back(rotation: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """A symmetric tensor (6,) from LAMMPS's frame to the user's."""
+    xx, yy, zz, xy, xz, yz = v
+    t = rotation @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ rotation.T
+    return np.array([t[0, 0], t[1, 1], t[2, 2], t[0, 1], t[0, 2], t[1, 2]])
+
+
+def documented(interactions: Interactions) -> list[str]:
+    """Styles in use whose forces differ from LAMMPS's on purpose."""
+    return [f"{category} style {use.style.name}: asemd's force is minus the gradient of the energy, LAMMPS's is not everywhere (its page says "
+            "where); --compat lammps takes LAMMPS's"
+            for category, uses in interactions.uses.items() for use in uses if getattr(use.style, "twin", None) is not None]
+
+
+# ------------------------------------------------------------------------------------------------------------ thermo rows ---
+
+def _rows(report: Report, session, switches: list[str]) -> None:
+    theirs = ask(ROWS, commands=session.commands, switches=switches, timeout=3600)
+    if "error" in theirs:
+        report.failures.append(f"LAMMPS stopped at {theirs['command']!r}: {theirs['error']}")
+    by_step = {(run, int(row["Step"])): row for run, row in theirs["rows"] if "Step" in row}
+    without = [r for _, r in session.rows if "Step" not in r]
+    if without:
+        report.notes.append("thermo rows without the column Step are not compared")
+    pairs = [(run, row, by_step[run, int(row["Step"])]) for run, row in session.rows if (run, int(row.get("Step", -1))) in by_step]
+    missing = len(session.rows) - len(without) - len(pairs)
+    if missing:
+        report.notes.append(f"{missing} thermo rows of asemd are on steps that LAMMPS did not print (a minimisation that ends elsewhere)")
+    columns = {c for _, a, b in pairs for c in a if c in b} - CLOCK - {"Step"}
+    sizes = {c: max((abs(float(r[c])) for _, a, b in pairs for r in (a, b) if c in r), default=0.0) for c in columns}
+    families = {}
+    for column in columns:        # a small number among energies (pressures) is as uncertain as a large one
+        families.setdefault(_family(column), []).append(sizes[column])
+    for run, a, b in pairs:
+        for column, value in a.items():
+            if column in columns and column in b:
+                x, y = float(value), float(b[column])
+                scale = max(sizes[column], 1e-3 * max(families[_family(column)]), 1e-300)
+                report.rows.append(Cell(run, int(a["Step"]), column, x, y, abs(x - y) / scale if x == x or y == y else 0.0))
+
+
+def _family(column: str) -> str:
+    if column.startswith("E_") or column in ("PotEng", "KinEng", "TotEng", "Enthalpy", "Ecouple", "Econserve"):
+        return "energy"
+    if column == "Press" or (len(column) == 3 and column[0] == "P"):
+        return "pressure"
+    return column
