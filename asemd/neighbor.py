@@ -89,8 +89,10 @@ class ClusterList:
 
     def shape(self, bins: BinCell, n: int) -> bool:
         """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
-        h = (CLUSTER * bins.volume / max(n, 1)) ** (1 / 3)
         wa, wb, wc = bins.widths
+        share = CLUSTER / max(n, 1)
+        # edge of the cube that holds one cluster; in layers and rows that are thinner than that, of the square or the line
+        h = max((share * bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))), share * max(wa, wb, wc))
         nx, ny = max(1, round(wa / h)), max(1, round(wb / h))
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
@@ -109,13 +111,14 @@ class ClusterList:
         self.first = np.zeros((self.threads, ncl), np.int32)
         self.excluded_first = np.zeros((self.threads, ncl), np.int32)
         self.unshifted = np.zeros(ncl, np.bool_)
+        self.own, self.reach_first = np.zeros(ncl, np.int32), np.zeros(ncl, np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
-        self.work = np.zeros((self.threads, 4, self.candidates))
+        self.work = np.zeros((self.threads, 5, self.candidates))
         self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
         self.bounds = np.zeros(self.threads + 1, np.int64)
         self.shares = None
         if not self.entries.shape[1]:
-            around = 4.2 * self.reach**3 * n / max(bins.volume, 1e-300)
+            around = min(float(n), 4.2 * self.reach**3 * n / max(bins.volume, 1e-300))
             self.entries = np.zeros((self.threads, int(self.capacity / CLUSTER * (1.5 * around + 64) / self.threads) + 1024), np.int32)
         return True
 
@@ -139,9 +142,9 @@ class ClusterList:
                 c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin, self.bins.inverse,
                                      self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach, c0, c1, self.first[t],
-                                     self.entries[t], self.unshifted, self.work[t], self.work_codes[t], self.width, ns)
+                                     self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t], self.work_codes[t], self.width, ns)
                 if results[t] >= 0 and partners is not None:
-                    done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t],
+                    done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t])
                     results[t] = -3 if done < 0 else results[t]
             parallel(work)
@@ -149,7 +152,7 @@ class ClusterList:
                 self.entries = np.zeros((self.threads, int(self.entries.shape[1] * 1.5) + 1024), np.int32)
             elif -2 in results:
                 self.candidates *= 2
-                self.work = np.zeros((self.threads, 4, self.candidates))
+                self.work = np.zeros((self.threads, 5, self.candidates))
                 self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
             elif -3 in results:
                 self.excluded = np.zeros((self.threads, 2 * self.excluded.shape[1]), np.int32)
