@@ -1,0 +1,146 @@
+"""Which LAMMPS names asemd has: the inventory of names compared with the code."""
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import asemd
+from asemd.errors import InputError, nearest
+from asemd.lammps import catalog
+from asemd.text_table import Table
+
+STATES = ("done", "partial", "missing", "extra")
+# category of the inventory -> category of the catalog, where they differ
+CATALOG = {"min_style": "minimize", "run_style": "integrate"}
+# what exists in part: what is not there
+PARTIAL = {
+    ("command", "atom_modify"): "id no is refused: atoms always have ids",
+    ("command", "atom_style"): "the styles listed under atom",
+    ("command", "create_atoms"): "styles box region single random, keywords basis remap units maxtry",
+    ("command", "dump_modify"): "no variable intervals, no keywords of image and movie styles",
+    ("command", "group"): "no dynamic groups",
+    ("command", "kspace_style"): "only none",
+    ("command", "lattice"): "no triclinic/general",
+    ("command", "pair_modify"): "no special for sub-styles",
+    ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
+    ("command", "region"): "no moving regions, no variable radius",
+    ("command", "run_style"): "only verlet",
+    ("command", "set"): "type type/fraction mol x y z vx vy vz charge mass image and types of bonds to impropers",
+    ("command", "special_bonds"): "no one/five",
+    ("command", "thermo_modify"): "no triclinic/general",
+    ("command", "write_data"): "no triclinic/general",
+    ("fix", "langevin"): "no gjf, omega, angmom",
+}
+# names that are read but do nothing useful yet
+REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify"}
+
+
+@dataclass(frozen=True)
+class Name:
+    """One LAMMPS name; `state` is done, partial, missing, or extra for names that the inventory does not have."""
+
+    category: str
+    style: str
+    state: str
+    note: str = ""
+    tier: str = ""
+    origin: str = ""
+
+
+@cache
+def inventory() -> tuple[dict[str, str], ...]:
+    """Rows of the inventory: category, style, tier (how common), origin (lammps or liggghts), in_wheel (yes or no)."""
+    with open(Path(asemd.__file__).parent / "inventory.csv", newline="", encoding="utf-8") as f:
+        return tuple(csv.DictReader(f))
+
+
+def categories() -> list[str]:
+    """Categories of the inventory, in its order."""
+    return list(dict.fromkeys(row["category"] for row in inventory()))
+
+
+def present(category: str) -> frozenset[str]:
+    """Names of a category of the inventory that exist in the code."""
+    if category == "units":
+        from asemd import units
+        return frozenset(units.LAMMPS_STYLES)
+    if category == "variable":
+        from asemd.variable import STYLES
+        return frozenset(STYLES)
+    if category == "granmodel":
+        return frozenset()
+    found = set(catalog.names(CATALOG.get(category, category))) if category != "kspace" or catalog.files("kspace") else {"none"}
+    return frozenset(found - {name for c, name in REFUSED if c == category})
+
+
+def coverage(category: str | None = None, word: str = "", state: str = "") -> list[Name]:
+    """Every name with its state.
+
+    Parameters
+    ----------
+    category : str, optional
+        Of the inventory: pair, fix, command, ...
+    word : str
+        Only names that contain it.
+    state : str
+        Only names in that state.
+
+    Raises
+    ------
+    InputError
+        Unknown category or state.
+    """
+    if category is not None and category not in categories():
+        raise InputError(f"unknown category {category!r}{nearest(category, categories())}; there are {' '.join(categories())}")
+    if state and state not in STATES:
+        raise InputError(f"unknown state {state!r}{nearest(state, STATES)}; there are {' '.join(STATES)}")
+    names = [n for c in ([category] if category else categories()) for n in _of_category(c)]
+    return [n for n in names if word in n.style and state in ("", n.state)]
+
+
+def _of_category(category: str) -> Iterable[Name]:
+    have, listed = present(category), set()
+    for row in inventory():
+        if row["category"] != category:
+            continue
+        name = row["style"]
+        listed.add(name)
+        note = PARTIAL.get((category, name), "") if name in have else REFUSED.get((category, name), "")
+        yield Name(category, name, ("partial" if note else "done") if name in have else "missing", note, row["tier"], row["origin"])
+    for name in sorted(have - listed):
+        note = PARTIAL.get((category, name), "")
+        yield Name(category, name, "extra", note)
+
+
+def counts(names: Iterable[Name]) -> dict[str, dict[str, int]]:
+    """Category -> state -> how many."""
+    out: dict[str, dict[str, int]] = {}
+    for n in names:
+        out.setdefault(n.category, dict.fromkeys(STATES, 0))[n.state] += 1
+    return out
+
+
+def parts(names: list[Name], detailed: bool) -> list[Table | str]:
+    """The counts, and the names: a row for each if `detailed`, else those that exist by category."""
+    table = Table("LAMMPS names in asemd", ("category", *STATES, "all"))
+    found = counts(names)
+    for category, by_state in found.items():
+        table.rows.append((category, *(str(by_state[s]) for s in STATES), str(sum(by_state.values()))))
+    if len(found) > 1:
+        table.rows.append(("all", *(str(sum(b[s] for b in found.values())) for s in STATES), str(len(names))))
+    if detailed:
+        return [table, Table("", ("category", "name", "state", "note"), [(n.category, n.style, n.state, n.note) for n in names])]
+    listed = Table("What exists (* in part, + not in the inventory)", ("category", "names"))
+    for category in found:
+        mark = {"done": "", "partial": "*", "extra": "+"}
+        listed.rows.append((category, " ".join(n.style + mark[n.state] for n in names if n.category == category and n.state != "missing")))
+    return [table, listed, "asemd styles CATEGORY lists every name of a category, asemd styles --state missing what is not there"]
+
+
+def to_dict(names: list[Name]) -> dict[str, Any]:
+    """Counts and names, JSON-able."""
+    return {"counts": counts(names), "names": [asdict(n) for n in names]}

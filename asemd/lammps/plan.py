@@ -1,0 +1,259 @@
+"""What a scene needs, what is left out, and why; nothing is compiled and no step is run."""
+from __future__ import annotations
+
+import math
+import os
+import sys
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from asemd.engine import PLURAL, Engine
+from asemd.errors import InputError
+from asemd.term import BondedTerm, PairListTerm, PairTerm
+from asemd.text_table import Table
+
+OPTIONAL = ("ase", "scipy", "matplotlib", "MDAnalysis", "spglib")
+
+
+@dataclass
+class Item:
+    """One thing that a scene needs or does without: what it is, how it is done, and why."""
+
+    name: str
+    how: str
+    why: str = ""
+
+
+@dataclass
+class Plan:
+    """What `plan` found; ``print(plan)`` shows it.
+
+    Attributes
+    ----------
+    source : str
+    sections : dict
+        Title -> list of `Item`: System, Neighbour list, Forces, Fixes, Output.
+    left_out : list of Item
+        What does not exist in this run, and why.
+    """
+
+    source: str
+    sections: dict[str, list[Item]] = field(default_factory=dict)
+    left_out: list[Item] = field(default_factory=list)
+
+    def parts(self) -> list[Table | str]:
+        """Tables, in order."""
+        out: list[Table | str] = [f"Plan of {self.source}"]
+        out += [Table(title, ("", "how", "why"), [(i.name, i.how, i.why) for i in items]) for title, items in self.sections.items() if items]
+        return [*out, Table("Left out", ("", "why"), [(i.name, i.why) for i in self.left_out])]
+
+    def __str__(self) -> str:
+        return "\n\n".join(map(str, self.parts()))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything, JSON-able."""
+        return asdict(self)
+
+
+def plan(source) -> Plan:
+    """The plan of a scene.
+
+    Parameters
+    ----------
+    source : path, asemd.scene.Scene or ase.Atoms
+        A script is executed up to its first run; atoms need `asemd.ForceField` as calculator.
+
+    Raises
+    ------
+    InputError
+        A mistake in the script, missing coefficients, atoms without a force field.
+    """
+    from asemd.scene import Scene
+    if isinstance(source, (str, os.PathLike)):
+        return of_script(os.fspath(source))
+    if isinstance(source, Scene):
+        return of_scene(source)
+    from asemd.calculator import ForceField
+    calc = getattr(source, "calc", None)
+    if not isinstance(calc, ForceField):
+        raise InputError("plan needs the path of a LAMMPS script, a Scene, or atoms whose calculator is asemd.ForceField")
+    system = calc._system(source)
+    calc.interactions.check_complete(system)
+    engine = Engine(system, calc.interactions, calc.settings)
+    out = _of_engine(repr(calc), engine)
+    out.sections["Output"] = [Item("energy, forces, virial", "at every evaluation", "ASE may ask for any of them")]
+    out.left_out.append(Item("energies and virials per atom", "", "computed only when get_potential_energies or get_stresses asks"))
+    return out
+
+
+def of_script(path: str, switches=None) -> Plan:
+    """The plan of a script's scene at its first run."""
+    from asemd.lammps.session import Session, Stop
+    session = Session(switches=switches, passive=True)
+    try:
+        session.file(path)
+    except Stop:
+        session.label = None
+    return of_scene(session.scene, path, session.variables.references)
+
+
+def of_scene(scene, source: str = "scene", references=lambda word: {word}) -> Plan:
+    """The plan of a scene; `references` tells which names a formula uses."""
+    system = scene.need_system("plan")
+    scene.interactions.check_complete(system)
+    engine = Engine(system, scene.interactions, scene.settings())
+    out = _of_engine(source, engine)
+    out.sections["Fixes"] = _fixes(scene)
+    out.sections["Output"], more = _output(scene, references)
+    out.left_out += more
+    return out
+
+
+# ------------------------------------------------------------------------------------------------------------ from the engine ---
+
+def _of_engine(source: str, engine: Engine) -> Plan:
+    terms = [_term(engine, t) for t in engine.terms]
+    return Plan(source, {"System": _system(engine), "Neighbour list": _list(engine), "Forces": terms + _specials(engine)}, _absent(engine))
+
+
+def _system(e: Engine) -> list[Item]:
+    s = e.system
+    arrays = ["id", "type", "x", "image", "v", "f"] + ["molecule"] * s.molecular + ["q"] * s.has_charge + ["rmass"] * (s.rmass is not None)
+    shape = "axis-aligned" if e.ortho else "general cell"
+    faces = ", ".join(f"{axis} {'periodic' if b == 'pp' else b}" for axis, b in zip("xyz", s.box.boundary))
+    return [Item("atoms", f"{s.n} of {s.counts['ntypes']} types, {s.dimension}-dimensional", f"units {s.units}, atom_style {s.atom_style}"),
+            Item("arrays", " ".join([*arrays, *s.extra]), "what the atom style has"),
+            Item("box", f"{shape}: {faces}", "shifts of periodic images are those of axis-aligned vectors" if e.ortho else
+                 "image shifts are sums of the three vectors"),
+            Item("threads", str(e.threads), ""),
+            Item("precision", e.settings.precision, "sums of energies and forces are always double" if e.settings.precision == "mixed" else "")]
+
+
+def _list(e: Engine) -> list[Item]:
+    s, settings = e.system, e.settings
+    if e.mode == "none":
+        return []
+    how = {"cluster": "clusters of 8 atoms, half list", "plain": "plain pairs with image shifts, half list"}[e.mode]
+    if e.expanded:
+        how += ", expanded into plain pairs"
+    density = s.n / max(s.box.volume, 1e-300)
+    reach = 4.0 / 3.0 * math.pi * e.reach**3
+    around = 0.5 * density * (reach if s.dimension == 3 else math.pi * e.reach**2 * s.box.lengths[2])
+    check = (f"when an atom has moved half the skin, looked at every {settings.every} steps from step {settings.delay} of the list on"
+             if settings.check else f"every {max(settings.every, settings.delay)} steps, whether atoms have moved or not")
+    out = [Item("list", how, e.why), Item("reach", f"{e.reach:g} = cutoff {e.cutoff:g} + skin {settings.skin:g}", "the longest cutoff in use"),
+           Item("pairs", f"about {around * s.n:.3g}, {around:.3g} per atom", "estimated from the density"),
+           Item("rebuild", check, "neigh_modify")]
+    if settings.exclude:
+        out.append(Item("exclusions", ", ".join(str(x[0]) for x in settings.exclude), "neigh_modify exclude"))
+    if e.expanded:
+        why = "a table style needs its pairs one by one" if any(p.arrays for t in e.pair_terms for p in t.style.parts) else "exclusions by group"
+        out.append(Item("expansion", "after each build", why))
+    return out
+
+
+def _term(e: Engine, t) -> Item:
+    style = t.style
+    if isinstance(t, BondedTerm):
+        function = "minimum image" if e.periodic.any() else "no images: nothing is periodic"
+        return Item(f"{t.category} {style.name}", f"{len(t.items)} {PLURAL[t.category]} of {len(np.unique(t.types))} types, {function}",
+                    f"{t.category}_style and {t.category}_coeff")
+    charged = "with charges" if style.charged and getattr(t, "pairs", "") != "one_four" else "without charges"
+    if isinstance(t, PairTerm):
+        varying = sum(not u for u in t.uniform)
+        rows = "coefficients in registers: one type, or the same for all" if not varying else f"{varying} of {len(t.uniform)} coefficients by type pair"
+        hidden = ", excluded partners moved away" if e.partners is not None else ", no exclusions"
+        return Item(f"pair {style.name}", f"cluster kernel, {'single' if t.single else 'double'} precision, {charged}, {rows}{hidden}", "pair_style")
+    assert isinstance(t, PairListTerm)
+    if t.pairs == "special":
+        return Item(f"pair {style.name} (special)", f"{len(e.special_kept)} weighted pairs, one by one", "special_bonds factors between 0 and 1, "
+                    "which the cluster kernel leaves out")
+    if t.pairs == "one_four":
+        return Item(f"pair {style.name} (1-4)", f"{len(t.one_four[0])} pairs, one by one", "dihedral style with weights of 1-4 pairs")
+    return Item(f"pair {style.name}", f"pair by pair, double precision, {charged}", e.why if e.mode == "plain" else "pairs of the expanded list")
+
+
+def _specials(e: Engine) -> list[Item]:
+    if e.mode == "none" or e.system.topology.is_empty:
+        return []
+    _, kinds = e.interactions.special_pairs(e.system)
+    out = []
+    for kind, name in ((1, "1-2"), (2, "1-3"), (3, "1-4")):
+        n, lj, coul = int((kinds == kind).sum()), e.weight_lj[kind], e.weight_coul[kind]
+        if n:
+            how = "excluded" if lj == coul == 0.0 else "ordinary pairs" if lj == coul == 1.0 else "weighted"
+            out.append(Item(f"{name} pairs", f"{n} {how}", f"special_bonds factors {lj:g} (lj) and {coul:g} (coul)"))
+    return out
+
+
+def _absent(e: Engine) -> list[Item]:
+    out, inter, s = [], e.interactions, e.system
+    if e.mode == "none":
+        out.append(Item("neighbour list", "", e.why))
+    elif not any(t.style.charged for t in e.pair_terms):
+        out.append(Item("Coulomb part", "", "no pair style in use has one" + (", the charges act on nothing" if s.has_charge else "")))
+    out.append(Item("k-space", "", "no style has a long-range part"))
+    for category, plural in PLURAL.items():
+        if not any(isinstance(t, BondedTerm) and t.category == category for t in e.terms):
+            n, style = len(getattr(s.topology, plural)), inter.style_name(category)
+            out.append(Item(f"{category} forces", "", f"there are no {plural}" if not n else f"{category}_style {style}: {n} {plural} without forces"))
+    if e.mode != "none" and e.partners is None:
+        out.append(Item("exclusion of bonded pairs", "", "no bonds" if s.topology.is_empty else "all special_bonds factors are 1"))
+    if e.mode != "none" and not inter.tail:
+        out.append(Item("tail correction", "", "pair_modify tail no"))
+    if e.ortho:
+        out.append(Item("tilted image shifts", "", "the box is axis-aligned"))
+    for axis, periodic in zip("xyz", e.periodic):
+        if not periodic:
+            out.append(Item(f"images along {axis}", "", "two dimensions" if s.dimension == 2 and axis == "z" else f"{axis} is not periodic"))
+    if e.threads == 1:
+        out.append(Item("force buffers of threads", "", "one thread"))
+    unused = [m for m in OPTIONAL if m not in sys.modules]
+    if unused:
+        out.append(Item("imports", "", f"not needed so far: {' '.join(unused)}"))
+    return out
+
+
+# ------------------------------------------------------------------------------------------------------------ from the scene ---
+
+def _fixes(scene) -> list[Item]:
+    out, python = [], []
+    for id, fix in scene.fixes.items():
+        hooks = fix.hooks()
+        names = ", ".join(name + ("" if compiled else " (Python)") for name, compiled in hooks.items()) or "no hooks"
+        python += [f"fix {id} ({fix.style}) has {name} in Python" for name, compiled in hooks.items() if not compiled]
+        out.append(Item(f"fix {id}", f"{fix.style} on group {fix.group}", names))
+    movers = [id for id, f in scene.fixes.items() if f.integrates]
+    loop = Item("time loop", "step by step" if python else "compiled, from output to output", "; ".join(python) or "every hook is compiled")
+    return [loop, *out] if movers or out else [Item("time loop", "compiled, atoms do not move", "no fix integrates")]
+
+
+def _output(scene, references) -> tuple[list[Item], list[Item]]:
+    thermo, computes = scene.thermo, scene.computes
+    words = thermo.columns()
+    row = thermo.needs(words, computes, references)
+    when = f"on steps that variable {thermo.every} names" if isinstance(thermo.every, str) else (
+        f"every {thermo.every} steps, first and last" if thermo.every else "on the first and last step")
+    out = [Item("thermo row", when, " ".join(words))]
+    for id, dump in scene.dumps.items():
+        needs = ", ".join(sorted(dump.needs)) or "nothing but the atoms"
+        out.append(Item(f"dump {id}", f"{dump.style} every {dump.every} steps", f"needs {needs}"))
+    for id, compute in computes.items():
+        if not id.startswith("thermo_"):
+            needs = ", ".join(sorted(compute.needs)) or "nothing but the atoms"
+            shown = any(w.partition("[")[0] == f"c_{id}" for w in words)
+            out.append(Item(f"compute {id}", compute.style, f"needs {needs}; {'shown in thermo rows' if shown else 'evaluated when asked for'}"))
+    out.append(Item("energy and virial", f"{when}; on steps with a dump", "the kernel with energies runs on these steps only"))
+    per_atom = {"energies", "virials"}
+    asking = [f"dump {id}" for id, d in scene.dumps.items() if d.needs & per_atom] + [
+        f"compute {id}" for id, c in computes.items() if c.needs & per_atom]
+    absent = [Item("energy and virial between outputs", "", "nobody looks at them: the force-only kernel runs")]
+    if row & per_atom or asking:
+        out.append(Item("per-atom kernels", "on the steps on which they are shown, and on the last one", ", ".join(asking) or "thermo row"))
+    else:
+        absent.append(Item("energies and virials per atom", "", "no compute or dump needs them"))
+    if not scene.dumps:
+        absent.append(Item("dumps", "", "none is defined"))
+    return out, absent
