@@ -203,6 +203,7 @@ class Engine:
         self.shifts27 = codes @ self.cell.reduced
         self.periodic27 = (codes[:, ~self.periodic] == 0).all(axis=1)
         self.k = kernels(self.ortho)
+        self._bins = None
 
     def _set_special(self) -> None:
         inter, system = self.interactions, self.system
@@ -323,7 +324,9 @@ class Engine:
         if not self.periodic.all():
             self._faces()
         if self.mode == "cluster":
-            bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
+            if self._bins is None or not self.periodic.all():
+                self._bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
+            bins = self._bins
             if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
                 self._allocate(self.list.capacity)
                 s = self.state

@@ -56,6 +56,7 @@ class BinCell:
         self.inverse = np.ascontiguousarray(np.linalg.inv(v))
         self.widths = 1.0 / np.linalg.norm(self.inverse, axis=0)
         self.volume = abs(np.linalg.det(v))
+        self.far = o + v.sum(0) + np.abs(v).sum(0)      # no atom is near
 
 
 def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
@@ -115,6 +116,7 @@ class ClusterList:
         self.where = np.zeros((self.threads, self.capacity), np.int32)
         self.work = np.zeros((self.threads, 5, self.candidates))
         self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
+        self.heaps = np.zeros((self.threads, 3, self.candidates + 1), np.int32)
         self.bounds = np.zeros(self.threads + 1, np.int64)
         self.shares = None
         if not self.entries.shape[1]:
@@ -125,9 +127,8 @@ class ClusterList:
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
         """Sort the slots; returns their number."""
         self.bins = bins
-        far = bins.origin + bins.vectors.sum(0) + 10 * self.reach + np.abs(bins.vectors).sum(0)
         return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
-                      self.cell_start, self.column_start, self.column_of, self.key, far, 4 * self.reach)
+                      self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach)
 
     def build(self, k, state, ns: int, cell_vectors: np.ndarray, periodic: np.ndarray, partners, slot_of, parallel) -> None:
         """Build the list and its exclusions in the sorted slots."""
@@ -142,7 +143,7 @@ class ClusterList:
                 c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin, self.bins.inverse,
                                      self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach, c0, c1, self.first[t],
-                                     self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t], self.work_codes[t], self.width, ns)
+                                     self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t], self.work_codes[t], self.heaps[t], self.width, ns)
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t])
@@ -154,6 +155,7 @@ class ClusterList:
                 self.candidates *= 2
                 self.work = np.zeros((self.threads, 5, self.candidates))
                 self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
+                self.heaps = np.zeros((self.threads, 3, self.candidates + 1), np.int32)
             elif -3 in results:
                 self.excluded = np.zeros((self.threads, 2 * self.excluded.shape[1]), np.int32)
             else:

@@ -112,16 +112,17 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, unshifted, work, codes, width, empty):
+          first, entries, own, reach_first, unshifted, work, codes, heaps, width, empty):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
-    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (4, w)`, `codes (w,)`: candidates of one cluster;
-    `unshifted[c]` is set if no entry of cluster c needs a shift. Rows end with copies of the slot `empty`, so that cluster plus row fill whole
-    vectors of `width`.
+    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (5, w)`, `codes (w,)`, `heaps (3, w + 1)`: candidates of one cluster;
+    `unshifted[c]` is set if no entry of cluster c needs a shift. A row holds first what only the first four atoms of the cluster need, then the
+    cluster itself (at `own[c]`, a multiple of 8), then what both halves need, then what only the last four need: the first half runs from the start to
+    `reach_first[c]`, the second from `own[c]` to the end. Rows end with copies of the slot `empty`, so that they fill whole vectors of `width`.
     """
     n = 0
     r2 = reach * reach
-    tx, ty, tz, td = work[0], work[1], work[2], work[3]
+    tx, ty, tz = work[0], work[1], work[2]
     wa = widths[0] / nx
     wb = widths[1] / ny
     ra = int(reach / wa) + 1
@@ -222,33 +223,66 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                         codes[nt + q] = np.int32(k0 + q) | high
                     nt += count
         unshifted[ci] = all_in
-        for t in range(nt):
-            td[t] = 1e300
-        for k in range(ci * CLUSTER, ci * CLUSTER + m, 2):
-            k2 = min(k + 1, ci * CLUSTER + m - 1)
-            xi, yi, zi = x[0, k], x[1, k], x[2, k]
-            xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
+        for half in range(2):
+            td = work[3 + half]
+            k0 = ci * CLUSTER + half * (CLUSTER // 2)
+            k1 = min(ci * CLUSTER + m, k0 + CLUSTER // 2)
             for t in range(nt):
-                a = tx[t] - xi
-                b = ty[t] - yi
-                c = tz[t] - zi
-                e = tx[t] - xj
-                f = ty[t] - yj
-                g = tz[t] - zj
-                td[t] = min(td[t], min(a * a + b * b + c * c, e * e + f * f + g * g))
-        if n + nt + width > entries.shape[0]:
+                td[t] = 1e300
+            for k in range(k0, k1, 2):
+                k2 = min(k + 1, k1 - 1)
+                xi, yi, zi = x[0, k], x[1, k], x[2, k]
+                xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
+                for t in range(nt):
+                    a = tx[t] - xi
+                    b = ty[t] - yi
+                    c = tz[t] - zi
+                    e = tx[t] - xj
+                    f = ty[t] - yj
+                    g = tz[t] - zj
+                    td[t] = min(td[t], min(a * a + b * b + c * c, e * e + f * f + g * g))
+        if n + nt + CLUSTER + width > entries.shape[0]:
             return -1
+        # three heaps in one pass, each candidate written to all and kept by one counter at most
+        da, db = work[3], work[4]
+        start = n
+        first_heap, both_heap, second_heap = heaps[0], heaps[1], heaps[2]
+        n0, n1, n2 = 0, 0, 0
         for t in range(nt):
-            entries[n] = codes[t]
-            n += td[t] < r2
-        while (n - first[ci] + CLUSTER) % width != 0:
+            code = codes[t]
+            a = da[t]
+            b = db[t]
+            first_heap[np.uint64(n0)] = code
+            both_heap[np.uint64(n1)] = code
+            second_heap[np.uint64(n2)] = code
+            n0 += (a < r2) & (b >= r2)
+            n1 += (a < r2) & (b < r2)
+            n2 += (a >= r2) & (b < r2)
+        # the cluster itself stands at a multiple of 8; what it displaces goes behind it
+        at = (n0 // CLUSTER) * CLUSTER
+        for t in range(at):
+            entries[n + t] = first_heap[t]
+        for k in range(CLUSTER):
+            entries[n + at + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
+        for t in range(at, n0):
+            entries[n + t + CLUSTER] = first_heap[t]
+        own[ci] = at
+        n += n0 + CLUSTER
+        for t in range(n1):
+            entries[n + t] = both_heap[t]
+        n += n1
+        reach_first[ci] = ((n - start + width - 1) // width) * width
+        for t in range(n2):
+            entries[n + t] = second_heap[t]
+        n += n2
+        while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)
             n += 1
     first[c1] = n
     return n
 
 
-def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, excluded_first, excluded, where):
+def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where):
     """Entries of the list that special pairs take out, per cluster as (atom in cluster << 16) + place in the kernel's buffer.
 
     Returns the number, or -1 if `excluded` is too small. `partner_start, partners`: for each atom row the rows it must not meet.
@@ -259,23 +293,30 @@ def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, exclu
         f0 = first[ci]
         f1 = first[ci + 1]
         s = ci * CLUSTER
+        twice = False      # a long cluster in a narrow cell may see two images of an atom, each near other atoms of the cluster
         for k in range(f0, f1):
-            where[entries[k] & SLOT_BITS] = k - f0
+            j = entries[k] & SLOT_BITS
+            if row[j] >= 0 and (k - f0 < own[ci] or k - f0 >= own[ci] + CLUSTER):
+                w = where[j]
+                twice = twice or (w < k - f0 and (w < own[ci] or w >= own[ci] + CLUSTER) and (entries[f0 + w] & SLOT_BITS) == j)
+                where[j] = k - f0
         for a in range(CLUSTER):
             r = row[s + a]
             if r < 0:
                 break
             for q in range(partner_start[r], partner_start[r + 1]):
                 j = slot_of[partners[q]]
-                if n + 2 > excluded.shape[0]:
+                if n + 28 > excluded.shape[0]:
                     return -1
                 if j // CLUSTER == ci and j > s + a:
-                    excluded[n] = np.int32((a << 16) | (j - s))
+                    excluded[n] = np.int32((a << 16) | (j - s + own[ci]))
                     n += 1
                 w = where[j]
-                if w >= 0 and w < f1 - f0 and (entries[f0 + w] & SLOT_BITS) == j:
-                    excluded[n] = np.int32((a << 16) | (w + CLUSTER))
-                    n += 1
+                if w < f1 - f0 and (w < own[ci] or w >= own[ci] + CLUSTER) and (entries[f0 + w] & SLOT_BITS) == j:
+                    for k in range(0 if twice else w, w + 1):     # at most one image is within reach of atom a: hide all
+                        if (k < own[ci] or k >= own[ci] + CLUSTER) and (entries[f0 + k] & SLOT_BITS) == j:
+                            excluded[n] = np.int32((a << 16) | k)
+                            n += 1
     excluded_first[c1] = n
     return n
 
@@ -304,9 +345,9 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
             for k in range(first[ci], first[ci + 1]):
                 e = entries[k]
                 j = e & SLOT_BITS
-                if row[j] < 0:
-                    continue
                 c = e >> 26
+                if row[j] < 0 or (c == 13 and j // CLUSTER == ci):
+                    continue
                 dx = x[0, s + a] - (x[0, j] + shifts[c, 0])
                 dy = x[1, s + a] - (x[1, j] + shifts[c, 1])
                 dz = x[2, s + a] - (x[2, j] + shifts[c, 2])

@@ -36,7 +36,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
     """``pair_force`` or ``pair_energy``: every part masked by its cutoff. Uniform rows come from the tuple `p`, others from the buffer."""
     where: list[str] = []
     for u in uniform:
-        where.append(f"p[{sum(1 for w in where if w[0] == 'p')}]" if u else f"b[o + {sum(1 for w in where if w[0] == 'b')} * ROW]")
+        where.append(f"p[{sum(1 for w in where if w[0] == 'p')}]" if u else f"b[place(o + {sum(1 for w in where if w[0] == 'b')} * ROW)]")
     at_constant = sum(uniform)
     lines = ["def pair_energy(r2, ir2, qq, p, b, o):" if energy else "def pair_force(r2, ir2, qq, p, b, o):"]
     if any(part.coordinate == "r" for part in parts):
@@ -80,6 +80,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
     b.line("from asemd.kernels.fuse import madd")
+    b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
                             CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude, SLOT_BITS=pair_cluster.SLOT_BITS).items():

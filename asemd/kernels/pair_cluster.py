@@ -21,18 +21,20 @@ ENERGY = CHARGED = VARYING = SHARE = False
 EXCLUDE = True
 SLOT_BITS = 0x3FFFFFF
 real = np.float64
+place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
 pair_force = pair_energy = fill_rows = None
 
 
-def inner_two(b, n, xa, ya, za, qa, xb, yb, zb, qb, p):
-    """Two atoms a, b against the n packed ones; adds to their forces in the buffer and returns the forces on a and b, energies and virial."""
+def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
+    """Two atoms a, b against `n` packed ones from place `o` on; adds to their forces in the buffer and returns the forces on a and b, energies and virial."""
     zero = real(0)
     fxa, fya, fza, fxb, fyb, fzb = zero, zero, zero, zero, zero, zero
     ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
-    for k in range(n):
-        xk = b[k]
-        yk = b[k + ROW]
-        zk = b[k + 2 * ROW]
+    for m in range(n):
+        k = o + m
+        xk = b[place(k)]
+        yk = b[place(k + ROW)]
+        zk = b[place(k + 2 * ROW)]
         dxa = xa - xk
         dya = ya - yk
         dza = za - zk
@@ -49,7 +51,7 @@ def inner_two(b, n, xa, ya, za, qa, xb, yb, zb, qb, p):
             ia = real(1) / ra
             ib = real(1) / rb
         if CHARGED:
-            qk = b[k + 6 * ROW]
+            qk = b[place(k + 6 * ROW)]
             qka = qa * qk
             qkb = qb * qk
         else:
@@ -75,29 +77,30 @@ def inner_two(b, n, xa, ya, za, qa, xb, yb, zb, qb, p):
         fxb = madd(dxb, pb, fxb)
         fyb = madd(dyb, pb, fyb)
         fzb = madd(dzb, pb, fzb)
-        b[k + 3 * ROW] = madd(-dxa, pa, madd(-dxb, pb, b[k + 3 * ROW]))
-        b[k + 4 * ROW] = madd(-dya, pa, madd(-dyb, pb, b[k + 4 * ROW]))
-        b[k + 5 * ROW] = madd(-dza, pa, madd(-dzb, pb, b[k + 5 * ROW]))
+        b[place(k + 3 * ROW)] = madd(-dxa, pa, madd(-dxb, pb, b[place(k + 3 * ROW)]))
+        b[place(k + 4 * ROW)] = madd(-dya, pa, madd(-dyb, pb, b[place(k + 4 * ROW)]))
+        b[place(k + 5 * ROW)] = madd(-dza, pa, madd(-dzb, pb, b[place(k + 5 * ROW)]))
     return fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5
 
 
-def inner_one(b, n, xa, ya, za, qa, p, o):
-    """One atom against the n packed ones; `o` is the offset of its coefficient rows."""
+def inner_one(b, o, n, xa, ya, za, qa, p, rows):
+    """One atom against `n` packed ones from place `o` on; `rows` is the offset of its coefficient rows."""
     zero = real(0)
     fxa, fya, fza = zero, zero, zero
     ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
-    for k in range(n):
-        dxa = xa - b[k]
-        dya = ya - b[k + ROW]
-        dza = za - b[k + 2 * ROW]
-        qka = qa * b[k + 6 * ROW] if CHARGED else zero
+    for m in range(n):
+        k = o + m
+        dxa = xa - b[place(k)]
+        dya = ya - b[place(k + ROW)]
+        dza = za - b[place(k + 2 * ROW)]
+        qka = qa * b[place(k + 6 * ROW)] if CHARGED else zero
         ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
         if ENERGY:
-            pa, eva, eca = pair_energy(ra, real(1) / ra, qka, p, b, k + o)
+            pa, eva, eca = pair_energy(ra, real(1) / ra, qka, p, b, k + rows)
             ev += eva
             ec += eca
         else:
-            pa = pair_force(ra, real(1) / ra, qka, p, b, k + o)
+            pa = pair_force(ra, real(1) / ra, qka, p, b, k + rows)
         if ENERGY:
             gx = dxa * pa
             gy = dya * pa
@@ -111,13 +114,13 @@ def inner_one(b, n, xa, ya, za, qa, p, o):
         fxa = madd(dxa, pa, fxa)
         fya = madd(dya, pa, fya)
         fza = madd(dza, pa, fza)
-        b[k + 3 * ROW] = madd(-dxa, pa, b[k + 3 * ROW])
-        b[k + 4 * ROW] = madd(-dya, pa, b[k + 4 * ROW])
-        b[k + 5 * ROW] = madd(-dza, pa, b[k + 5 * ROW])
+        b[place(k + 3 * ROW)] = madd(-dxa, pa, b[place(k + 3 * ROW)])
+        b[place(k + 4 * ROW)] = madd(-dya, pa, b[place(k + 4 * ROW)])
+        b[place(k + 5 * ROW)] = madd(-dza, pa, b[place(k + 5 * ROW)])
     return fxa, fya, fza, ev, ec, v0, v1, v2, v3, v4, v5
 
 
-def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_, qqr2e, b, types, saved, acc):
+def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_, qqr2e, b, types, saved, acc):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz)."""
     far = real(far_)
     done = real(2) * far      # atoms of the cluster that have had their turn
@@ -127,82 +130,79 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
         oy = x[1, s]
         oz = x[2, s]
         f0 = first[ci]
-        full = ((first[ci + 1] - f0 + CLUSTER) // WIDTH) * WIDTH     # rows are padded: whole vectors
-        nj = full - CLUSTER
-        for k in range(CLUSTER):
-            b[k] = x[0, s + k] - ox
-            b[k + ROW] = x[1, s + k] - oy
-            b[k + 2 * ROW] = x[2, s + k] - oz
+        full = ((first[ci + 1] - f0) // WIDTH) * WIDTH     # rows are padded: whole vectors
+        mine = np.int64(own[ci])
         if unshifted[ci]:
-            for k in range(nj):
+            for k in range(full):
                 j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
-                b[k + CLUSTER] = x[0, j] - ox
-                b[k + ROW + CLUSTER] = x[1, j] - oy
-                b[k + 2 * ROW + CLUSTER] = x[2, j] - oz
+                b[k] = x[0, j] - ox
+                b[k + ROW] = x[1, j] - oy
+                b[k + 2 * ROW] = x[2, j] - oz
         else:
-            for k in range(nj):
+            for k in range(full):
                 e = entries[f0 + k]
                 j = np.uint32(e & np.int32(SLOT_BITS))
                 c = np.uint32(e >> 26)
-                b[k + CLUSTER] = (x[0, j] + shifts[c, 0]) - ox
-                b[k + ROW + CLUSTER] = (x[1, j] + shifts[c, 1]) - oy
-                b[k + 2 * ROW + CLUSTER] = (x[2, j] + shifts[c, 2]) - oz
+                b[k] = (x[0, j] + shifts[c, 0]) - ox
+                b[k + ROW] = (x[1, j] + shifts[c, 1]) - oy
+                b[k + 2 * ROW] = (x[2, j] + shifts[c, 2]) - oz
         for k in range(full):
             b[k + 3 * ROW] = real(0)
             b[k + 4 * ROW] = real(0)
             b[k + 5 * ROW] = real(0)
         if CHARGED:
-            for k in range(CLUSTER):
-                b[k + 6 * ROW] = q[s + k]
-            for k in range(nj):
-                b[k + 6 * ROW + CLUSTER] = q[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
+            for k in range(full):
+                b[k + 6 * ROW] = q[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
         if VARYING:
-            for k in range(CLUSTER):
-                types[k] = type_of[s + k]
-            for k in range(nj):
-                types[k + CLUSTER] = type_of[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
+            for k in range(full):
+                types[k] = type_of[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
             last0 = np.uint32(1 << 30)
             last1 = np.uint32(1 << 30)
         if EXCLUDE:
             xp = excluded_first[ci]
             xe = excluded_first[ci + 1]
-        for a in range(0, CLUSTER, 2):
-            xa, ya, za = b[a], b[a + ROW], b[a + 2 * ROW]
-            xb, yb, zb = b[a + 1], b[a + 1 + ROW], b[a + 1 + 2 * ROW]
+        base = np.int64(0)
+        count = np.int64(reach_first[ci])
+        for a0 in range(0, CLUSTER, 2):
+            if a0 == CLUSTER // 2:
+                base = mine
+                count = full - mine
+            xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
+            xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
             qa = real(0)
             qb = real(0)
             if CHARGED:
-                qa = b[a + 6 * ROW] * real(qqr2e)
-                qb = b[a + 1 + 6 * ROW] * real(qqr2e)
+                qa = b[place(mine + a0 + 6 * ROW)] * real(qqr2e)
+                qb = b[place(mine + a0 + 1 + 6 * ROW)] * real(qqr2e)
             if VARYING:
-                t0 = types[a]
-                t1 = types[a + 1]
+                t0 = types[place(mine + a0)]
+                t1 = types[place(mine + a0 + 1)]
                 if t0 != last0:
                     last0 = t0
                     fill_rows(b, full, rows, t0, types, 7 * ROW)
                 if t1 != last1:
                     last1 = t1
                     fill_rows(b, full, rows, t1, types, (7 + NROWS) * ROW)
-            b[a] = done
-            if EXCLUDE and xp < xe and (excluded[xp] >> 16) <= a + 1:
+            b[place(mine + a0)] = done
+            if EXCLUDE and xp < xe and (excluded[xp] >> 16) <= a0 + 1:
                 # an excluded partner is hidden from one atom only: one at a time
                 x0 = xp
-                while xp < xe and (excluded[xp] >> 16) == a:
+                while xp < xe and (excluded[xp] >> 16) == a0:
                     k = np.uint32(excluded[xp] & np.int32(0xFFFF))
                     saved[xp - x0] = b[k]
                     b[k] = far
                     xp += 1
-                fxa, fya, fza, ev, ec, v0, v1, v2, v3, v4, v5 = inner_one(b, full, xa, ya, za, qa, p, 7 * ROW)
+                fxa, fya, fza, ev, ec, v0, v1, v2, v3, v4, v5 = inner_one(b, base, count, xa, ya, za, qa, p, 7 * ROW)
                 for y in range(xp - 1, x0 - 1, -1):
                     b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
-                b[a + 1] = done
+                b[place(mine + a0 + 1)] = done
                 x0 = xp
-                while xp < xe and (excluded[xp] >> 16) == a + 1:
+                while xp < xe and (excluded[xp] >> 16) == a0 + 1:
                     k = np.uint32(excluded[xp] & np.int32(0xFFFF))
                     saved[xp - x0] = b[k]
                     b[k] = far
                     xp += 1
-                fxb, fyb, fzb, ev1, ec1, w0, w1, w2, w3, w4, w5 = inner_one(b, full, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
+                fxb, fyb, fzb, ev1, ec1, w0, w1, w2, w3, w4, w5 = inner_one(b, base, count, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
                 for y in range(xp - 1, x0 - 1, -1):
                     b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
                 if ENERGY:
@@ -216,18 +216,18 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                     v5 += w5
             else:
                 # a meets b inside the packed loop of a; b must not meet a again: both are moved away and the pair is done by hand
-                b[a + 1] = done
-                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(b, full, xa, ya, za, qa, xb, yb, zb, qb, p)
+                b[place(mine + a0 + 1)] = done
+                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p)
                 dx = xa - xb
                 dy = ya - yb
                 dz = za - zb
                 rr = dx * dx + dy * dy + dz * dz
                 qk = real(0)
                 if CHARGED:
-                    qk = qa * b[a + 1 + 6 * ROW]
+                    qk = qa * b[place(mine + a0 + 1 + 6 * ROW)]
                 # the coefficients of the pair (a, b) stand in a's rows at b's place
                 if ENERGY:
-                    pa, eva, eca = pair_energy(rr, real(1) / rr, qk, p, b, a + 1 + 7 * ROW)
+                    pa, eva, eca = pair_energy(rr, real(1) / rr, qk, p, b, mine + a0 + 1 + 7 * ROW)
                     ev += eva
                     ec += eca
                     v0 += dx * dx * pa
@@ -237,19 +237,19 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                     v4 += dx * dz * pa
                     v5 += dy * dz * pa
                 else:
-                    pa = pair_force(rr, real(1) / rr, qk, p, b, a + 1 + 7 * ROW)
+                    pa = pair_force(rr, real(1) / rr, qk, p, b, mine + a0 + 1 + 7 * ROW)
                 fxa += dx * pa
                 fya += dy * pa
                 fza += dz * pa
                 fxb -= dx * pa
                 fyb -= dy * pa
                 fzb -= dz * pa
-            b[a + 3 * ROW] += fxa
-            b[a + 4 * ROW] += fya
-            b[a + 5 * ROW] += fza
-            b[a + 1 + 3 * ROW] += fxb
-            b[a + 1 + 4 * ROW] += fyb
-            b[a + 1 + 5 * ROW] += fzb
+            b[place(mine + a0 + 3 * ROW)] += fxa
+            b[place(mine + a0 + 4 * ROW)] += fya
+            b[place(mine + a0 + 5 * ROW)] += fza
+            b[place(mine + a0 + 1 + 3 * ROW)] += fxb
+            b[place(mine + a0 + 1 + 4 * ROW)] += fyb
+            b[place(mine + a0 + 1 + 5 * ROW)] += fzb
             if ENERGY:
                 acc[0] += ev
                 acc[1] += ec
@@ -259,12 +259,8 @@ def cluster_forces(x, f, q, type_of, first, entries, unshifted, shifts, excluded
                 acc[5] += v3
                 acc[6] += v4
                 acc[7] += v5
-        for k in range(CLUSTER):
-            f[0, s + k] += b[k + 3 * ROW]
-            f[1, s + k] += b[k + 4 * ROW]
-            f[2, s + k] += b[k + 5 * ROW]
-        for k in range(nj):
+        for k in range(full):
             j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
-            f[0, j] += b[k + 3 * ROW + CLUSTER]
-            f[1, j] += b[k + 4 * ROW + CLUSTER]
-            f[2, j] += b[k + 5 * ROW + CLUSTER]
+            f[0, j] += b[k + 3 * ROW]
+            f[1, j] += b[k + 4 * ROW]
+            f[2, j] += b[k + 5 * ROW]
