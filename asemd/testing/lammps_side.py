@@ -7,7 +7,9 @@ def execute(lmp, commands):
         try:
             lmp.command(line)
         except Exception as e:
-            return {"error": " ".join(str(e).split()), "command": line}
+            # the message without the place in LAMMPS's own source and the echo of the line
+            message = " ".join(str(e).split()).removeprefix("ERROR: ").partition(" (src/")[0]
+            return {"error": message, "command": line}
     return {}
 """
 
@@ -18,7 +20,7 @@ categories, order = given["categories"], given["order"]
 computes = [f"compute virial_{c} all pressure NULL {c}" for c in categories]
 columns = " ".join(f"c_virial_{c}[1]" for c in categories)
 answer = execute(lmp, [*given["commands"], *computes, f"thermo_style custom step pe press {columns}",
-                       "thermo_modify norm no lost warn", "run 0 post no"])
+                       "thermo_modify norm no", "run 0 post no"])
 if not answer:
     answer = {"id": np.sort(by_id(lmp, "id")), "energy": {k: lmp.get_thermo(k) for k in given["energies"]},
               "virial": {c: np.array([lmp.extract_compute(f"virial_{c}", 0, 1)[k] for k in range(6)]) for c in categories},

@@ -75,6 +75,9 @@ class Recorder(Session):
         if name in LEFT_OUT and name not in ("shell", "print"):
             self._check(name)
             return
+        if self.runs and ((name == "velocity" and "geom" in args) or (name == "displace_atoms" and "random" in args)
+                          or (name == "set" and "type/fraction" in args)):
+            self._end(f"nothing is compared from {' '.join([name, *args])!r} on: its random numbers follow from the last bits of the positions")
         if name not in CONTROL and name not in LEFT_OUT and not self._acting:
             self.commands.append(" ".join([name, *map(quoted, args)]))
         super().call(name, args)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from asemd import units as unit_styles
 from asemd.engine import Engine, Settings
 from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
@@ -26,6 +27,8 @@ ENERGIES = {"evdwl": "pair vdwl", "ecoul": "pair coul", "ebond": "bond", "eangle
             "elong": "k-space", "etail": "tail"}
 SETTINGS = frozenset("fix fix_modify unfix compute compute_modify uncompute thermo thermo_style thermo_modify velocity min_style min_modify "
                      "run_style timestep reset_timestep".split())
+FAMILIES = dict.fromkeys(("PotEng", "KinEng", "TotEng", "Enthalpy", "Ecouple", "Econserve"), "energy") | dict.fromkeys(
+    ("Press", "Pxx", "Pyy", "Pzz", "Pxy", "Pxz", "Pyz"), "pressure") | {"Temp": "temperature", "Fmax": "force", "Fnorm": "force"}
 CLOCK = frozenset(("CPU", "T/CPU", "S/CPU", "CPULeft", "TimeoutLeft", "Nbuild", "Ndanger", "Part"))
 VIRIAL = ("xx", "yy", "zz", "xy", "xz", "yz")
 
@@ -231,11 +234,15 @@ def _script(path: str, switches: Switches, tolerance: float | None) -> Report:
     scene = session.first
     report = _zero_step(path, scene.system, scene.interactions, scene.settings(), setup, words,
                         TOLERANCE[switches.precision] if tolerance is None else tolerance)
-    report.notes += session.notes
+    report.notes += dict.fromkeys(session.notes)
     if session.failed:
         report.failures.append(f"asemd stopped: {session.failed}")
     if session.runs:
-        _rows(report, session, words)
+        result = report.forces[-1]
+        norm = scene.thermo.is_normalised(scene.units)
+        energies = sum(abs(e.lammps) for e in report.energies[:-1])
+        virials = sum(max(map(abs, f.virial_lammps)) for f in report.forces[:-1])
+        _rows(report, session, words, _floors(scene.system, norm, energies, virials, max(report.scale, result.largest)))
     return report
 
 
@@ -267,6 +274,12 @@ def removal_order(interactions: Interactions) -> list[str]:
 def _zero_step(source: str, system: System, interactions: Interactions, settings: Settings, setup: list[str], switches: list[str],
                tolerance: float) -> Report:
     order = removal_order(interactions)
+    ours = [_evaluate(system, interactions, settings)]
+    less = copy.deepcopy(interactions)
+    for category in order[:-1]:
+        less.uses[category], less.hybrid[category] = [], ""
+        less.tail = less.tail and bool(less.uses["pair"])
+        ours.append(_evaluate(system, less, settings))
     cutoff = interactions.cutoff(system.counts["ntypes"], None) if interactions.uses["pair"] else 0.0
     theirs = ask(ZERO_STEP, commands=setup, order=order, categories=list(CATEGORIES), cutoff=max(cutoff, 1e-6), switches=switches,
                  energies=list(ENERGIES))
@@ -276,12 +289,6 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
     if not np.array_equal(system.id[rows], theirs["id"]):
         raise OracleError(f"asemd has {system.n} atoms, LAMMPS {len(theirs['id'])}, or their ids differ: forces cannot be compared")
     rotation = system.box.to_lammps()[1]
-    ours = [_evaluate(system, interactions, settings)]
-    less = copy.deepcopy(interactions)
-    for category in order:
-        less.uses[category], less.hybrid[category] = [], ""
-        less.tail = less.tail and bool(less.uses["pair"])
-        ours.append(_evaluate(system, less, settings) if category != order[-1] else None)
     result = ours[0]
     report = Report(source, system.n, system.units, lammps_version() or "", tolerance, 0.0,
                     documented=documented(interactions) if interactions.compat != "lammps" else [])
@@ -295,8 +302,8 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
     their_forces = [f @ rotation.T for f in theirs["forces"]]
     report.scale = max(float(np.abs(their_forces[0]).max(initial=0.0)), sum(sizes) / max(system.n, 1) / length, 1e-300)
     for k, category in enumerate(order):
-        now, next_ = ours[k].forces, ours[k + 1].forces if ours[k + 1] is not None else 0.0
-        _forces(report, category, (now - next_)[rows], their_forces[k] - their_forces[k + 1], our_virial.get(category, np.zeros(6)),
+        rest = ours[k + 1].forces if k + 1 < len(ours) else 0.0
+        _forces(report, category, (ours[k].forces - rest)[rows], their_forces[k] - their_forces[k + 1], our_virial.get(category, np.zeros(6)),
                 their_virial[category], sum(sizes))
     whole = result.virial + result.virial_of.get("tail", 0.0)
     _forces(report, "all", result.forces[rows], their_forces[0], whole, sum(their_virial.values(), np.zeros(6)), sum(sizes))
@@ -315,9 +322,9 @@ def _energies(report: Report, result, theirs: dict[str, float], interactions: In
     for key, name in ENERGIES.items():
         a, b = result.energy[key], theirs[key]
         if a or b or key in shown or (key[1:] in ("bond", "angle") and interactions.uses[key[1:]]):
-            report.energies.append(Energy(name, a, b, abs(a - b) / max(abs(a), abs(b), 1e-3 * total, 1e-300)))
+            report.energies.append(Energy(name, a, b, _relative(a, b, max(abs(a), abs(b), 1e-3 * total))))
     a, b = result.potential, sum(theirs.values())
-    report.energies.append(Energy("all", a, b, abs(a - b) / max(abs(b), 1e-3 * total, 1e-300)))
+    report.energies.append(Energy("all", a, b, _relative(a, b, max(abs(b), 1e-3 * total))))
 
 
 def _forces(report: Report, term: str, a, b, virial_a, virial_b, size: float) -> None:
@@ -325,8 +332,8 @@ def _forces(report: Report, term: str, a, b, virial_a, virial_b, size: float) ->
     worst = float(np.abs(d).max(initial=0.0))
     largest = float(np.abs(b).max(initial=0.0))
     scale = max(report.scale, largest)
-    virial_error = float(np.abs(virial_a - virial_b).max()) / max(size, 1e-300)
-    report.forces.append(Force(term, largest, worst, float(np.sqrt((d * d).mean())) if d.size else 0.0, worst / scale,
+    virial_error = _relative(float(np.abs(virial_a - virial_b).max()), 0.0, size)
+    report.forces.append(Force(term, largest, worst, float(np.sqrt((d * d).mean())) if d.size else 0.0, _relative(worst, 0.0, scale),
                                np.asarray(virial_a).tolist(), np.asarray(virial_b).tolist(), virial_error))
 
 
@@ -346,34 +353,38 @@ def documented(interactions: Interactions) -> list[str]:
 
 # ------------------------------------------------------------------------------------------------------------ thermo rows ---
 
-def _rows(report: Report, session, switches: list[str]) -> None:
+def _rows(report: Report, session, switches: list[str], floors: dict[str, float]) -> None:
     theirs = ask(ROWS, commands=session.commands, switches=switches, timeout=3600)
     if "error" in theirs:
         report.failures.append(f"LAMMPS stopped at {theirs['command']!r}: {theirs['error']}")
     by_step = {(run, int(row["Step"])): row for run, row in theirs["rows"] if "Step" in row}
-    without = [r for _, r in session.rows if "Step" not in r]
-    if without:
+    ours = [(run, row) for run, row in session.rows if "Step" in row]
+    if len(ours) < len(session.rows):
         report.notes.append("thermo rows without the column Step are not compared")
-    pairs = [(run, row, by_step[run, int(row["Step"])]) for run, row in session.rows if (run, int(row.get("Step", -1))) in by_step]
-    missing = len(session.rows) - len(without) - len(pairs)
-    if missing:
-        report.notes.append(f"{missing} thermo rows of asemd are on steps that LAMMPS did not print (a minimisation that ends elsewhere)")
+    pairs = [(run, row, by_step[run, int(row["Step"])]) for run, row in ours if (run, int(row["Step"])) in by_step]
+    if len(pairs) < len(ours) and not report.failures:
+        report.notes.append(f"{len(ours) - len(pairs)} thermo rows of asemd are on steps that LAMMPS did not print (a minimisation that ends elsewhere)")
     columns = {c for _, a, b in pairs for c in a if c in b} - CLOCK - {"Step"}
     sizes = {c: max((abs(float(r[c])) for _, a, b in pairs for r in (a, b) if c in r), default=0.0) for c in columns}
-    families = {}
     for column in columns:        # a small number among energies (pressures) is as uncertain as a large one
-        families.setdefault(_family(column), []).append(sizes[column])
+        family = FAMILIES.get(column, "energy" if column.startswith("E_") else column)
+        sizes[column] = max(sizes[column], 1e-3 * floors.get(family, 0.0))
     for run, a, b in pairs:
         for column, value in a.items():
             if column in columns and column in b:
                 x, y = float(value), float(b[column])
-                scale = max(sizes[column], 1e-3 * max(families[_family(column)]), 1e-300)
-                report.rows.append(Cell(run, int(a["Step"]), column, x, y, abs(x - y) / scale if x == x or y == y else 0.0))
+                report.rows.append(Cell(run, int(a["Step"]), column, x, y, _relative(x, y, sizes[column])))
 
 
-def _family(column: str) -> str:
-    if column.startswith("E_") or column in ("PotEng", "KinEng", "TotEng", "Enthalpy", "Ecouple", "Econserve"):
-        return "energy"
-    if column == "Press" or (len(column) == 3 and column[0] == "P"):
-        return "pressure"
-    return column
+def _floors(system: System, norm: bool, energies: float, virials: float, force: float) -> dict[str, float]:
+    """Sizes of energies, pressures, temperatures and forces of a scene: what small values of thermo columns are compared with."""
+    u, n = unit_styles.get(system.units), max(system.n, 1)
+    return {"energy": energies / n if norm else energies, "pressure": virials / system.box.volume * u.nktv2p,
+            "temperature": energies / n / u.boltz, "force": force}
+
+
+def _relative(a: float, b: float, scale: float) -> float:
+    """Difference by size; infinite if one of the two is not a number."""
+    if a != a or b != b:
+        return 0.0 if a != a and b != b else float("inf")
+    return abs(a - b) / max(scale, 1e-300)

