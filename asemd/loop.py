@@ -1,6 +1,8 @@
 """The time loop: fixes, forces and list builds over many steps, compiled where nothing needs Python."""
 from __future__ import annotations
 
+import signal
+import threading
 import time
 
 import numpy as np
@@ -10,6 +12,23 @@ from asemd.errors import InputError, SimulationError
 from asemd.fix import Fix
 from asemd.kernels import timeloop as tl
 from asemd.kernels.state import Thread
+
+
+class Interrupt:
+    """Keeps Ctrl-C back while steps are under way: `asked` tells that it came. A handler of the caller's own is left alone."""
+
+    def __enter__(self) -> Interrupt:
+        self.asked = False
+        mine = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        self._before = signal.signal(signal.SIGINT, self._ask) if mine else None
+        return self
+
+    def _ask(self, number, frame) -> None:
+        self.asked = True
+
+    def __exit__(self, *error) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
 
 
 class Loop:
@@ -118,22 +137,30 @@ class Loop:
             Per-atom shares are wanted at the last step.
         progress : callable, optional
             Called with the present step now and then.
+
+        Raises
+        ------
+        SimulationError
+            Names the step and the atoms.
+        KeyboardInterrupt
+            After Ctrl-C, between two steps: `step` and the system are those of the last complete one, and the loop can go on.
         """
         want = virial or energies or virials
         last = self.step + int(steps)
-        if self._compiled:
-            while self.step < last:
-                began, at = time.perf_counter(), self.step
-                self._segment(min(last, self.step + self._chunk), want and self.step + self._chunk >= last)
-                spent = time.perf_counter() - began
-                self._chunk = max(20, int(0.2 * (self.step - at) / max(spent, 1e-9)))
+        with Interrupt() as interrupt:
+            while self.step < last and not interrupt.asked:
+                if self._compiled:
+                    began, at = time.perf_counter(), self.step
+                    self._segment(min(last, self.step + self._chunk), want and self.step + self._chunk >= last)
+                    spent = time.perf_counter() - began
+                    self._chunk = max(20, int(0.2 * (self.step - at) / max(spent, 1e-9)))
+                else:
+                    self._python_step(want and self.step + 1 == last)
                 if progress is not None:
                     progress(self.step)
-        else:
-            while self.step < last:
-                self._python_step(want and self.step + 1 == last)
-                if progress is not None:
-                    progress(self.step)
+        if interrupt.asked:
+            self.engine.store()
+            raise KeyboardInterrupt
         self._take_timings()
         if not want:
             self.engine.store()
