@@ -131,7 +131,8 @@ def test_docstrings():
 
 def test_import_is_cheap():
     code = "import sys, asemd; print(*(m for m in ('numba', 'ase', 'scipy', 'rich', 'typer', 'matplotlib', 'numpy') if m in sys.modules))"
-    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=env)
     assert out.stdout.split() == []
 
 

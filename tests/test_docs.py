@@ -1,0 +1,114 @@
+"""The documentation is true: its Python runs, its scripts run, its names and links exist, generated pages are those of the code."""
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import asemd
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "workflows").glob("*/README.md"))]
+PAGES = [p for p in PAGES if "_build" not in p.parts]
+ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.S | re.M)
+
+
+def scripts(page: Path) -> dict[str, str]:
+    """LAMMPS scripts of a page by the file name that the line above gives them."""
+    return dict(re.findall(r"`(in\.\w+)`:\n+```lammps\n(.*?)^```", page.read_text(), re.S | re.M))
+
+
+def python(*arguments: str, cwd: Path) -> str:
+    done = subprocess.run([sys.executable, *arguments], env=ENV, cwd=cwd, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-1000:] + done.stderr[-3000:]
+    return done.stdout
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md"])
+def test_python_blocks_run(name, tmp_path):
+    page = ROOT / name
+    for script, text in scripts(page).items():
+        (tmp_path / script).write_text(text)
+    found = blocks(page, "python")
+    assert len(found) >= 2
+    (tmp_path / "page.py").write_text("\n".join(found))
+    python("page.py", cwd=tmp_path)
+
+
+def test_readme_script_runs(tmp_path):
+    (name, text), = scripts(ROOT / "README.md").items()
+    (tmp_path / name).write_text(text)
+    out = python("-m", "asemd.cli", "run", name, cwd=tmp_path)
+    rows = [line.split() for line in out.splitlines() if re.match(r" +\d+ +[\d.]+ ", line)]
+    assert [int(r[0]) for r in rows] == [0, 100, 200, 300, 400, 500]
+    assert (tmp_path / "log.lammps").exists()
+
+
+def test_every_page_of_python_parses():
+    for page in PAGES:
+        for text in blocks(page, "python"):
+            ast.parse(text)
+
+
+def test_names_exist():
+    """Every dotted name of the package that a page mentions can be imported."""
+    import importlib
+    for page in PAGES:
+        for name in set(re.findall(r"`(asemd(?:\.\w+)+)`", page.read_text())):
+            module, _, attribute = name.rpartition(".")
+            try:
+                found = importlib.import_module(name)
+            except ModuleNotFoundError:
+                found = getattr(importlib.import_module(module), attribute, None)
+            assert found is not None, f"{page.name}: {name}"
+
+
+def test_files_exist():
+    """Every link, and every source file that is named, is there."""
+    for page in PAGES:
+        text = page.read_text()
+        for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", text):
+            if not target.startswith("http"):
+                assert (page.parent / target).exists(), f"{page.relative_to(ROOT)}: {target}"
+        for path in re.findall(r"`((?:asemd|tests|docs|workflows)/[\w./-]+\.(?:py|md|txt|csv))`", text):
+            assert (ROOT / path).exists(), f"{page.relative_to(ROOT)}: {path}"
+
+
+def test_generated_pages_are_up_to_date():
+    assert python(str(ROOT / "docs" / "generate.py"), "--check", cwd=ROOT) == ""
+
+
+def test_every_decision_says_what_would_change_it():
+    found = sorted((ROOT / "docs" / "decisions").glob("*.md"))
+    assert found and [p.name[:4] for p in found] == [f"{k:04d}" for k in range(1, len(found) + 1)]
+    for page in found:
+        text = page.read_text()
+        assert all(f"## {title}" in text for title in ("Context", "Choice", "Evidence", "What would change our mind")), page.name
+
+
+def test_commands_of_the_readme_are_those_of_ci():
+    """The two commands of the README exist, and the CI script runs the one of the tests."""
+    readme, ci = (ROOT / "README.md").read_text(), (ROOT / ".ci" / "run").read_text()
+    commands = [line for text in blocks(ROOT / "README.md", "sh") for line in text.splitlines()]
+    assert len(commands) == 2
+    install, test = (c.split(" && ") for c in commands)
+    assert all(c.startswith("pip install .") for c in (install[0], test[0])) and test[1] in ci and test[0] in ci
+    assert (ROOT / install[1].split()[1]).exists() and readme.count("docs/images/") == 1
+
+
+def test_command_line_options_of_the_pages_exist():
+    """Options of `asemd run` in the pages are those of the program."""
+    shown = python("-m", "asemd.cli", "run", "--help", cwd=ROOT)
+    for page in PAGES:
+        for line in re.findall(r"asemd run [^`\n|]*", page.read_text()):
+            for option in re.findall(r"(--[a-z-]+)", line):
+                assert option in shown, f"{page.name}: {option}"

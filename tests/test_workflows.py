@@ -1,0 +1,66 @@
+"""The workflows run and give the numbers their README files promise, on smaller systems."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import asemd
+
+ROOT = Path(__file__).resolve().parents[1]
+WORKFLOWS = sorted(p.parent.name for p in (ROOT / "workflows").glob("*/run.py"))
+
+
+def run(name: str, folder: Path, *options: str) -> dict:
+    env = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
+    pytest.importorskip("matplotlib")
+    command = [sys.executable, str(ROOT / "workflows" / name / "run.py"), "--folder", str(folder), *options]
+    done = subprocess.run(command, env=env, cwd=folder, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    assert (folder / "melt.png").stat().st_size > 5000
+    return json.loads((folder / "result.json").read_text())
+
+
+def test_polymer_melt(tmp_path):
+    result = run("polymer-melt", tmp_path, "--chains", "40", "--beads", "50", "--steps", "5000")
+    assert result["temperature"] == pytest.approx(1.0, abs=0.03)
+    assert result["bond"] == pytest.approx(0.965, abs=0.002) and result["longest_bond"] < 1.3
+    assert result["pressure"] == pytest.approx(4.9, abs=0.3)
+    per_bond = np.array(result["internal_distances"]) / np.arange(1, 50)
+    assert per_bond[0] == pytest.approx(0.965**2, rel=0.01)
+    assert 1.55 < per_bond[9] < 1.95 and 1.2 < per_bond[-1] < 2.5      # 40 chains: their ends scatter by 13 %
+    histogram = np.array(result["bond_histogram"])
+    assert histogram.sum() * 0.4 / 60 == pytest.approx(1.0, abs=0.02)
+
+
+def test_polymer_melt_can_be_read_again(tmp_path):
+    """What the workflow builds is an ordinary data file."""
+    import importlib.util
+    spec = importlib.util.spec_from_file_location("polymer_melt", ROOT / "workflows" / "polymer-melt" / "run.py")
+    melt = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(melt)
+    melt.build(tmp_path / "melt.data", 5, 20)
+    atoms = asemd.read(tmp_path / "melt.data")
+    assert len(atoms) == 100 and len(atoms.topology.bonds) == 95 and atoms.pbc.all()
+    lengths = [atoms.get_distance(i, j, mic=True) for i, j in atoms.topology.bonds]
+    assert np.allclose(lengths, 0.97, atol=1e-9)
+
+
+def test_lj_melt(tmp_path):
+    result = run("lj-melt", tmp_path, "--cells", "6", "--steps", "1000")
+    assert result["temperature"] == pytest.approx(0.70, abs=0.04) and result["drift"] < 6e-3
+    assert result["peak"] == pytest.approx(1.08, abs=0.05) and result["height"] == pytest.approx(3.0, abs=0.4)
+
+
+@pytest.mark.parametrize("name", WORKFLOWS)
+def test_shape_of_a_workflow(name):
+    folder = ROOT / "workflows" / name
+    assert (folder / "README.md").exists()
+    script = (folder / "run.py").read_text()
+    assert len(script.splitlines()) < 100
+    assert "import _" not in script and "._" not in script       # public names only
