@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
+from numba import config
 
 from asemd import units as unit_styles
 from asemd.errors import InputError, SimulationError
@@ -106,7 +107,7 @@ class Engine:
 
     def __init__(self, system, interactions, settings: Settings | None = None):
         self.system, self.interactions, self.settings = system, interactions, settings or Settings()
-        self.threads = max(1, self.settings.threads)
+        self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
         self._pool = None
@@ -267,6 +268,7 @@ class Engine:
         for name, mask in self.groups.items():
             if name != "all":
                 self.mask_row[mask] |= np.array(self.bits[name]).astype(np.int32)
+        self.varies = np.array([len(a) > 0 and bool((a != a[0]).any()) for a in (self.type_row, self.mass_row, self.q_row, self.mask_row)])
         self.slot_of = np.zeros(n, np.int32)
 
     def _allocate(self, capacity: int) -> None:
@@ -331,7 +333,7 @@ class Engine:
                 self._allocate(self.list.capacity)
                 s = self.state
             self.ns = self.list.sort(k, s, self.ns, bins)
-        k.gather(self.ns, s.row, self.slot_of, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row, s.type, s.mass,
+        k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row, s.type, s.mass,
                  s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":
             hide = None if self.expanded else self.partners

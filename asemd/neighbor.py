@@ -22,10 +22,10 @@ def kernels(ortho: bool):
     b.constant("CLUSTER", CLUSTER)
     b.constant("ORTHO", ortho)
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
-    for f in (cluster.wrap, cluster.sort, cluster.build, cluster.exclude, cluster.expand, pair_list._cell, pair_list.ghosts, pair_list.pairs,
+    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster.exclude, cluster.expand, pair_list._cell, pair_list.ghosts, pair_list.pairs,
               rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.add_buffers, rebuild.clear,
               rebuild.mark_special, rebuild.drop_excluded, rebuild.special_pairs):
-        b.function(f, fast=f is cluster.build)
+        b.function(f, fast=f in (cluster.near_columns, cluster.build))
     return b.build()
 
 

@@ -111,6 +111,31 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
     return p
 
 
+def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2):
+    """Columns within `reach` of the stretch low..high (fractional) along one direction: number, image and squared gap of each; returns how many."""
+    m = 0
+    step = 1.0 / n
+    for d in range(-r, r + 1):
+        i = c + d
+        s = 0
+        if i < 0:
+            i += n
+            s = -1
+        elif i >= n:
+            i -= n
+            s = 1
+        if (s != 0 and not periodic) or i < 0 or i >= n:
+            continue
+        left = (c + d) * step
+        gap = max(left - high, max(low - (left + step), 0.0)) * width
+        if gap < reach:
+            index[m] = i
+            image[m] = s
+            gap2[m] = gap * gap
+            m += 1
+    return m
+
+
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
           first, entries, own, reach_first, unshifted, work, codes, heaps, width, empty):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
@@ -128,6 +153,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     ra = int(reach / wa) + 1
     rb = int(reach / wb) + 1
     capacity = codes.shape[0]
+    index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
+    index_b, image_b, gap_b = np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1)
     for ci in range(c0, c1):
         first[ci] = n
         column = column_of[ci]
@@ -152,51 +179,28 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                 hi2 = max(hi2, s2)
         nt = 0
         all_in = True
-        for da in range(-ra, ra + 1):
-            ia = ca + da
-            sa = 0
-            if ia < 0:
-                ia += nx
-                sa = -1
-            elif ia >= nx:
-                ia -= nx
-                sa = 1
-            if (sa != 0 and not periodic[0]) or ia < 0 or ia >= nx:
-                continue
-            left = (ia + sa * nx) / nx
-            d0 = max(left - hi0, max(lo0 - (left + 1.0 / nx), 0.0)) * widths[0]
-            if d0 > reach:
-                continue
-            for db in range(-rb, rb + 1):
-                ib = cb + db
-                sb = 0
-                if ib < 0:
-                    ib += ny
-                    sb = -1
-                elif ib >= ny:
-                    ib -= ny
-                    sb = 1
-                if (sb != 0 and not periodic[1]) or ib < 0 or ib >= ny:
-                    continue
-                c2 = ia * ny + ib
+        na = near_columns(ca, nx, ra, lo0, hi0, widths[0], reach, periodic[0], index_a, image_a, gap_a)
+        nb = near_columns(cb, ny, rb, lo1, hi1, widths[1], reach, periodic[1], index_b, image_b, gap_b)
+        for ka in range(na):
+            sa = image_a[ka]
+            ga = gap_a[ka]
+            for kb in range(nb):
+                c2 = index_a[ka] * ny + index_b[kb]
                 if column_start[c2 + 1] <= ci * CLUSTER:
                     continue
-                left = (ib + sb * ny) / ny
-                d1 = max(left - hi1, max(lo1 - (left + 1.0 / ny), 0.0)) * widths[1]
+                sb = image_b[kb]
+                rz = reach / widths[2]
                 if ORTHO:
-                    rz = r2 - d0 * d0 - d1 * d1
-                    if rz <= 0.0:
+                    rest = r2 - ga - gap_b[kb]
+                    if rest <= 0.0:
                         continue
-                    rz = math.sqrt(rz) / widths[2]
-                else:
-                    if d1 > reach:
-                        continue
-                    rz = reach / widths[2]
+                    rz = math.sqrt(rest) / widths[2]
                 z0 = int(math.floor((lo2 - rz) * nz))
                 z1 = int(math.floor((hi2 + rz) * nz))
-                for sc in range(-1, 2):
-                    if sc != 0 and not periodic[2]:
-                        continue
+                if not periodic[2]:
+                    z0 = max(z0, 0)
+                    z1 = min(z1, nz - 1)
+                for sc in range(0 if z0 >= 0 else -1, 1 if z1 < nz else 2):
                     a0 = max(z0, sc * nz)
                     a1 = min(z1, sc * nz + nz - 1)
                     if a1 < a0:
@@ -243,12 +247,18 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                     td[t] = min(td[t], min(a * a + b * b + c * c, e * e + f * f + g * g))
         if n + nt + CLUSTER + width > entries.shape[0]:
             return -1
-        # three heaps in one pass, each candidate written to all and kept by one counter at most
+        # those near anyone, then three heaps; every candidate is written and kept by moving a counter: no branches to mispredict
         da, db = work[3], work[4]
         start = n
+        kept = 0
+        for t in range(nt):
+            codes[np.uint64(kept)] = codes[t]
+            da[np.uint64(kept)] = da[t]
+            db[np.uint64(kept)] = db[t]
+            kept += min(da[t], db[t]) < r2
         first_heap, both_heap, second_heap = heaps[0], heaps[1], heaps[2]
         n0, n1, n2 = 0, 0, 0
-        for t in range(nt):
+        for t in range(kept):
             code = codes[t]
             a = da[t]
             b = db[t]
@@ -306,17 +316,17 @@ def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, 
                 break
             for q in range(partner_start[r], partner_start[r + 1]):
                 j = slot_of[partners[q]]
-                if n + 28 > excluded.shape[0]:
+                if j < s:            # listed in the partner's row
+                    continue
+                if n + 2 > excluded.shape[0]:
                     return -1
-                if j // CLUSTER == ci and j > s + a:
+                if j < s + CLUSTER and j > s + a:
                     excluded[n] = np.int32((a << 16) | (j - s + own[ci]))
                     n += 1
                 w = where[j]
                 if w < f1 - f0 and (w < own[ci] or w >= own[ci] + CLUSTER) and (entries[f0 + w] & SLOT_BITS) == j:
-                    for k in range(0 if twice else w, w + 1):     # at most one image is within reach of atom a: hide all
-                        if (k < own[ci] or k >= own[ci] + CLUSTER) and (entries[f0 + k] & SLOT_BITS) == j:
-                            excluded[n] = np.int32((a << 16) | k)
-                            n += 1
+                    excluded[n] = np.int32((a << 16) | w)
+                    n += 1
     excluded_first[c1] = n
     return n
 

@@ -2,24 +2,42 @@
 from __future__ import annotations
 
 
-def gather(ns, row, slot_of, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
-    """Per-atom constants into slot order, the inverse of `row`, and the positions from which displacements count."""
-    for i in range(min(ns + 8, row.shape[0])):      # the empty cluster behind, too
+def gather(ns, row, slot_of, varies, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
+    """Per-atom constants into slot order, the inverse of `row`, and the positions from which displacements count.
+
+    `varies (4,)`: whether types, masses, charges, masks differ between atoms; what does not is not looked up atom by atom.
+    """
+    top = min(ns + 8, row.shape[0])      # the empty cluster behind, too
+    for i in range(top):
         r = row[i]
         if r >= 0:
             slot_of[r] = i
-            type_s[i] = type_row[r]
-            mass_s[i] = mass_row[r]
-            inverse_s[i] = inverse_row[r]
-            q_s[i] = q_row[r]
-            mask_s[i] = mask_row[r]
+            type_s[i] = type_row[0]
+            mass_s[i] = mass_row[0]
+            inverse_s[i] = inverse_row[0]
+            q_s[i] = q_row[0]
+            mask_s[i] = mask_row[0]
         else:
             type_s[i] = 0
             mass_s[i] = 1.0
             inverse_s[i] = 0.0
             q_s[i] = 0.0
             mask_s[i] = 0
-        for d in range(3):
+    if varies[0]:
+        for i in range(top):
+            type_s[i] = type_row[row[i]] if row[i] >= 0 else 0
+    if varies[1]:
+        for i in range(top):
+            mass_s[i] = mass_row[row[i]] if row[i] >= 0 else 1.0
+            inverse_s[i] = inverse_row[row[i]] if row[i] >= 0 else 0.0
+    if varies[2]:
+        for i in range(top):
+            q_s[i] = q_row[row[i]] if row[i] >= 0 else 0.0
+    if varies[3]:
+        for i in range(top):
+            mask_s[i] = mask_row[row[i]] if row[i] >= 0 else 0
+    for d in range(3):
+        for i in range(top):
             held[d, i] = x[d, i]
 
 
