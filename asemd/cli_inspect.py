@@ -10,13 +10,15 @@ from asemd.errors import InputError
 from asemd.lammps.switches import Switches, one_of
 
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Tolerance = Annotated[float | None, typer.Option(help="Largest relative difference that counts as agreement [1e-9].", min=0.0)]
 Script = Annotated[str | None, typer.Argument(help="LAMMPS input script.")]
 Compat = Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")]
 Precision = Annotated[str, typer.Option(help="double, or mixed: pair forces in single precision.")]
 Threads = Annotated[int, typer.Option(help="Number of threads.", min=1)]
 
 
-def _setup(context: typer.Context, script: str | None, command: str, compat: str | None, precision: str, threads: int) -> tuple[str, Switches]:
+def _setup(context: typer.Context, script: str | None, command: str, compat: str | None, precision: str,
+           threads: int) -> tuple[str, Switches]:
     """The script and LAMMPS's switches with asemd's options added."""
     switches: Switches = context.obj or Switches()
     if compat is not None:
@@ -38,12 +40,12 @@ def _print(parts, data: dict, as_json: bool) -> None:
 
 def validate(context: typer.Context, script: Script = None,
              steps: Annotated[int, typer.Option(help="Limit on the steps of every run.", min=0)] = 20,
-             tolerance: Annotated[float | None, typer.Option(help="Largest relative difference that counts as agreement [1e-9].", min=0.0)] = None,
-             compat: Compat = None, precision: Precision = "double", threads: Threads = 1, as_json: Json = False) -> int:
+             tolerance: Tolerance = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
+             as_json: Json = False) -> int:
     """Compare a script's energies, forces, virials and thermo rows with real LAMMPS; exit status 1 if they disagree."""
     from asemd.testing.validate import validate as compare
     path, switches = _setup(context, script, "validate", compat, precision, threads)
-    report = compare(path, steps=steps, tolerance=tolerance, compat=switches.compat, precision=precision, threads=threads, switches=switches)
+    report = compare(path, steps=steps, tolerance=tolerance, precision=precision, threads=threads, switches=switches)
     _print(report.parts(), report.to_dict(), as_json)
     return 0 if report.ok else 1
 

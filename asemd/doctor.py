@@ -32,7 +32,7 @@ def examine() -> list[Fact]:
     """Look at versions, processor, kernel cache and LAMMPS."""
     facts = [Fact("asemd", __version__), _python()]
     facts += [_package(name, False) for name in REQUIRED] + [_package(name, True) for name in OPTIONAL]
-    return [*facts, *_processor(), _compiler(), *_cache(), _lammps()]
+    return [*facts, *_processor(), _compiler(), _cache(), _lammps()]
 
 
 def parts(facts: list[Fact]) -> list[Table | str]:
@@ -43,8 +43,9 @@ def parts(facts: list[Fact]) -> list[Table | str]:
 
 
 def _python() -> Fact:
-    return Fact("Python", f"{platform.python_version()} ({platform.python_implementation()}, {sys.executable})", sys.version_info >= (3, 10),
-                "" if sys.version_info >= (3, 10) else "asemd needs Python 3.10 or later")
+    new = sys.version_info >= (3, 10)
+    return Fact("Python", f"{platform.python_version()} ({platform.python_implementation()}, {sys.executable})", new,
+                "" if new else "asemd needs Python 3.10 or later")
 
 
 def _package(name: str, optional: bool) -> Fact:
@@ -62,28 +63,28 @@ def _processor() -> list[Fact]:
         cores = len(os.sched_getaffinity(0))
     except AttributeError:
         cores = os.cpu_count() or 1
+    lanes = f"{width} bits: {width // 64} numbers in double precision at once, {width // 32} in single"
     return [Fact("processor", f"{binding.get_host_cpu_name()}, {platform.machine()}, {platform.system()}"),
             Fact("cores", f"{cores} usable (--threads)"),
-            Fact("vectors", f"{width} bits: {width // 64} numbers in double precision at once, {width // 32} in single" if width else "none")]
+            Fact("vectors", lanes if width else "none")]
 
 
 def _compiler() -> Fact:
     off = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
-    return Fact("compiler", "switched off by NUMBA_DISABLE_JIT" if off else "numba", not off, "unset NUMBA_DISABLE_JIT: runs are about 1000 times "
-                "slower without it" if off else "")
+    return Fact("compiler", "switched off by NUMBA_DISABLE_JIT" if off else "numba", not off,
+                "unset NUMBA_DISABLE_JIT: without the compiler runs are about 1000 times slower" if off else "")
 
 
-def _cache() -> list[Fact]:
+def _cache() -> Fact:
     from asemd.kernels.generate import cache_dir
     folder = cache_dir()
     files = [f for f in Path(folder).rglob("*") if f.is_file()]
     size = sum(f.stat().st_size for f in files) / 2**20
     modules = sum(f.suffix == ".py" for f in files)
-    wanted = os.environ.get("ASEMD_CACHE_DIR")
-    kept = Path(folder).parent.name.startswith("asemd-") is False
-    return [Fact("kernel cache", f"{folder}: {modules} kernel modules, {size:.1f} MB", kept,
-                 "" if kept else f"{'ASEMD_CACHE_DIR' if wanted else 'the cache folder of the user'} is not writable: kernels are compiled in "
-                 "every process; set ASEMD_CACHE_DIR to a folder that is")]
+    wanted = "ASEMD_CACHE_DIR" if os.environ.get("ASEMD_CACHE_DIR") else "the cache folder of the user"
+    kept = not Path(folder).parent.name.startswith("asemd-")       # the name of the temporary folder
+    return Fact("kernel cache", f"{folder}: {modules} kernel modules, {size:.1f} MB", kept, "" if kept else
+                f"{wanted} is not writable: kernels are compiled in every process; set ASEMD_CACHE_DIR to a folder that is")
 
 
 def _lammps() -> Fact:

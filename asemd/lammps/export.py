@@ -13,7 +13,8 @@ from asemd.lammps.data_write import write_data
 from asemd.system import System
 
 
-def commands(system: System, interactions: Interactions, settings: Settings | None = None, data: str | os.PathLike = "data.lammps") -> list[str]:
+def commands(system: System, interactions: Interactions, settings: Settings | None = None,
+             data: str | os.PathLike = "data.lammps") -> list[str]:
     """Commands that make LAMMPS see the same atoms under the same forces; writes the data file they read.
 
     Parameters

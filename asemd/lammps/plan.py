@@ -46,7 +46,9 @@ class Plan:
     def parts(self) -> list[Table | str]:
         """Tables, in order."""
         out: list[Table | str] = [f"Plan of {self.source}"]
-        out += [Table(title, ("", "how", "why"), [(i.name, i.how, i.why) for i in items]) for title, items in self.sections.items() if items]
+        for title, items in self.sections.items():
+            if items:
+                out.append(Table(title, ("", "how", "why"), [(i.name, i.how, i.why) for i in items]))
         return [*out, Table("Left out", ("", "why"), [(i.name, i.why) for i in self.left_out])]
 
     def __str__(self) -> str:
@@ -128,7 +130,7 @@ def _system(e: Engine) -> list[Item]:
             Item("box", f"{shape}: {faces}", "shifts of periodic images are those of axis-aligned vectors" if e.ortho else
                  "image shifts are sums of the three vectors"),
             Item("threads", str(e.threads), ""),
-            Item("precision", e.settings.precision, "sums of energies and forces are always double" if e.settings.precision == "mixed" else "")]
+            Item("precision", e.settings.precision, "sums are always in double precision" if e.settings.precision == "mixed" else "")]
 
 
 def _list(e: Engine) -> list[Item]:
@@ -143,14 +145,15 @@ def _list(e: Engine) -> list[Item]:
     around = 0.5 * density * (reach if s.dimension == 3 else math.pi * e.reach**2 * s.box.lengths[2])
     check = (f"when an atom has moved half the skin, looked at every {settings.every} steps from step {settings.delay} of the list on"
              if settings.check else f"every {max(settings.every, settings.delay)} steps, whether atoms have moved or not")
-    out = [Item("list", how, e.why), Item("reach", f"{e.reach:g} = cutoff {e.cutoff:g} + skin {settings.skin:g}", "the longest cutoff in use"),
+    out = [Item("list", how, e.why),
+           Item("reach", f"{e.reach:g} = cutoff {e.cutoff:g} + skin {settings.skin:g}", "the longest cutoff in use"),
            Item("pairs", f"about {around * s.n:.3g}, {around:.3g} per atom", "estimated from the density"),
            Item("rebuild", check, "neigh_modify")]
     if settings.exclude:
         out.append(Item("exclusions", ", ".join(str(x[0]) for x in settings.exclude), "neigh_modify exclude"))
     if e.expanded:
-        why = "a table style needs its pairs one by one" if any(p.arrays for t in e.pair_terms for p in t.style.parts) else "exclusions by group"
-        out.append(Item("expansion", "after each build", why))
+        table = any(p.arrays for t in e.pair_terms for p in t.style.parts)
+        out.append(Item("expansion", "after each build", "a table style needs its pairs one by one" if table else "exclusions by group"))
     return out
 
 
@@ -163,16 +166,18 @@ def _term(e: Engine, t) -> Item:
     charged = "with charges" if style.charged and getattr(t, "pairs", "") != "one_four" else "without charges"
     if isinstance(t, PairTerm):
         varying = sum(not u for u in t.uniform)
-        rows = "coefficients in registers: one type, or the same for all" if not varying else f"{varying} of {len(t.uniform)} coefficients by type pair"
-        hidden = ", excluded partners moved away" if e.partners is not None else ", no exclusions"
-        return Item(f"pair {style.name}", f"cluster kernel, {'single' if t.single else 'double'} precision, {charged}, {rows}{hidden}", "pair_style")
+        rows = f"{varying} of {len(t.uniform)} coefficients by type pair" if varying else "coefficients the same for all pairs of types"
+        hidden = "excluded partners moved away" if e.partners is not None else "no exclusions"
+        precision = "single" if t.single else "double"
+        return Item(f"pair {style.name}", f"cluster kernel, {precision} precision, {charged}, {rows}, {hidden}", "pair_style")
     assert isinstance(t, PairListTerm)
     if t.pairs == "special":
-        return Item(f"pair {style.name} (special)", f"{len(e.special_kept)} weighted pairs, one by one", "special_bonds factors between 0 and 1, "
-                    "which the cluster kernel leaves out")
+        return Item(f"pair {style.name} (special)", f"{len(e.special_kept)} weighted pairs, one by one",
+                    "special_bonds factors between 0 and 1, which the cluster kernel leaves out")
     if t.pairs == "one_four":
         return Item(f"pair {style.name} (1-4)", f"{len(t.one_four[0])} pairs, one by one", "dihedral style with weights of 1-4 pairs")
-    return Item(f"pair {style.name}", f"pair by pair, double precision, {charged}", e.why if e.mode == "plain" else "pairs of the expanded list")
+    why = e.why if e.mode == "plain" else "pairs of the expanded list"
+    return Item(f"pair {style.name}", f"pair by pair, double precision, {charged}", why)
 
 
 def _specials(e: Engine) -> list[Item]:
@@ -198,7 +203,8 @@ def _absent(e: Engine) -> list[Item]:
     for category, plural in PLURAL.items():
         if not any(isinstance(t, BondedTerm) and t.category == category for t in e.terms):
             n, style = len(getattr(s.topology, plural)), inter.style_name(category)
-            out.append(Item(f"{category} forces", "", f"there are no {plural}" if not n else f"{category}_style {style}: {n} {plural} without forces"))
+            why = f"{category}_style {style}: {n} {plural} without forces" if n else f"there are no {plural}"
+            out.append(Item(f"{category} forces", "", why))
     if e.mode != "none" and e.partners is None:
         out.append(Item("exclusion of bonded pairs", "", "no bonds" if s.topology.is_empty else "all special_bonds factors are 1"))
     if e.mode != "none" and not inter.tail:
@@ -207,7 +213,8 @@ def _absent(e: Engine) -> list[Item]:
         out.append(Item("tilted image shifts", "", "the box is axis-aligned"))
     for axis, periodic in zip("xyz", e.periodic):
         if not periodic:
-            out.append(Item(f"images along {axis}", "", "two dimensions" if s.dimension == 2 and axis == "z" else f"{axis} is not periodic"))
+            flat = s.dimension == 2 and axis == "z"
+            out.append(Item(f"images along {axis}", "", "two dimensions" if flat else f"{axis} is not periodic"))
     if e.threads == 1:
         out.append(Item("force buffers of threads", "", "one thread"))
     unused = [m for m in OPTIONAL if m not in sys.modules]
@@ -244,7 +251,8 @@ def _output(scene, references) -> tuple[list[Item], list[Item]]:
         if not id.startswith("thermo_"):
             needs = ", ".join(sorted(compute.needs)) or "nothing but the atoms"
             shown = any(w.partition("[")[0] == f"c_{id}" for w in words)
-            out.append(Item(f"compute {id}", compute.style, f"needs {needs}; {'shown in thermo rows' if shown else 'evaluated when asked for'}"))
+            when_used = "shown in thermo rows" if shown else "evaluated when asked for"
+            out.append(Item(f"compute {id}", compute.style, f"needs {needs}; {when_used}"))
     out.append(Item("energy and virial", f"{when}; on steps with a dump", "the kernel with energies runs on these steps only"))
     per_atom = {"energies", "virials"}
     asking = [f"dump {id}" for id, d in scene.dumps.items() if d.needs & per_atom] + [

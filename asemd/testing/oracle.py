@@ -84,7 +84,9 @@ def by_id(lmp, name):
 def program() -> str:
     """The text that stands before every script."""
     functions = "\n".join(inspect.getsource(f) for f in (pack, unpack, write, read))
-    return f"from __future__ import annotations\n{HEAD}\nARRAY = {ARRAY!r}\n{functions}\nfolder = Path(sys.argv[1])\ngiven = read(folder, 'given')\n"
+    lines = ["from __future__ import annotations", HEAD, f"ARRAY = {ARRAY!r}", functions, "folder = Path(sys.argv[1])",
+             "given = read(folder, 'given')", ""]
+    return "\n".join(lines)
 
 
 def library_folders() -> list[str]:

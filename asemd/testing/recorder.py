@@ -13,13 +13,13 @@ from asemd.lammps.switches import Switches
 
 # flow of control is resolved here; output and the shell are left out on both sides
 CONTROL = frozenset("if include jump label quit".split())
-LEFT_OUT = frozenset("balance box dump dump_modify echo info log package partition plugin print processors python restart shell suffix timer "
-                     "undump write_data write_dump write_restart".split())
+LEFT_OUT = frozenset("""balance box dump dump_modify echo info log package partition plugin print processors python restart shell suffix
+                     timer undump write_data write_dump write_restart""".split())
 # noise that LAMMPS draws in the order its atoms are stored in
-RANDOM_FIXES = frozenset("atom/swap bd/asphere bd/sphere bond/create bond/react bond/swap brownian charge/regulation deposit dpd/energy dt/reset "
-                         "evaporate ffl filter/corotate gcmc gjf gld gle grem hyper/local langevin langevin/drude langevin/eff langevin/spin "
-                         "lb/fluid neb/spin phonon pimd/langevin pour qbmsst qtb rigid/meso srd temp/csld temp/csvr tfmc thermal/conductivity "
-                         "ttm ttm/grid ttm/mod viscosity wall/srd widom".split())
+RANDOM_FIXES = frozenset("""atom/swap bd/asphere bd/sphere bond/create bond/react bond/swap brownian charge/regulation deposit dpd/energy
+                         dt/reset evaporate ffl filter/corotate gcmc gjf gld gle grem hyper/local langevin langevin/drude langevin/eff
+                         langevin/spin lb/fluid neb/spin phonon pimd/langevin pour qbmsst qtb rigid/meso srd temp/csld temp/csvr tfmc
+                         thermal/conductivity ttm ttm/grid ttm/mod viscosity wall/srd widom""".split())
 
 
 class Recorder(Session):
@@ -77,7 +77,7 @@ class Recorder(Session):
             return
         if self.runs and ((name == "velocity" and "geom" in args) or (name == "displace_atoms" and "random" in args)
                           or (name == "set" and "type/fraction" in args)):
-            self._end(f"nothing is compared from {' '.join([name, *args])!r} on: its random numbers follow from the last bits of the positions")
+            self._end(f"nothing is compared from {' '.join([name, *args])!r} on: its random numbers follow from the last bits of positions")
         if name not in CONTROL and name not in LEFT_OUT and not self._acting:
             self.commands.append(" ".join([name, *map(quoted, args)]))
         super().call(name, args)
@@ -116,8 +116,8 @@ class Recorder(Session):
             self._acting = False
         self.scene.sync_groups()
         if noisy and name == "run":
-            self._end(f"of the runs only the first step is compared: fix {', '.join(noisy)} draws random numbers in the order in which LAMMPS "
-                      "stores its atoms")
+            self._end(f"of the runs only the first step is compared: fix {', '.join(noisy)} draws random numbers in the order in which "
+                      "LAMMPS stores its atoms")
 
     def _rebuild_in_time(self) -> None:
         """Let both programs rebuild their lists when an atom has moved half the skin.
@@ -126,8 +126,9 @@ class Recorder(Session):
         """
         n = self.scene.neighbor
         if (n.every, n.delay, n.check) != (1, 0, True):
-            self.notes.append(f"neigh_modify every {n.every} delay {n.delay} check {'yes' if n.check else 'no'} is replaced by every 1 delay 0 "
-                              "check yes on both sides: with lists that are too old each program misses other pairs")
+            check = "yes" if n.check else "no"
+            self.notes.append(f"neigh_modify every {n.every} delay {n.delay} check {check} is replaced by every 1 delay 0 check yes on "
+                              "both sides: with lists that are too old each program misses other pairs")
             n.every, n.delay, n.check = 1, 0, True
             self.commands.append("neigh_modify every 1 delay 0 check yes")
 

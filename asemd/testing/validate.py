@@ -25,8 +25,8 @@ from asemd.text_table import Table
 TOLERANCE = {"double": 1e-9, "mixed": 1e-4}
 ENERGIES = {"evdwl": "pair vdwl", "ecoul": "pair coul", "ebond": "bond", "eangle": "angle", "edihed": "dihedral", "eimp": "improper",
             "elong": "k-space", "etail": "tail"}
-SETTINGS = frozenset("fix fix_modify unfix compute compute_modify uncompute thermo thermo_style thermo_modify velocity min_style min_modify "
-                     "run_style timestep reset_timestep".split())
+SETTINGS = frozenset("""fix fix_modify unfix compute compute_modify uncompute thermo thermo_style thermo_modify velocity min_style
+                     min_modify run_style timestep reset_timestep""".split())
 FAMILIES = dict.fromkeys(("PotEng", "KinEng", "TotEng", "Enthalpy", "Ecouple", "Econserve"), "energy") | dict.fromkeys(
     ("Press", "Pxx", "Pyy", "Pzz", "Pxy", "Pxz", "Pyz"), "pressure") | {"Temp": "temperature", "Fmax": "force", "Fnorm": "force"}
 CLOCK = frozenset(("CPU", "T/CPU", "S/CPU", "CPULeft", "TimeoutLeft", "Nbuild", "Ndanger", "Part"))
@@ -114,8 +114,8 @@ class Report:
     @property
     def worst(self) -> float:
         """The largest relative difference."""
-        values = [e.error for e in self.energies] + [x for f in self.forces for x in (f.error, f.virial_error)] + [r.error for r in self.rows]
-        return max(values, default=0.0)
+        values = [f.error for f in self.forces] + [f.virial_error for f in self.forces]
+        return max([*values, *(e.error for e in self.energies), *(r.error for r in self.rows)], default=0.0)
 
     @property
     def ok(self) -> bool:
@@ -125,18 +125,20 @@ class Report:
     def parts(self) -> list[Table | str]:
         """Tables and paragraphs, in order."""
         out: list[Table | str] = [f"{self.source}: {self.atoms} atoms, units {self.units}, asemd and LAMMPS {self.version}"]
-        out.append(Table("Energies at the first step", ("term", "asemd", "LAMMPS", "difference", "relative"),
-                         [(e.term, f"{e.asemd:.15g}", f"{e.lammps:.15g}", f"{e.asemd - e.lammps:.2g}", f"{e.error:.1e}") for e in self.energies]))
+        table = Table("Energies at the first step", ("term", "asemd", "LAMMPS", "difference", "relative"))
+        for e in self.energies:
+            table.rows.append((e.term, f"{e.asemd:.15g}", f"{e.lammps:.15g}", f"{e.asemd - e.lammps:.2g}", f"{e.error:.1e}"))
+        out.append(table)
         out.append(Table("Forces and virials at the first step",
                          ("term", "largest force", "max difference", "rms difference", "relative", "virial difference", "relative"),
                          [(f.term, f"{f.largest:.6g}", f"{f.worst:.2g}", f"{f.rms:.2g}", f"{f.error:.1e}",
                            f"{max(abs(a - b) for a, b in zip(f.virial_asemd, f.virial_lammps)):.2g}", f"{f.virial_error:.1e}")
                           for f in self.forces]))
         if self.forces:
-            whole = self.forces[-1]
+            ours, theirs = self.forces[-1].virial_asemd, self.forces[-1].virial_lammps
             out.append(Table("Virial of all terms", ("", *VIRIAL), [
-                (name, *(f"{v:.10g}" for v in values)) for name, values in (("asemd", whole.virial_asemd), ("LAMMPS", whole.virial_lammps))] + [
-                ("difference", *(f"{a - b:.2g}" for a, b in zip(whole.virial_asemd, whole.virial_lammps)))]))
+                ("asemd", *(f"{v:.10g}" for v in ours)), ("LAMMPS", *(f"{v:.10g}" for v in theirs)),
+                ("difference", *(f"{a - b:.2g}" for a, b in zip(ours, theirs)))]))
         out += self._row_tables()
         out += [f"Note: {n}" for n in self.notes] + [f"Documented difference: {d}" for d in self.documented] + self.failures
         return [*out, self.verdict]
@@ -264,11 +266,13 @@ def _atoms(atoms, tolerance: float | None, compat: str) -> Report:
 # --------------------------------------------------------------------------------------------- energies, forces, virials ---
 
 def removal_order(interactions: Interactions) -> list[str]:
-    """Categories in the order in which they are taken away to see the forces of each; the pair style goes last if a dihedral style needs it."""
+    """Categories in the order in which they are taken away to see the forces of each.
+
+    The pair style goes last if a dihedral style needs it.
+    """
     weighted = any(use.style.weight_14 for use in interactions.uses["dihedral"])
-    order = [c for c in (("bond", "angle", "improper", "dihedral", "pair") if weighted else ("pair", "bond", "angle", "dihedral", "improper"))
-             if interactions.uses[c]]
-    return order
+    order = "bond angle improper dihedral pair" if weighted else "pair bond angle dihedral improper"
+    return [c for c in order.split() if interactions.uses[c]]
 
 
 def _zero_step(source: str, system: System, interactions: Interactions, settings: Settings, setup: list[str], switches: list[str],
@@ -303,8 +307,8 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
     report.scale = max(float(np.abs(their_forces[0]).max(initial=0.0)), sum(sizes) / max(system.n, 1) / length, 1e-300)
     for k, category in enumerate(order):
         rest = ours[k + 1].forces if k + 1 < len(ours) else 0.0
-        _forces(report, category, (ours[k].forces - rest)[rows], their_forces[k] - their_forces[k + 1], our_virial.get(category, np.zeros(6)),
-                their_virial[category], sum(sizes))
+        _forces(report, category, (ours[k].forces - rest)[rows], their_forces[k] - their_forces[k + 1],
+                our_virial.get(category, np.zeros(6)), their_virial[category], sum(sizes))
     whole = result.virial + result.virial_of.get("tail", 0.0)
     _forces(report, "all", result.forces[rows], their_forces[0], whole, sum(their_virial.values(), np.zeros(6)), sum(sizes))
     return report
@@ -346,8 +350,8 @@ def _back(rotation: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 def documented(interactions: Interactions) -> list[str]:
     """Styles in use whose forces differ from LAMMPS's on purpose."""
-    return [f"{category} style {use.style.name}: asemd's force is minus the gradient of the energy, LAMMPS's is not everywhere (its page says "
-            "where); --compat lammps takes LAMMPS's"
+    return [f"{category} style {use.style.name}: asemd's force is minus the gradient of the energy, LAMMPS's is not everywhere "
+            "(the style's page says where); --compat lammps takes LAMMPS's"
             for category, uses in interactions.uses.items() for use in uses if getattr(use.style, "twin", None) is not None]
 
 
@@ -363,7 +367,8 @@ def _rows(report: Report, session, switches: list[str], floors: dict[str, float]
         report.notes.append("thermo rows without the column Step are not compared")
     pairs = [(run, row, by_step[run, int(row["Step"])]) for run, row in ours if (run, int(row["Step"])) in by_step]
     if len(pairs) < len(ours) and not report.failures:
-        report.notes.append(f"{len(ours) - len(pairs)} thermo rows of asemd are on steps that LAMMPS did not print (a minimisation that ends elsewhere)")
+        report.notes.append(f"{len(ours) - len(pairs)} thermo rows of asemd are on steps that LAMMPS did not print (a minimisation that "
+                            "ends elsewhere)")
     columns = {c for _, a, b in pairs for c in a if c in b} - CLOCK - {"Step"}
     sizes = {c: max((abs(float(r[c])) for _, a, b in pairs for r in (a, b) if c in r), default=0.0) for c in columns}
     for column in columns:        # a small number among energies (pressures) is as uncertain as a large one

@@ -1,0 +1,88 @@
+"""asemd plan: what a scene needs, what is left out, and why; without compiling and without a step."""
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from lj_cell import BASE
+from test_validate import molecules
+
+import asemd
+from asemd import cli
+from asemd.errors import InputError
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("load", "forces"):
+        monkeypatch.setattr(f"asemd.engine.Engine.{name}", lambda self, *a: pytest.fail("a plan computes nothing"))
+    return tmp_path
+
+
+def items(plan, section: str) -> dict:
+    found = plan.left_out if section == "Left out" else plan.sections[section]
+    return {i.name: i for i in found}
+
+
+def big(cells: int) -> str:
+    return BASE.replace("0 2 0 2 0 2", " ".join([f"0 {cells}"] * 3))
+
+
+def test_cluster_scene(folder, capsys):
+    (folder / "in.x").write_text(big(6) + "thermo 5\ndump d all atom 3 dump.x\nrun 10\n")
+    assert cli.main(["plan", "in.x"]) == 0
+    assert "cluster kernel" in capsys.readouterr().out
+    plan = asemd.plan("in.x")
+    near, pair = items(plan, "Neighbour list"), items(plan, "Forces")["pair lj/cut"]
+    assert "clusters of 8" in near["list"].how and "1.8 = cutoff 1.5 + skin 0.3" in near["reach"].how
+    assert "without charges" in pair.how and "no exclusions" in pair.how
+    assert items(plan, "Fixes")["time loop"].how.startswith("compiled") and items(plan, "Fixes")["fix 1"].how == "nve on group all"
+    assert "every 5 steps" in items(plan, "Output")["energy and virial"].how and "dump d" in items(plan, "Output")
+    assert {"k-space", "bond forces", "Coulomb part", "energies and virials per atom", "tail correction"} <= set(items(plan, "Left out"))
+    assert sorted(p.name for p in folder.iterdir()) == ["in.x"]
+
+
+def test_small_scene_and_per_atom_computes(folder):
+    (folder / "in.x").write_text(BASE + "compute s all stress/atom NULL\ndump d all custom 3 dump.x id c_s[1]\nrun 10\n")
+    plan = asemd.plan("in.x")
+    assert "fewer than" in items(plan, "Neighbour list")["list"].why
+    assert "compute s" in items(plan, "Output")["per-atom kernels"].why and "energies and virials per atom" not in items(plan, "Left out")
+
+
+def test_estimated_pairs_are_those_of_the_list(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.x").write_text(BASE.replace("lj/cut 1.5", "lj/cut 2.7").replace("0 2 0 2 0 2", "0 6 0 6 0 6") + "run 1\n")
+    about = float(items(asemd.plan("in.x"), "Neighbour list")["pairs"].how.split()[1].rstrip(","))
+    atoms = asemd.read("in.x")
+    atoms.positions += np.random.default_rng(0).normal(0, 0.1, (len(atoms), 3))
+    engine = atoms.calc.engine or (atoms.get_potential_energy(), atoms.calc.engine)[1]
+    i, *_ = engine.list.expand(engine.k, engine.state, engine.reach)
+    assert about == pytest.approx(len(i), rel=0.1)
+
+
+def test_python_hooks_are_named(folder):
+    (folder / "in.x").write_text(BASE + "variable t equal 1+step\nfix 2 all langevin v_t 1 1 123\nrun 10\n")
+    loop = items(asemd.plan("in.x"), "Fixes")["time loop"]
+    assert loop.how == "step by step" and "fix 2 (langevin)" in loop.why
+
+
+def test_atoms(folder):
+    plan = asemd.plan(molecules())
+    forces = items(plan, "Forces")
+    assert forces["bond harmonic"].how.startswith("36 bonds")
+    assert forces["1-4 pairs"].how == "12 weighted" and forces["1-2 pairs"].how == "36 excluded"
+    assert "images along z" in items(plan, "Left out") and "tilted image shifts" not in items(plan, "Left out")
+    assert json.loads(json.dumps(plan.to_dict()))["left_out"] and str(plan).startswith("Plan of ForceField")
+    with pytest.raises(InputError, match="Scene, or atoms"):
+        asemd.plan(asemd.Atoms("H"))
+
+
+def test_no_forces(folder, capsys):
+    (folder / "in.x").write_text("region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\n")
+    assert cli.main(["plan", "in.x", "--json"]) == 0
+    left = {i["name"] for i in json.loads(capsys.readouterr().out)["left_out"]}
+    assert "neighbour list" in left and "energy and virial between outputs" in left
+    (folder / "in.y").write_text("units lj\n")
+    assert cli.main(["plan", "in.y"]) == 1
