@@ -25,6 +25,16 @@ class Table:
         cells = [r[k] for r in self.rows if r[k]]
         return bool(cells) and all(_is_number(c) for c in cells)
 
+    @property
+    def has_numbers(self) -> bool:
+        """Whether folding a cell would break a number in two."""
+        return any(self._right(k) for k in range(len(self.columns)))
+
+    @property
+    def width(self) -> int:
+        """Characters of the widest line when drawn."""
+        return sum(max(len(r[k]) for r in [self.columns, *self.rows]) + 3 for k in range(len(self.columns)))
+
     def __str__(self) -> str:
         widths = [max(len(r[k]) for r in [self.columns, *self.rows]) for k in range(len(self.columns))]
         right = [self._right(k) for k in range(len(self.columns))]
@@ -60,6 +70,7 @@ def show(parts: Sequence[Table | str]) -> None:
         from rich.console import Console
         console = Console(highlight=False, markup=False)
         for part in parts:
-            console.print(part.rich() if isinstance(part, Table) else part)
+            drawn = isinstance(part, Table) and (part.width <= console.width or not part.has_numbers)
+            console.print(part.rich() if drawn else str(part), soft_wrap=not drawn and isinstance(part, Table))
     else:
         print("\n\n".join(map(str, parts)), flush=True)
