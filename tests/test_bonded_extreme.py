@@ -14,10 +14,15 @@ from asemd import style as registry
 from asemd.kernels.state import cell_arrays
 from asemd.testing import styles
 
-mp.mp.dps = 60
 LIMIT = 8.0
 PARENT = {"bond": [(0, 1)], "angle": [(0, 1), (2, 1)], "dihedral": [(0, 1), (1, 2), (3, 2)], "improper": [(0, 1), (1, 2), (3, 2)],
           "umbrella": [(1, 0), (2, 0), (3, 0)]}
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    with mp.workdps(60):
+        yield
 
 
 def dot(a, b):

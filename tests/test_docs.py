@@ -13,8 +13,8 @@ import pytest
 import asemd
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "workflows").glob("*/README.md"))]
-PAGES = [p for p in PAGES if "_build" not in p.parts]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "workflows").glob("*/README.md")]
+PAGES = sorted(p for p in PAGES if "_build" not in p.parts)
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
 
 

@@ -15,12 +15,17 @@ import pytest
 from asemd.kernels import bits, vector_math
 from asemd.kernels.generate import Builder
 
-mp.mp.dps = 40
 LOOPS = """
 def loop_{name}(x, out):
     for k in range(x.size):
         out[k] = vector_{name}(x[k])
 """
+
+
+@pytest.fixture(autouse=True)
+def digits():
+    with mp.workdps(40):
+        yield
 
 
 def build(single: bool):
