@@ -1,21 +1,25 @@
-"""The force field as an ASE calculator: converts units once, keeps its engine while only positions change."""
+"""The force field as an ASE calculator: converts units once, keeps its engine and neighbour list while only positions change."""
 from __future__ import annotations
 
 import copy
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
-from ase.calculators.calculator import Calculator, all_changes
+from ase.calculators.calculator import Calculator, PropertyNotImplementedError, all_changes
 
 from asemd import units as unit_styles
-from asemd.engine import Engine, Settings
-from asemd.errors import InputError
+from asemd.engine import Engine, Result, Settings
+from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
+from asemd.loads import Load, constraints_of, loads_of
 from asemd.system import System
 from asemd.topology import Topology
 
 VOIGT = [0, 1, 2, 5, 4, 3]      # LAMMPS xx yy zz xy xz yz -> ASE xx yy zz yz xz xy
+GROUPS = "groups"               # array of atoms: group bits, for interactions that differ by group
 
 
 class ForceField(Calculator):
@@ -25,18 +29,24 @@ class ForceField(Calculator):
     ----------
     bond, angle, dihedral, improper, pair : mapping, optional
         Style -> coefficients by type, in ASE units (eV, Angstrom; angles in degrees), as `asemd.forcefield.Interactions.build` takes them:
-        ``bond={"harmonic": {1: (10.0, 1.1)}}``, ``pair={"lj/cut 8.5": {(1, 1): (0.0104, 3.4)}}``. Types are numbers or labels (elements).
+        ``bond={"harmonic": {1: (10.0, 1.1)}}``, ``pair={"lj/cut 8.5": {("Ar", "Ar"): (0.0104, 3.4)}}``. Atom types are elements, or
+        numbers: those of the array ``type`` if the atoms have one, else of the elements in alphabetical order.
     topology : Topology, optional
         Bonds, angles, ... of atoms that do not carry a topology of their own (`asemd.Atoms` do, and keep it when they are sliced).
     special_bonds : optional
-        Weights of 1-2, 1-3, 1-4 pairs: three numbers, or a mapping with ``lj`` and ``coul``.
+        Weights of 1-2, 1-3, 1-4 pairs: words of the command, or a mapping with ``lj`` and ``coul``, three numbers each.
     skin : float, optional
         Extra distance of the neighbour list, Angstrom.
     threads : int
     precision : str
         ``double`` or ``mixed``.
-    shift, tail, mix
-        As in ``pair_modify``.
+    shift, tail, mix, dielectric
+        As in ``pair_modify`` and ``dielectric``.
+
+    Raises
+    ------
+    InputError
+        At the first evaluation too: coefficients or charges that are missing, a topology that does not fit the atoms.
 
     Notes
     -----
@@ -48,35 +58,68 @@ class ForceField(Calculator):
     nolabel = True
 
     def __init__(self, bond: Mapping | None = None, angle: Mapping | None = None, dihedral: Mapping | None = None,
-                 improper: Mapping | None = None, pair: Mapping | None = None, *, topology: Topology | None = None, special_bonds=None,
-                 shift: bool = False, tail: bool = False, mix: str | None = None, dielectric: float = 1.0, skin: float = 2.0,
-                 threads: int = 1, precision: str = "double"):
+                 improper: Mapping | None = None, pair: Mapping | None = None, *, topology: Topology | Mapping | None = None,
+                 special_bonds=None, shift: bool = False, tail: bool = False, mix: str | None = None, dielectric: float = 1.0,
+                 skin: float = 2.0, threads: int = 1, precision: str = "double"):
         super().__init__()
         if precision not in ("double", "mixed"):
             raise InputError(f"precision must be double or mixed, got {precision!r}")
-        self.arguments = dict(bond=bond or {}, angle=angle or {}, dihedral=dihedral or {}, improper=improper or {}, pair=pair or {},
-                              special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric)
+        if not skin >= 0.0:
+            raise InputError(f"skin must not be negative, got {skin}")
+        given = dict(bond=bond, angle=angle, dihedral=dihedral, improper=improper, pair=pair)
+        self.arguments = {category: _keyed(styles or {}) for category, styles in given.items()} | dict(
+            special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric)
         self.interactions: Interactions | None = None
-        self.topology = topology
+        self.topology = Topology(**topology) if isinstance(topology, Mapping) else topology
+        self.natoms = 0                          # atoms that `topology` is for, once known
+        self.types: list[str] = []               # elements in the order of their types
         self.units = "ase"
         self.like: System | None = None
         self.settings = Settings(skin=skin, threads=threads, precision=precision)
+        self.bits: dict[str, int] = {}           # group -> bit in the atoms' array "groups"
+        self.loads: list[Load] = []
+        self.left_out: list[str] = []
         self._engine: Engine | None = None
-        self._seen: tuple = ()
+        self._system_now: System | None = None
+        self._seen: dict[str, np.ndarray | None] = {}
+        self._seen_topology: Topology | None = None
 
+    # ---- from a script ------------------------------------------------------------------------------------------------------------------
     @classmethod
     def from_scene(cls, scene) -> ForceField:
-        """The calculator of a scene that a script has built."""
-        self = cls(skin=scene.neighbor.skin if hasattr(scene, "neighbor") else 2.0)
+        """The calculator of a scene that a script has built; `attach` also gives the atoms what it needs.
+
+        Conservative forces of fixes (addforce with constant components) are part of it; those that are not are listed in `left_out`.
+        """
+        self = cls(threads=scene.threads, precision=scene.precision)
         self.arguments = {}
         self.interactions, self.units = copy.deepcopy(scene.interactions), scene.system.units
-        self.topology, self.like = scene.system.topology, scene.system.select(slice(0, 0))
-        self.settings = replace(scene.neighbor, exclude=[e for e in scene.neighbor.exclude if e[0] == "type"], threads=scene.threads,
-                                precision=scene.precision)
+        self.topology, self.like = scene.system.topology.copy(), scene.system.select(slice(0, 0))
+        self.natoms = scene.system.n
+        self.settings = replace(scene.neighbor, threads=scene.threads, precision=scene.precision)
+        self.loads, self.left_out = loads_of(scene.fixes.values())
+        names = {load.group for load in self.loads} | {w for kind, *words in self.settings.exclude if kind != "type" for w in words}
+        self.bits = {name: 1 << k for k, name in enumerate(sorted(names - {"all"}))}
         return self
 
+    @classmethod
+    def attach(cls, scene, atoms) -> ForceField:
+        """Make the calculator of a scene and give it to the scene's atoms, with group bits and constraints (``fix setforce``)."""
+        self = cls.from_scene(scene)
+        if self.bits:
+            bits = sum((scene.groups.mask(name).astype(np.int32) * bit for name, bit in self.bits.items()), np.zeros(len(atoms), np.int32))
+            atoms.set_array(GROUPS, bits)
+        constraints, left_out = constraints_of(scene.fixes.values(), scene.groups)
+        atoms.set_constraint(constraints)
+        self.left_out += left_out
+        for text in self.left_out:
+            warnings.warn(f"{text} is not part of the calculator", InputWarning, stacklevel=3)
+        atoms.calc = self
+        return self
+
+    # ---- copies -------------------------------------------------------------------------------------------------------------------------
     def __getstate__(self):
-        return {**self.__dict__, "_engine": None, "_seen": ()}
+        return {**self.__dict__, "_engine": None, "_system_now": None, "_seen": {}, "_seen_topology": None}
 
     def __deepcopy__(self, memo):
         new = object.__new__(type(self))
@@ -89,83 +132,265 @@ class ForceField(Calculator):
         """An independent calculator with the same force field."""
         return copy.deepcopy(self)
 
-    def todict(self, skip_default: bool = True) -> dict:
-        """The arguments, JSON-able."""
-        return {k: v for k, v in self.arguments.items() if v} | {"skin": self.settings.skin, "precision": self.settings.precision}
+    def set(self, **kwargs):
+        if kwargs:
+            raise InputError(f"a ForceField cannot be changed ({', '.join(kwargs)}): make a new one")
+        return {}
 
-    # ---- engine -------------------------------------------------------------------------------------------------------------------------
+    def reset(self) -> None:
+        """Forget the last evaluation."""
+        self.atoms, self.results, self._seen = None, {}, {}
+
+    def todict(self, skip_default: bool = True) -> dict:
+        """The arguments, JSON-able; of a script's force field the commands that make it."""
+        out: dict[str, Any] = {k: _plain(v) for k, v in self.arguments.items() if v and not (k == "dielectric" and v == 1.0)}
+        if self.interactions is not None and not self.arguments:
+            out["units"], out["commands"] = self.units, self.commands()
+        if self.topology is not None and self.arguments:
+            out["topology"] = {f"{kind}s": items.tolist() for kind, items, _ in self.topology if len(items)} | {
+                f"{kind}_types": types.tolist() for kind, _, types in self.topology if len(types)}
+        return out | {"skin": self.settings.skin, "precision": self.settings.precision}
+
+    def commands(self) -> list[str]:
+        """The force field as LAMMPS commands, in its own units."""
+        inter = self.interactions
+        lines = []
+        for category in inter.uses:
+            if inter.uses[category]:
+                lines.append(" ".join([f"{category}_style", *inter.style_line(category)]))
+                lines += [" ".join([f"{category}_coeff", *words]) for words in inter.coeff_lines(category)]
+        lines += [" ".join(["pair_modify", *words]) for words in inter.modify_lines()]
+        return [*lines, " ".join(["special_bonds", *inter.special_line()])]
+
+    # ---- atoms -> system ----------------------------------------------------------------------------------------------------------------
+    def _topology_of(self, atoms) -> Topology:
+        """The bonds of these atoms: their own, else the ones given to the calculator."""
+        own = getattr(atoms, "topology", None)
+        if own is not None and (self.topology is None or self.like is not None or not own.is_empty):
+            return own
+        if self.topology is None:
+            return Topology()
+        n = len(atoms)
+        largest = max((int(items.max()) for _, items, _ in self.topology if len(items)), default=-1)
+        if largest >= n:
+            raise InputError(f"the topology names atom {largest}, but there are {n} atoms: use asemd.Atoms, whose topology "
+                             "follows slices and copies, or hand a new topology to the calculator")
+        if not self.topology.is_empty and self.natoms not in (0, n):
+            raise InputError(f"the topology of the calculator is for {self.natoms} atoms, not for {n}: use asemd.Atoms, whose topology "
+                             "follows slices and copies, or hand a new topology to the calculator")
+        self.natoms = n
+        return self.topology
+
     def _system(self, atoms) -> System:
-        system = System.from_ase(atoms, units=self.units, like=self.like)
-        if getattr(atoms, "topology", None) is None and self.topology is not None:
-            largest = max((int(items.max()) for _, items, _ in self.topology if len(items)), default=-1)
-            if largest >= len(atoms):
-                raise InputError(f"the topology names atom {largest}, but there are {len(atoms)} atoms: use asemd.Atoms, whose topology "
-                                 "follows slices and copies, or hand a new topology to the calculator")
-            system.topology = self.topology
+        """The atoms in the units of the force field."""
+        types = None
+        if "type" not in atoms.arrays:
+            if self.like is not None:
+                raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements")
+            named = {k for style in self.arguments["pair"].values() for key in _coefficients(style)
+                     for k in (key if isinstance(key, tuple) else (key,)) if isinstance(k, str)}
+            symbols = set(atoms.get_chemical_symbols())
+            self.types += sorted((symbols | (named if not self.types else set())) - set(self.types))
+            types = self.types
+        system = System.from_ase(atoms, types=types, units=self.units, like=self.like)
+        system.topology = self._topology_of(atoms)
         if self.interactions is None:
             self.interactions = Interactions.build(**self.arguments, labels=system.labels)
-        for kind, n in self._type_counts().items():
+        for use in self.interactions.uses["pair"]:
+            if use.style.charged and system.q is None:
+                raise InputError(f"pair style {use.style.name} needs charges: atoms.set_initial_charges(...)")
+        for kind, n in self._type_counts(system.topology).items():
             system.counts[kind] = max(system.counts.get(kind, 0), n)
         missing = system.counts["ntypes"] + 1 - len(system.mass)
         if missing > 0:
             system.mass = np.concatenate([system.mass, np.full(missing, np.nan)])
         return system
 
-    def _type_counts(self) -> dict[str, int]:
-        out = {}
+    def _type_counts(self, topology: Topology) -> dict[str, int]:
+        out = {f"n{kind}types": int(types.max(initial=0)) for kind, _, types in topology}
         for category, uses in self.interactions.uses.items():
-            for use in uses:
-                keys = [k if isinstance(k, int) else max(k) for k in use.coeff]
-                name = "ntypes" if category == "pair" else f"n{category}types"
-                out[name] = max([out.get(name, 0), *keys])
+            name = "ntypes" if category == "pair" else f"n{category}types"
+            out[name] = max([out.get(name, 0), *(k if isinstance(k, int) else max(k) for use in uses for k in use.coeff)])
         return out
 
-    def _prepare(self, atoms) -> None:
-        """An engine that fits the atoms; made anew when anything but positions changed."""
-        top = getattr(atoms, "topology", None) or self.topology
-        seen = (atoms.numbers.tobytes(), atoms.arrays.get("type", atoms.numbers).tobytes(), atoms.cell.array.tobytes(), atoms.pbc.tobytes(),
-                np.asarray(atoms.get_celldisp()).tobytes(), atoms.get_initial_charges().tobytes(), id(top), top)
-        same = self._engine is not None and len(seen) == len(self._seen) and all(
-            a is b if k == 7 else a == b for k, (a, b) in enumerate(zip(seen, self._seen)))
-        if same:
-            return
-        system = self._system(atoms)
-        self.interactions.check_complete(system)
-        if self._engine is None:
-            self._engine = Engine(system, self.interactions, self.settings)
-        else:
-            self._engine.update(system)
-        self._seen = seen
+    def mask(self, atoms, group: str) -> np.ndarray:
+        """(n,) bool: the atoms of a group that the force field knows.
+
+        Raises
+        ------
+        InputError
+            The atoms have lost the array ``groups``.
+        """
+        if group == "all":
+            return np.ones(len(atoms), bool)
+        if GROUPS not in atoms.arrays:
+            raise InputError(f"the atoms have no array '{GROUPS}', which says who belongs to group {group}")
+        return (atoms.arrays[GROUPS] & self.bits[group]) != 0
+
+    def neighbor_settings(self, atoms) -> Settings:
+        """The settings of engines for these atoms, exclusions with masks instead of group names."""
+        return replace(self.settings, exclude=[(kind, *(words if kind == "type" else (self.mask(atoms, w) for w in words)))
+                                               for kind, *words in self.settings.exclude])
 
     @property
     def engine(self) -> Engine | None:
         """The compiled engine of the last evaluation."""
         return self._engine
 
+    # ---- what has changed ---------------------------------------------------------------------------------------------------------------
+    @staticmethod
+    def _view(atoms) -> dict[str, np.ndarray | None]:
+        """What the results depend on, besides the topology."""
+        a = atoms.arrays
+        return {"positions": a["positions"], "numbers": a["numbers"], "cell": atoms.cell.array, "pbc": atoms.pbc,
+                "initial_charges": a.get("initial_charges"), "type": a.get("type"), "origin": atoms.get_celldisp(), "image": a.get("image"),
+                GROUPS: a.get(GROUPS)}
+
+    def check_state(self, atoms, tol: float = 0.0) -> list[str]:
+        """Names of what is not as it was at the last evaluation; besides ASE's: type, origin, image, groups, topology."""
+        if not self._seen:
+            return list(all_changes)
+        changes = [name for name, array in self._view(atoms).items() if not _same(array, self._seen[name])]
+        topology = getattr(atoms, "topology", None)
+        if topology is None:
+            topology = self.topology
+        return changes if topology == self._seen_topology else [*changes, "topology"]
+
+    def get_property(self, name, atoms=None, allow_calculation=True):
+        if name not in self.implemented_properties:
+            raise PropertyNotImplementedError(f"{name} property not implemented")
+        changes = [] if atoms is None else self.check_state(atoms)
+        if changes:
+            self.results = {}
+        if name not in self.results:
+            if not allow_calculation:
+                return None
+            self.calculate(self.atoms if atoms is None else atoms, [name], changes)
+        if name not in self.results:
+            raise PropertyNotImplementedError(f"{name} not present in this calculation: the cell has no volume")
+        result = self.results[name]
+        return result.copy() if isinstance(result, np.ndarray) else result
+
+    def _prepare(self, atoms, changes: list[str]) -> None:
+        """An engine that fits the atoms; updated when anything but positions changed."""
+        if self._engine is not None and not set(changes) - {"positions", "image"}:
+            return
+        self._seen = {}
+        system = self._system(atoms)
+        self.interactions.check_complete(system)
+        settings = self.neighbor_settings(atoms) if self.settings.exclude else self.settings
+        if self._engine is None:
+            self._engine = Engine(system, self.interactions, settings)
+        else:
+            self._engine.settings = settings
+            self._engine.update(system)
+
     # ---- ASE ----------------------------------------------------------------------------------------------------------------------------
     def calculate(self, atoms=None, properties=None, system_changes=all_changes):
-        super().calculate(atoms, properties, system_changes)
-        properties = properties or ["energy"]
-        self._prepare(self.atoms)
-        e, u = self._engine, {d: unit_styles.factor(d, self.units) for d in ("distance", "energy", "force")}
-        e.move(self.atoms.positions / u["distance"])
-        result = e.collect()
-        energy = result.potential * u["energy"]
-        self.results = {"energy": energy, "free_energy": energy, "forces": result.forces * u["force"]}
-        volume = self.atoms.get_volume() if self.atoms.cell.rank == 3 else None
+        atoms = self.atoms if atoms is None else atoms
+        self.results = {}
+        if not self._seen:
+            system_changes = all_changes
+        try:
+            self._prepare(atoms, system_changes)
+            distance = unit_styles.factor("distance", self.units)
+            self._engine.move(atoms.positions if distance == 1.0 else atoms.positions / distance)
+            result = self._engine.collect()
+            if properties and ("energies" in properties or "stresses" in properties):
+                self._engine.per_atom(result)
+            self.results = self.convert(result, atoms)
+        except Exception:
+            self._seen = {}
+            raise
+        self._remember(atoms, system_changes)
+
+    def _remember(self, atoms, changes) -> None:
+        """Keep what the results belong to."""
+        if self._seen and self.atoms is not None and set(changes) <= {"positions"}:
+            self._seen["positions"][:] = atoms.positions
+            self.atoms.positions[:] = atoms.positions
+            return
+        self.atoms = atoms.copy()
+        self._seen = {name: None if array is None else array.copy() for name, array in self._view(atoms).items()}
+        topology = getattr(atoms, "topology", None)
+        topology = self.topology if topology is None else topology
+        self._seen_topology = None if topology is None else topology.copy()
+
+    def convert(self, result: Result, atoms) -> dict[str, Any]:
+        """A result of an engine for these atoms as ASE's properties, with the forces of fixes added.
+
+        Parameters
+        ----------
+        result : Result
+            In the units of the force field, without the loads.
+        atoms : ase.Atoms
+
+        Returns
+        -------
+        dict
+            energy, free_energy, forces; stress if the cell has a volume; energies and stresses if the result has them.
+        """
+        u = {d: unit_styles.factor(d, self.units) for d in ("energy", "force", "distance")}
+        energy, forces = result.potential, result.forces
         virial = result.virial + result.virial_of.get("tail", 0.0)
+        shares = np.zeros(len(atoms))
+        strains = np.zeros((len(atoms), 6))
+        if self.loads:
+            forces = forces.copy()
+            x = atoms.positions + (atoms.arrays["image"] @ atoms.cell.array if "image" in atoms.arrays else 0.0)
+            for load in self.loads:
+                e, f, w = load.act(x / u["distance"], self.mask(atoms, load.group))
+                shares, strains, forces = shares + e, strains + w, forces + f
+            energy, virial = energy + float(shares.sum()), virial + strains.sum(axis=0)
+        energy *= u["energy"]
+        out = {"energy": energy, "free_energy": energy, "forces": forces * u["force"]}
+        volume = atoms.cell.volume if atoms.cell.rank == 3 else 0.0
         if volume:
-            self.results["stress"] = -virial[VOIGT] * u["energy"] / volume
-        if "energies" in properties or "stresses" in properties:
-            e.per_atom(result)
-            self.results["energies"] = result.energies * u["energy"] + result.energy["etail"] * u["energy"] / len(self.atoms)
+            out["stress"] = virial[VOIGT] * (-u["energy"] / volume)
+        n = max(1, len(atoms))
+        if result.energies is not None:
+            out["energies"] = (result.energies + shares + result.energy["etail"] / n) * u["energy"]
             if volume:
-                tail = result.virial_of.get("tail", np.zeros(6)) / len(self.atoms)
-                self.results["stresses"] = -(result.virials + tail)[:, VOIGT] * u["energy"] / volume
+                strains = result.virials + strains + result.virial_of.get("tail", np.zeros(6)) / n
+                out["stresses"] = strains[:, VOIGT] * (-u["energy"] / volume)
+        return out
 
     def __repr__(self) -> str:
         if self.interactions is None:
             parts = [f"{k}: {', '.join(v)}" for k, v in self.arguments.items() if isinstance(v, Mapping) and v]
         else:
             parts = [f"{k}: {', '.join(use.style.name for use in uses)}" for k, uses in self.interactions.uses.items() if uses]
+        parts += [str(load) for load in self.loads] + [f"without {text}" for text in self.left_out]
         return f"ForceField({'; '.join(parts) or 'no styles'}; units {self.units})"
+
+
+def _same(a, b) -> bool:
+    return a is b or (a is not None and b is not None and a.shape == b.shape and bool((a == b).all()))
+
+
+def _coefficients(style) -> Mapping:
+    """The part of a style's entry that goes by types."""
+    return style.get("coeff", {}) if isinstance(style, Mapping) and style and not set(style) - {"settings", "coeff"} else style
+
+
+def _keyed(styles: Mapping) -> dict:
+    """Styles with keys as JSON has to write them (``"1"``, ``"Ar Kr"``) turned back into numbers and pairs."""
+    def key(k):
+        if not isinstance(k, str):
+            return k
+        words = [int(w) if w.isdigit() else w for w in k.split()]
+        return words[0] if len(words) == 1 else tuple(words)
+    out = {}
+    for name, style in styles.items():
+        coeff = {key(k): v for k, v in _coefficients(style).items()}
+        out[name] = coeff if _coefficients(style) is style else {**style, "coeff": coeff}
+    return out
+
+
+def _plain(value):
+    """Values that JSON can write; pairs of types become words."""
+    if isinstance(value, Mapping):
+        return {k if isinstance(k, str) else " ".join(map(str, k)) if isinstance(k, tuple) else str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    return value.item() if isinstance(value, np.generic) else value

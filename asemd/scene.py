@@ -193,5 +193,5 @@ class Scene:
         from asemd.calculator import ForceField
         system = self.need_system("read")
         atoms = system.to_ase()
-        atoms.calc = ForceField.from_scene(self)
+        ForceField.attach(self, atoms)
         return atoms
