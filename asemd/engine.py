@@ -12,8 +12,9 @@ from asemd import units as unit_styles
 from asemd.errors import InputError, SimulationError
 from asemd.kernels.state import State, cell_arrays
 from asemd.neighbor import SMALL, BinCell, ClusterList, PlainList, kernels, partner_table
-from asemd.term import BONDED_KEY, BondedTerm, PairListTerm, PairTerm
+from asemd.term import BONDED_KEY, BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 
+SPARSE = 12            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 CATEGORIES = ("pair", "bond", "angle", "dihedral", "improper")
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
 PLURAL = {"bond": "bonds", "angle": "angles", "dihedral": "dihedrals", "improper": "impropers"}
@@ -152,11 +153,15 @@ class Engine:
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
         self.expanded = self.mode == "cluster" and (table or bool(len(self.rules)))
+        volume = abs(float(np.linalg.det(self.vectors)))
+        self.sparse = self.mode == "cluster" and not self.expanded and 2.1 * self.reach**3 * n < SPARSE * volume
+        if self.sparse:
+            self.why = f"fewer than {SPARSE} neighbours per atom: rows of single atoms"
         terms: list = []
         weighted = bool(len(self.special_kept))
         for t in self.pair_terms:
             if self.mode == "cluster" and not self.expanded:
-                terms.append(PairTerm(t, single))
+                terms.append(PairRowsTerm(t) if self.sparse else PairTerm(t, single))
                 if weighted:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special"))
             else:
@@ -336,10 +341,15 @@ class Engine:
         k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row, s.type, s.mass,
                  s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":
-            hide = None if self.expanded else self.partners
+            hide = None if self.expanded or self.sparse else self.partners
             self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel)
             if self.expanded:
                 self._mark(*self.list.expand(k, s, self.reach), self.list.shifts)
+            if self.sparse:
+                nobody = (np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32))
+                self.rows = self.list.rows(k, s, self.ns, self.partners[:2] if self.partners is not None else nobody, self.parallel)
+            if self.expanded:
+                self.special = None
             elif len(self.special_kept):
                 self.special = [np.empty(len(self.special_kept), np.int32) for _ in range(3)]
                 k.special_pairs(self.special_kept, self.special_kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
@@ -489,7 +499,7 @@ class Engine:
         for t in self.terms:
             if isinstance(t, PairListTerm) and t.pairs == "special":
                 continue
-            if isinstance(t, PairTerm):
+            if isinstance(t, (PairTerm, PairRowsTerm)):
                 t, index = PairListTerm(t.style, t.tables, t.style.parts, "all"), t.index
                 t.index = index
                 t.rebuild(self)

@@ -22,10 +22,10 @@ def kernels(ortho: bool):
     b.constant("CLUSTER", CLUSTER)
     b.constant("ORTHO", ortho)
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
-    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster.exclude, cluster.expand, pair_list._cell, pair_list.ghosts, pair_list.pairs,
+    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster.exclude, cluster.expand, cluster.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs,
               rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.add_buffers, rebuild.clear,
               rebuild.mark_special, rebuild.drop_excluded, rebuild.special_pairs):
-        b.function(f, fast=f in (cluster.near_columns, cluster.build))
+        b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster.rows))
     return b.build()
 
 
@@ -87,6 +87,8 @@ class ClusterList:
         self.excluded = np.zeros((threads, 64), np.int32)
         self.candidates = 2048
         self.shares = None
+        self.row_start, self.neighbors = np.zeros((threads, 0), np.int32), np.zeros((threads, 0), np.int32)
+        self.row_work = np.zeros((threads, 4, 512))
 
     def shape(self, bins: BinCell, n: int) -> bool:
         """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
@@ -114,15 +116,20 @@ class ClusterList:
         self.unshifted = np.zeros(ncl, np.bool_)
         self.own, self.reach_first = np.zeros(ncl, np.int32), np.zeros(ncl, np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
-        self.work = np.zeros((self.threads, 5, self.candidates))
-        self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
-        self.heaps = np.zeros((self.threads, 3, self.candidates + 1), np.int32)
+        self._room()
         self.bounds = np.zeros(self.threads + 1, np.int64)
         self.shares = None
         if not self.entries.shape[1]:
             around = min(float(n), 4.2 * self.reach**3 * n / max(bins.volume, 1e-300))
             self.entries = np.zeros((self.threads, int(self.capacity / CLUSTER * (1.5 * around + 64) / self.threads) + 1024), np.int32)
         return True
+
+    def _room(self) -> None:
+        """Work space for the candidates of one cluster."""
+        self.work = np.zeros((self.threads, 5, self.candidates))
+        self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
+        self.heaps = np.zeros((self.threads, 3, self.candidates + 1), np.int32)
+        self.earlier = np.zeros((self.threads, self.candidates + 64), np.int32)
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
         """Sort the slots; returns their number."""
@@ -146,16 +153,14 @@ class ClusterList:
                                      self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t], self.work_codes[t], self.heaps[t], self.width, ns)
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
-                                     self.excluded_first[t], self.excluded[t], self.where[t])
+                                     self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
                     results[t] = -3 if done < 0 else results[t]
             parallel(work)
             if -1 in results:
                 self.entries = np.zeros((self.threads, int(self.entries.shape[1] * 1.5) + 1024), np.int32)
             elif -2 in results:
                 self.candidates *= 2
-                self.work = np.zeros((self.threads, 5, self.candidates))
-                self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
-                self.heaps = np.zeros((self.threads, 3, self.candidates + 1), np.int32)
+                self._room()
             elif -3 in results:
                 self.excluded = np.zeros((self.threads, 2 * self.excluded.shape[1]), np.int32)
             else:
@@ -163,6 +168,25 @@ class ClusterList:
                 if not again:
                     return
                 again = False
+
+    def rows(self, k, state, ns: int, partners, parallel) -> tuple[np.ndarray, np.ndarray]:
+        """The list as rows of single atoms without the special pairs: start (nth, ns+1) and neighbors (nth, m)."""
+        if self.row_start.shape[1] < ns + 1:
+            self.row_start = np.zeros((self.threads, ns + 1 + ns // 8), np.int32)
+        results = [0] * self.threads
+
+        def work(t):
+            c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
+            results[t] = k.rows(state.x, state.row, self.first[t], self.entries[t], self.own, self.reach_first, c0, c1, self.shifts, self.reach**2, *partners,
+                                self.row_start[t], self.neighbors[t], self.row_work[t])
+        while True:
+            parallel(work)
+            if -1 in results:
+                self.neighbors = np.zeros((self.threads, 2 * self.neighbors.shape[1] + 16 * ns), np.int32)
+            elif -2 in results:
+                self.row_work = np.zeros((self.threads, 4, 2 * self.row_work.shape[2]))
+            else:
+                return self.row_start, self.neighbors
 
     def _split(self, ncl: int) -> None:
         shares = self.shares if self.shares is not None else np.arange(self.threads + 1) / self.threads

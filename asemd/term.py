@@ -34,9 +34,11 @@ class BondedTerm:
 
     def __init__(self, category: str, use, items: np.ndarray, types: np.ndarray, ntypes: int, units):
         self.category, self.use, self.style = category, use, use.style
-        self.items, self.types = np.ascontiguousarray(items, np.int32), np.ascontiguousarray(types, np.int32)
+        order = np.argsort(items[:, 0], kind="stable")
+        self.items, self.types = np.ascontiguousarray(items[order], np.int32), np.ascontiguousarray(types[order], np.int32)
         self.packed = use.style.pack(use.settings, use.coeff, ntypes, units)
-        self.slots = np.zeros_like(self.items)
+        self.slots, self.slot_types, self.order = np.zeros_like(self.items), np.zeros_like(self.types), np.zeros_like(self.types)
+        self.start = None
 
     def kernel(self, energy, per_atom):
         from asemd.kernels import bonded
@@ -45,15 +47,18 @@ class BondedTerm:
 
     def rebuild(self, engine):
         self.periodic, self.orthogonal = bool(engine.periodic.any()), engine.ortho
-        engine.k.to_slots(self.items, engine.slot_of, self.slots)
+        if self.start is None or len(self.start) != engine.system.n + 1:
+            self.start = np.searchsorted(self.items[:, 0], np.arange(engine.system.n + 1)).astype(np.int32)
+        engine.k.to_slots(engine.state.row, engine.ns, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types, self.order)
 
     def arguments(self, engine, tid):
         m, nth = len(self.items), engine.threads
-        return (engine.state.x, engine.buffers[tid], self.slots, self.types, engine.cell, self.packed.coeff, self.packed.arrays, m * tid // nth,
+        return (engine.state.x, engine.buffers[tid], self.slots, self.slot_types, engine.cell, self.packed.coeff, self.packed.arrays, m * tid // nth,
                 m * (tid + 1) // nth, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
 
     def describe(self, engine, item, value):
         from asemd.kernels import bonded
+        item = self.order[item]
         ids = [int(engine.system.id[r]) for r in self.items[item]]
         return SimulationError(bonded.describe(self.style, value, ids, int(self.types[item])))
 
@@ -89,6 +94,32 @@ class PairTerm:
         return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.reach_first, c.unshifted, c.shifts, c.excluded_first[tid], c.excluded[tid],
                 int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, self.buffer[tid], self.types[tid],
                 self.saved[tid], engine.acc[tid, self.index])
+
+    def describe(self, engine, item, value):
+        return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
+
+
+class PairRowsTerm:
+    """A pair style over rows of single atoms: where an atom has so few neighbours that packing clusters does not pay."""
+
+    category = "pair"
+
+    def __init__(self, term):
+        self.style, self.tables = term.style, term.tables
+        self.uniform = pair_kernels.uniform_rows(self.tables.rows)
+        self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
+
+    def kernel(self, energy, per_atom):
+        return pair_kernels.rows_kernel(self.style, self.uniform, energy=energy)[0]
+
+    def rebuild(self, engine):
+        """Nothing of its own: the rows are the engine's."""
+
+    def arguments(self, engine, tid):
+        s, c = engine.state, engine.list
+        start, neighbors = engine.rows
+        return (s.x, engine.buffers[tid], s.q, s.type, start[tid], neighbors[tid], c.shifts, 8 * int(c.bounds[tid]), 8 * int(c.bounds[tid + 1]),
+                self.p, self.tables.rows, engine.qqr2e, engine.acc[tid, self.index])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")

@@ -96,8 +96,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
             lines += ["    for k in range(full):", f"        b[k + base + {v} * ROW] = rows[{r}, t, types[k]]"]
         b.text("\n".join(lines))
     b.function(pair_cluster.inner_two, fast=True)
-    if exclude:
-        b.function(pair_cluster.inner_one, fast=True)
+    b.function(pair_cluster.one_pair, fast=True)
     b.function(pair_cluster.cluster_forces, fast=True)
     module = b.build()
     return module.cluster_forces, module
@@ -147,3 +146,32 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool):
     b.function(pair_list.list_forces)
     module = b.build()
     return module.list_forces, module
+
+
+@lru_cache(maxsize=None)
+def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool):
+    """The kernel over rows of single atoms, for sparse systems; `uniform` as in `cluster_kernel`."""
+    b = Builder(f"pair {style.name}: rows of atoms")
+    b.line("real = np.float64")
+    for name, value in dict(ENERGY=energy, CHARGED=style.charged).items():
+        b.constant(name, value)
+    names = _paste_style(b, style.parts, False, False)
+    where = [f"p[{sum(uniform[:k])}]" if u else f"rows[{k}, ti, tj]" for k, u in enumerate(uniform)]
+    cuts, row, constant = [], 0, sum(uniform)
+    lines = ["def pair_of(r2, qq, p, rows, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
+    if any(p.coordinate == "r" for p in style.parts):
+        lines.append("    r = math.sqrt(r2)")
+    for k, (part, name) in enumerate(zip(style.parts, names)):
+        args = [part.coordinate] + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
+        args += [f"p[{constant + i}]" for i in range(len(part.constants))]
+        slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"-d{k} / r"
+        lines += [f"    if r2 < {where[row]}:", f"        e{k}, d{k} = {name}({', '.join(args)})", f"        fp += {slope}",
+                  f"        {'ec' if part.charged else 'ev'} += e{k} - {where[row + 1]}"]
+        cuts.append(where[row])
+        row += 2 + len(part.rows)
+        constant += len(part.constants)
+    b.text("\n".join([*lines, "    return fp, ev, ec"]))
+    b.text(f"def furthest(p, rows, ti, tj):\n    return {cuts[0] if len(cuts) == 1 else 'max(' + ', '.join(cuts) + ')'}")
+    b.function(pair_list.row_forces, fast=True)
+    module = b.build()
+    return module.row_forces, module

@@ -2,14 +2,14 @@
 
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4 partners.
 Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
-Constants: ENERGY, PER_ATOM, CHARGED; `pair_energy_one(r2, qq, lj, coul, rows, ti, tj)` -> force/r, E_vdwl, E_coul is made from the style.
+Constants: ENERGY, PER_ATOM, CHARGED; `furthest`, `pair_of` (from tuple or table, as `uniform` says) and `pair_energy_one(r2, qq, lj, coul, rows, ti, tj)` -> force/r, E_vdwl, E_coul is made from the style.
 """
 from __future__ import annotations
 
 import numpy as np
 
 ENERGY = PER_ATOM = CHARGED = False
-pair_energy_one = None
+pair_energy_one = furthest = pair_of = None
 
 
 def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
@@ -66,6 +66,49 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
                 atom_virial[3, s] += 0.5 * dx * gy
                 atom_virial[4, s] += 0.5 * dx * gz
                 atom_virial[5, s] += 0.5 * dy * gz
+
+
+def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2e, acc):
+    """Slots lo..hi-1 against the atoms of their rows (entries: slot + shift code << 26), one pair at a time: sparse systems."""
+    for i in range(lo, hi):
+        xi = x[0, i]
+        yi = x[1, i]
+        zi = x[2, i]
+        qi = qqr2e * q[i] if CHARGED else 0.0
+        ti = type_of[i]
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for m in range(start[i], start[i + 1]):
+            entry = neighbors[m]
+            j = np.uint32(entry & np.int32(0x3FFFFFF))
+            c = np.uint32(entry >> 26)
+            dx = xi - (x[0, j] + shifts[c, 0])
+            dy = yi - (x[1, j] + shifts[c, 1])
+            dz = zi - (x[2, j] + shifts[c, 2])
+            r2 = dx * dx + dy * dy + dz * dz
+            if r2 < furthest(p, rows, ti, type_of[j]):
+                qq = qi * q[j] if CHARGED else 0.0
+                fp, ev, ec = pair_of(r2, qq, p, rows, ti, type_of[j])
+                gx = dx * fp
+                gy = dy * fp
+                gz = dz * fp
+                fx += gx
+                fy += gy
+                fz += gz
+                f[0, j] -= gx
+                f[1, j] -= gy
+                f[2, j] -= gz
+                if ENERGY:
+                    acc[0] += ev
+                    acc[1] += ec
+                    acc[2] += dx * gx
+                    acc[3] += dy * gy
+                    acc[4] += dz * gz
+                    acc[5] += dx * gy
+                    acc[6] += dx * gz
+                    acc[7] += dy * gz
+        f[0, i] += fx
+        f[1, i] += fy
+        f[2, i] += fz
 
 
 def ghosts(x, ns, origin, inverse, widths, shifts, reach, out_slot, out_image, out_x):

@@ -41,11 +41,22 @@ def gather(ns, row, slot_of, varies, type_row, mass_row, inverse_row, q_row, mas
             held[d, i] = x[d, i]
 
 
-def to_slots(items, slot_of, out):
-    """Topology items (atom rows) as slots."""
-    for m in range(items.shape[0]):
-        for k in range(items.shape[1]):
-            out[m, k] = slot_of[items[m, k]]
+def to_slots(row, ns, start, items, types, slot_of, out, out_types, order):
+    """Topology items (atom rows, sorted by their first atom) as slots, in the order of the first atom's slot: neighbours in memory too.
+
+    `start (n+1,)`: first item of each atom row; `order`: which item each one is.
+    """
+    m = 0
+    for i in range(ns):
+        r = row[i]
+        if r < 0:
+            continue
+        for q in range(start[r], start[r + 1]):
+            for k in range(items.shape[1]):
+                out[m, k] = slot_of[items[q, k]]
+            out_types[m] = types[q]
+            order[m] = q
+            m += 1
 
 
 def load(xr, vr, offset, x, v, row, ns, origin_shift):
