@@ -141,7 +141,8 @@ def test_same_path_as_lammps(theirs, name):
     *case, seed = CASES[name]
     expected, result = theirs[name], minimized(*case, x=cluster(seed))
     assert result.criterion == expected["criterion"]
-    assert [result.energy_initial, result.energy_previous, result.energy_final] == pytest.approx(expected["energies"], rel=1e-9)
+    ours, counted = [result.energy_initial, result.energy_previous, result.energy_final], slice(None, None, 1 if result.iterations else 2)
+    assert ours[counted] == pytest.approx(expected["energies"][counted], rel=1e-9)      # without a step LAMMPS's second one is not set
     assert [result.iterations, result.evaluations] == expected["counts"]
     assert np.abs(result.x - expected["x"]).max() < 1e-6
 

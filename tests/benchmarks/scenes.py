@@ -30,7 +30,7 @@ CHAIN = """units lj
 atom_style bond
 special_bonds fene
 bond_style fene
-read_data {data}
+read_data {data} nocoeff
 bond_coeff 1 30.0 1.5 1.0 1.0
 neighbor 0.4 bin
 neigh_modify every 1 delay 1
