@@ -14,7 +14,7 @@ from asemd.kernels.state import State, cell_arrays
 from asemd.neighbor import SMALL, BinCell, ClusterList, PlainList, kernels, partner_table
 from asemd.term import BONDED_KEY, BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 
-SPARSE = 12            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
+SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 CATEGORIES = ("pair", "bond", "angle", "dihedral", "improper")
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
 PLURAL = {"bond": "bonds", "angle": "angles", "dihedral": "dihedrals", "improper": "impropers"}

@@ -11,7 +11,7 @@ import numpy as np
 
 from asemd.engine import PLURAL, Engine
 from asemd.errors import InputError
-from asemd.term import BondedTerm, PairListTerm, PairTerm
+from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 from asemd.text_table import Table
 
 OPTIONAL = ("ase", "scipy", "matplotlib", "MDAnalysis", "spglib")
@@ -140,6 +140,8 @@ def _list(e: Engine) -> list[Item]:
     how = {"cluster": "clusters of 8 atoms, half list", "plain": "plain pairs with image shifts, half list"}[e.mode]
     if e.expanded:
         how += ", expanded into plain pairs"
+    if e.sparse:
+        how += ", turned into rows of single atoms"
     density = s.n / max(s.box.volume, 1e-300)
     reach = 4.0 / 3.0 * math.pi * e.reach**3
     around = 0.5 * density * (reach if s.dimension == 3 else math.pi * e.reach**2 * s.box.lengths[2])
@@ -170,6 +172,9 @@ def _term(e: Engine, t) -> Item:
         hidden = "excluded partners moved away" if e.partners is not None else "no exclusions"
         precision = "single" if t.single else "double"
         return Item(f"pair {style.name}", f"cluster kernel, {precision} precision, {charged}, {rows}, {hidden}", "pair_style")
+    if isinstance(t, PairRowsTerm):
+        hidden = "excluded partners left out of the rows" if e.partners is not None else "no exclusions"
+        return Item(f"pair {style.name}", f"rows of single atoms, double precision, {charged}, {hidden}", e.why)
     assert isinstance(t, PairListTerm)
     if t.pairs == "special":
         return Item(f"pair {style.name} (special)", f"{len(e.special_kept)} weighted pairs, one by one",
