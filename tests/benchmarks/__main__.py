@@ -1,6 +1,7 @@
 """All benchmarks, as a Markdown table: ``python -m tests.benchmarks [--samples 7] [--threads 1 2] [--json results.json]``.
 
-On a processor with AVX-512, ``NUMBA_CPU_NAME=haswell python -m tests.benchmarks`` gives the figures of one with AVX2.
+``--readme`` puts it into the README. On a processor with AVX-512, ``NUMBA_CPU_NAME=haswell python -m tests.benchmarks`` gives the figures
+of one with AVX2.
 """
 from __future__ import annotations
 
@@ -8,8 +9,10 @@ import argparse
 import json
 from pathlib import Path
 
-from tests.benchmarks import compare, memory, neighbour, run_chain, run_lj, run_small, startup
+from tests.benchmarks import compare, memory, neighbour, run_chain, run_lj, run_small, scenes, startup
 
+README = scenes.ROOT / "README.md"
+BEGIN, END = "<!-- benchmarks: begin -->", "<!-- benchmarks: end -->"
 SCENES = (("LJ melt, 32,000 atoms", run_lj), ("bead-spring melt, 32,000 atoms", run_chain), ("LJ, 500 atoms", run_small))
 
 
@@ -30,6 +33,7 @@ def main() -> None:
     p.add_argument("--samples", type=int, default=7)
     p.add_argument("--threads", type=int, nargs="+", default=[1, 2])
     p.add_argument("--json")
+    p.add_argument("--readme", action="store_true", help="write the table into README.md")
     p.add_argument("--quick", action="store_true", help="short runs that only show that the scripts work")
     o = p.parse_args()
     short = {"steps": 20} if o.quick else {}
@@ -48,12 +52,13 @@ def main() -> None:
     result = results["neighbour build"] = neighbour.measure(samples=samples)
     table += rows("neighbour list, 32,000 atoms", result, "ms_per_build", "ms")
     results["memory"], results["startup"] = memory.measure(samples=1 if o.quick else 3), startup.measure(2 if o.quick else 5)
-    print("\n" + ", ".join(f"{k} {v}" for k, v in results["machine"].items()) + "\n")
-    print("\n".join(table) + "\n")
-    for name, value in results["memory"].items():
-        print(f"memory, {name}: {value}")
-    for name, value in results["startup"].items():
-        print(f"start-up, {name}: {value}")
+    others = [*compare.lines("memory", results["memory"]), *compare.lines("start-up", results["startup"])]
+    text = "\n".join([*table, "", "Machine: " + ", ".join(f"{k} {v}" for k, v in results["machine"].items()) + ".", "",
+                      "```text", *others, "```"])
+    print("\n" + text)
+    if o.readme:
+        before, _, rest = README.read_text().partition(BEGIN)
+        README.write_text(before + BEGIN + "\n" + text + "\n" + END + rest.partition(END)[2])
     if o.json:
         Path(o.json).write_text(json.dumps(results, indent=1))
 

@@ -164,6 +164,15 @@ def arguments(description: str, samples: int = 7, steps: int = 100) -> argparse.
     return p
 
 
+def lines(name: str, value) -> list[str]:
+    """One number, or one line for each number of a group."""
+    if isinstance(value, dict) and "median" in value:
+        return [f"{name:32s} {value['median']:10.4g}           [{value['q1']:.4g}, {value['q3']:.4g}]"]
+    if isinstance(value, dict):
+        return [line for key, inner in value.items() for line in lines(f"{name}: {key}", inner)]
+    return [f"{name:32s} {value:10.4g}"]
+
+
 def show(title: str, result: dict, path: str | None = None) -> None:
     """Print a result, and write it to a file."""
     print(title)
@@ -174,6 +183,6 @@ def show(title: str, result: dict, path: str | None = None) -> None:
         print(f"  {'times ' + name:32s} {s['median']:10.2f}           [{s['q1']:.2f}, {s['q3']:.2f}]")
     for name, value in result.items():
         if name not in ("steps_per_second", "ratio"):
-            print(f"  {name:32s} {value}")
+            print(*(f"  {line}" for line in lines(name, value)), sep="\n")
     if path:
         Path(path).write_text(json.dumps({"title": title, "machine": machine(), **result}, indent=1))
