@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
-from asemd.kernels import cluster, pair_list, rebuild
+from asemd.kernels import cluster, cluster_rows, pair_list, rebuild
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 
@@ -15,27 +15,19 @@ SMALL = 256            # below this many atoms a plain list is cheaper than clus
 CENTRE = 13            # code of "no shift" among the 27
 
 
-@lru_cache(maxsize=None)
+@cache
 def kernels(ortho: bool):
     """The compiled list module for axis-aligned (`ortho`) or general cells."""
     b = Builder("neighbour lists")
     b.constant("CLUSTER", CLUSTER)
     b.constant("ORTHO", ortho)
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
-    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster.exclude, cluster.expand, cluster.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs,
-              rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.add_buffers, rebuild.clear,
-              rebuild.mark_special, rebuild.drop_excluded, rebuild.special_pairs):
-        b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster.rows))
+    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.expand,
+              cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load,
+              rebuild.store, rebuild.moved, rebuild.add_buffers, rebuild.clear, rebuild.mark_special,
+              rebuild.drop_excluded, rebuild.special_pairs):
+        b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster_rows.rows))
     return b.build()
-
-
-def grow(array: np.ndarray, size: int) -> np.ndarray:
-    """The array with room for at least `size` in its last axis, contents kept."""
-    if array.shape[-1] >= size:
-        return array
-    new = np.zeros(array.shape[:-1] + (int(size * 1.2) + 64,), array.dtype)
-    new[..., :array.shape[-1]] = array
-    return new
 
 
 class BinCell:
@@ -95,7 +87,8 @@ class ClusterList:
         wa, wb, wc = bins.widths
         share = CLUSTER / max(n, 1)
         # edge of the cube that holds one cluster; in layers and rows that are thinner than that, of the square or the line
-        h = max((share * bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))), share * max(wa, wb, wc))
+        h = max((share * bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))),
+                share * max(wa, wb, wc))
         nx, ny = max(1, round(wa / h)), max(1, round(wb / h))
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
@@ -148,9 +141,10 @@ class ClusterList:
 
             def work(t, results=results):
                 c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-                results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin, self.bins.inverse,
-                                     self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach, c0, c1, self.first[t],
-                                     self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t], self.work_codes[t], self.heaps[t], self.width, ns)
+                results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
+                                     self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
+                                     c0, c1, self.first[t], self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t],
+                                     self.work_codes[t], self.heaps[t], self.width, ns)
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
@@ -177,8 +171,8 @@ class ClusterList:
 
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-            results[t] = k.rows(state.x, state.row, self.first[t], self.entries[t], self.own, self.reach_first, c0, c1, self.shifts, self.reach**2, *partners,
-                                self.row_start[t], self.neighbors[t], self.row_work[t])
+            results[t] = k.rows(state.x, state.row, self.first[t], self.entries[t], self.own, self.reach_first, c0, c1, self.shifts,
+                                self.reach**2, *partners, self.row_start[t], self.neighbors[t], self.row_work[t])
         while True:
             parallel(work)
             if -1 in results:
@@ -206,7 +200,8 @@ class ClusterList:
 
     def longest(self) -> int:
         """Most neighbours of one cluster."""
-        return max((int(np.diff(self.first[t, self.bounds[t]:self.bounds[t + 1] + 1]).max(initial=0)) for t in range(self.threads)), default=0)
+        lengths = (np.diff(self.first[t, self.bounds[t]:self.bounds[t + 1] + 1]) for t in range(self.threads))
+        return max((int(length.max(initial=0)) for length in lengths), default=0)
 
     def expand(self, k, state, reach: float, room: int = 0):
         """The same pairs as plain arrays (i, j, code), closer than `reach`."""

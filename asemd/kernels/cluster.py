@@ -1,10 +1,12 @@
 """Sorting atoms into clusters and listing which clusters' atoms come near each other.
 
-Atoms stand in columns along the third cell vector, ordered along it by fine cells; `CLUSTER` consecutive ones form a cluster; empty slots pad the
-last cluster of a column. The list is half: cluster i holds single atoms j of later clusters (all images), and of its own cluster the images on the
-positive side. An entry is slot number + (shift code << 26); the code counts image -1, 0, 1 in base three, 13 is no shift, so no ghost atoms exist.
+Atoms stand in columns along the third cell vector, ordered along it by fine cells; `CLUSTER` consecutive ones form a cluster; empty
+slots pad the last cluster of a column. The list is half: cluster i holds single atoms j of later clusters (all images), and of its own
+cluster the images on the positive side. An entry is slot number + (shift code << 26); the code counts image -1, 0, 1 in base three, 13 is
+no shift, so no ghost atoms exist.
 
-These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the generated module.
+These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
+generated module. What follows from a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`.
 """
 from __future__ import annotations
 
@@ -112,7 +114,10 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
 
 
 def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2):
-    """Columns within `reach` of the stretch low..high (fractional) along one direction: number, image and squared gap of each; returns how many."""
+    """Columns within `reach` of the stretch low..high (fractional) along one direction: number, image and squared gap of each.
+
+    Returns how many.
+    """
     m = 0
     step = 1.0 / n
     for d in range(-r, r + 1):
@@ -140,10 +145,11 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
           first, entries, own, reach_first, unshifted, work, codes, heaps, width, empty):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
-    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (5, w)`, `codes (w,)`, `heaps (3, w + 1)`: candidates of one cluster;
-    `unshifted[c]` is set if no entry of cluster c needs a shift. A row holds first what only the first four atoms of the cluster need, then the
-    cluster itself (at `own[c]`, a multiple of 8), then what both halves need, then what only the last four need: the first half runs from the start to
-    `reach_first[c]`, the second from `own[c]` to the end. Rows end with copies of the slot `empty`, so that they fill whole vectors of `width`.
+    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (5, w)`, `codes (w,)`, `heaps (3, w + 1)`: candidates of
+    one cluster; `unshifted[c]` is set if no entry of cluster c needs a shift. A row holds first what only the first four atoms of the
+    cluster need, then the cluster itself (at `own[c]`, a multiple of 8), then what both halves need, then what only the last four need: the
+    first half runs from the start to `reach_first[c]`, the second from `own[c]` to the end. Rows end with copies of the slot `empty`, so
+    that they fill whole vectors of `width`.
     """
     n = 0
     r2 = reach * reach
@@ -289,146 +295,4 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             entries[n] = np.int32(empty) | np.int32(13 << 26)
             n += 1
     first[c1] = n
-    return n
-
-
-def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where, earlier):
-    """Entries of the list that special pairs take out, per cluster as (atom in cluster << 16) + place in the cluster's row.
-
-    Returns the number, or -1 if `excluded` is too small. `partner_start, partners`: for each atom row the rows it must not meet. `where (cap,)` and
-    `earlier (w,)` are work space. In small cells a row can hold two images of an atom: both are taken out (only one can be in reach of an atom).
-    """
-    n = 0
-    for ci in range(c0, c1):
-        excluded_first[ci] = n
-        f0 = first[ci]
-        count = first[ci + 1] - f0
-        s = ci * CLUSTER
-        for k in range(count):
-            if k < own[ci] or k >= own[ci] + CLUSTER:
-                j = entries[f0 + k] & SLOT_BITS
-                w = where[j]
-                listed = w < k and (w < own[ci] or w >= own[ci] + CLUSTER) and (entries[f0 + w] & SLOT_BITS) == j
-                earlier[k] = w if listed else -1
-                where[j] = k
-        for a in range(CLUSTER):
-            r = row[s + a]
-            if r < 0:
-                break
-            for q in range(partner_start[r], partner_start[r + 1]):
-                j = slot_of[partners[q]]
-                if j < s:            # listed in the partner's row
-                    continue
-                if n + 32 > excluded.shape[0]:
-                    return -1
-                if j < s + CLUSTER and j > s + a:
-                    excluded[n] = np.int32((a << 16) | (j - s + own[ci]))
-                    n += 1
-                w = where[j]
-                if w >= count or (w >= own[ci] and w < own[ci] + CLUSTER) or (entries[f0 + w] & SLOT_BITS) != j:
-                    continue
-                while w >= 0:
-                    excluded[n] = np.int32((a << 16) | w)
-                    n += 1
-                    w = earlier[w]
-    excluded_first[c1] = n
-    return n
-
-
-def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_code):
-    """The cluster list as plain pairs (slots i, j and shift code) within `reach2`; returns the number, or -1 if the arrays are too small."""
-    n = 0
-    for ci in range(c0, c1):
-        s = ci * CLUSTER
-        for a in range(CLUSTER):
-            if row[s + a] < 0:
-                break
-            for b in range(a + 1, CLUSTER):
-                if row[s + b] < 0:
-                    break
-                dx = x[0, s + a] - x[0, s + b]
-                dy = x[1, s + a] - x[1, s + b]
-                dz = x[2, s + a] - x[2, s + b]
-                if dx * dx + dy * dy + dz * dz < reach2:
-                    if n >= out_i.shape[0]:
-                        return -1
-                    out_i[n] = s + a
-                    out_j[n] = s + b
-                    out_code[n] = 13 * 4
-                    n += 1
-            for k in range(first[ci], first[ci + 1]):
-                e = entries[k]
-                j = e & SLOT_BITS
-                c = e >> 26
-                if row[j] < 0 or (c == 13 and j // CLUSTER == ci):
-                    continue
-                dx = x[0, s + a] - (x[0, j] + shifts[c, 0])
-                dy = x[1, s + a] - (x[1, j] + shifts[c, 1])
-                dz = x[2, s + a] - (x[2, j] + shifts[c, 2])
-                if dx * dx + dy * dy + dz * dz < reach2:
-                    if n >= out_i.shape[0]:
-                        return -1
-                    out_i[n] = s + a
-                    out_j[n] = j
-                    out_code[n] = c * 4
-                    n += 1
-    return n
-
-
-def rows(x, row, first, entries, own, reach_first, c0, c1, shifts, reach2, partner_start, partners, start, neighbors, work):
-    """The cluster list as rows of single atoms, for sparse systems: slots of clusters c0..c1-1, entries as in the cluster list.
-
-    Partners (special pairs) are left out. `start (nslots+1,)`, `neighbors (m,)`, `work (4, w)`; returns the number of entries, or -1 if `neighbors`
-    is too small, -2 if `work` is.
-    """
-    n = 0
-    px, py, pz, distance = work[0], work[1], work[2], work[3]
-    for ci in range(c0, c1):
-        s = ci * CLUSTER
-        f0 = np.int64(first[ci])
-        full = np.int64(first[ci + 1]) - f0
-        if full > work.shape[1]:
-            return -2
-        if n + CLUSTER * full > neighbors.shape[0]:
-            return -1
-        for k in range(full):
-            e = entries[f0 + k]
-            j = np.uint32(e & np.int32(SLOT_BITS))
-            c = np.uint32(e >> 26)
-            px[k] = x[0, j] + shifts[c, 0]
-            py[k] = x[1, j] + shifts[c, 1]
-            pz[k] = x[2, j] + shifts[c, 2]
-        mine = np.int64(own[ci])
-        for a in range(CLUSTER):
-            start[s + a] = n
-            px[mine + a] = 1e150      # atoms of the cluster that have had their turn, and the atom itself
-            r = row[s + a]
-            if r < 0:
-                continue
-            low = np.int64(0) if a < CLUSTER // 2 else mine
-            count = np.int64(reach_first[ci]) if a < CLUSTER // 2 else full - mine
-            xi, yi, zi = x[0, s + a], x[1, s + a], x[2, s + a]
-            for k in range(count):
-                dx = xi - px[np.uint64(low + k)]
-                dy = yi - py[np.uint64(low + k)]
-                dz = zi - pz[np.uint64(low + k)]
-                distance[k] = dx * dx + dy * dy + dz * dz
-            at = n
-            e0 = f0 + low
-            for k in range(count):
-                neighbors[np.uint64(n)] = entries[np.uint64(e0 + k)]
-                n += distance[k] < reach2
-            p0 = partner_start[r]
-            p1 = partner_start[r + 1]
-            if p1 > p0:
-                m = at
-                for k in range(at, n):
-                    other = row[neighbors[k] & SLOT_BITS]
-                    met = 0
-                    for q in range(p0, p1):
-                        met += partners[q] == other
-                    neighbors[m] = neighbors[k]
-                    m += met == 0
-                n = m
-    start[c1 * CLUSTER] = n
     return n
