@@ -304,6 +304,12 @@ class ForceField(Calculator):
             raise
         self._remember(atoms, system_changes)
 
+    def adopt(self, atoms, results: dict[str, Any]) -> None:
+        """Take over results that the time loop has found for the atoms as they are now."""
+        changes = self.check_state(atoms)
+        self.results = results
+        self._remember(atoms, changes)
+
     def _remember(self, atoms, changes) -> None:
         """Keep what the results belong to."""
         if self._seen and self.atoms is not None and set(changes) <= {"positions"}:

@@ -1,15 +1,18 @@
 """The compiled time loop as an ASE dynamics: observers, trajectories and log files as everywhere in ASE, compiled steps in between."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from ase.constraints import FixAtoms, FixCartesian
 from ase.md.md import MolecularDynamics as ASEMolecularDynamics
 
 from asemd import units as unit_styles
 from asemd.calculator import ForceField
 from asemd.errors import InputError
 from asemd.fix import Fix
+from asemd.fix.addforce import AddForce
+from asemd.fix.setforce import SetForce
 from asemd.loop import Loop
 
 
@@ -29,86 +32,152 @@ class MolecularDynamics(ASEMolecularDynamics):
     trajectory, logfile, loginterval, **kwargs
         As in ``ase.md``.
 
+    Raises
+    ------
+    InputError
+        Another calculator, a constraint other than FixAtoms and FixCartesian.
+
     Notes
     -----
-    Between two calls of observers no Python runs. Constraints of ASE are not applied: use fixes (setforce, freeze) instead; atoms with
-    constraints are refused.
+    `run` goes from one call of an observer to the next without Python; `irun` yields after every step, as in ASE. Positions are continuous:
+    atoms are not wrapped. Observers may change the atoms; the loop then starts again from there. Runs in pieces equal one long run.
+
+    FixAtoms and FixCartesian act as `asemd.fix.SetForce` with the velocities set to zero; forces of fixes that are part of the calculator
+    act without being named here. After Ctrl-C the atoms are those of the last complete step, after an error those of the last observer
+    call.
     """
 
     def __init__(self, atoms, timestep: float, fixes: Sequence[Fix] | None = None, groups=None, trajectory=None, logfile=None,
                  loginterval: int = 1, **kwargs):
         if not isinstance(atoms.calc, ForceField):
             raise InputError("asemd.MolecularDynamics needs atoms whose calculator is asemd.ForceField; other calculators run under ase.md")
-        if atoms.constraints:
-            raise InputError("asemd.MolecularDynamics does not apply ASE constraints: use fixes such as asemd.fix.SetForce, or ase.md")
         if fixes is None:
             from asemd.fix.nve import NVE
             fixes = [NVE()]
-        self.fixes = list(fixes)
-        self.groups = {"all": np.ones(len(atoms), bool), **(groups or {})}
+        self.fixes, self.groups = list(fixes), dict(groups or {})
+        self._held(atoms)
         super().__init__(atoms, timestep, trajectory=trajectory, logfile=logfile, loginterval=loginterval, **kwargs)
         self._loop: Loop | None = None
 
-    def _factors(self):
-        units = self.atoms.calc.units
-        return {d: unit_styles.factor(d, units) for d in ("time", "distance", "velocity", "force", "energy")}
+    # ---- atoms -> loop ------------------------------------------------------------------------------------------------------------------
+    @staticmethod
+    def _held(atoms) -> np.ndarray:
+        """(n, 3) bool: components that constraints keep still."""
+        held = np.zeros((len(atoms), 3), bool)
+        for constraint in atoms.constraints:
+            if isinstance(constraint, FixAtoms):
+                held[constraint.index] = True
+            elif isinstance(constraint, FixCartesian):
+                held[constraint.index] |= np.asarray(constraint.mask, bool)
+            else:
+                raise InputError("asemd.MolecularDynamics knows the constraints FixAtoms and FixCartesian, not "
+                                 f"{type(constraint).__name__}: use a fix, or ase.md")
+        return held
+
+    def _all_fixes(self) -> tuple[list[Fix], dict[str, np.ndarray], np.ndarray]:
+        """The fixes asked for, those of the calculator and of constraints; the groups they act on; the components held still."""
+        atoms, calc = self.atoms, self.atoms.calc
+        groups = {"all": np.ones(len(atoms), bool)} | {name: np.asarray(mask, bool) for name, mask in self.groups.items()}
+        fixes = list(self.fixes)
+        for k, load in enumerate(calc.loads):
+            groups[f"load {k}"] = calc.mask(atoms, load.group)
+            fixes.append(AddForce(f"load {k}", load.force))
+        held = self._held(atoms)
+        for pattern in np.unique(held, axis=0) if len(held) else ():
+            if pattern.any():
+                name = f"held {len(groups)}"
+                groups[name] = (held == pattern).all(axis=1)
+                fixes.append(SetForce(name, tuple(0.0 if h else None for h in pattern)))
+        return fixes, groups, held
 
     def _start(self, steps: int) -> Loop:
         """A loop that starts from the atoms as they are now."""
-        calc, u = self.atoms.calc, self._factors()
-        system = calc._system(self.atoms)
-        system.v[:] = self.atoms.get_velocities() / u["velocity"]
-        if self._loop is None or self._loop.system.n != system.n:
-            self._loop = Loop(system, calc.interactions, calc.settings, self.fixes, self.groups, self.dt / u["time"], self.nsteps)
-        else:
-            self._loop.system = system
-            self._loop.engine.update(system)
-            self._loop.dt, self._loop.step = self.dt / u["time"], self.nsteps
-        self._start_x = self.atoms.get_positions()
+        atoms, calc = self.atoms, self.atoms.calc
+        u = {d: unit_styles.factor(d, calc.units) for d in ("time", "velocity")}
+        system = calc._system(atoms)
+        calc.interactions.check_complete(system)
+        fixes, groups, held = self._all_fixes()
+        system.v = np.where(held, 0.0, atoms.get_velocities() / u["velocity"])
+        self._given = (calc, self.dt, list(self.fixes), dict(self.groups), held)
+        self._loop = Loop(system, calc.interactions, calc.neighbor_settings(atoms), fixes, groups, self.dt / u["time"], self.nsteps)
+        self._forces_are_own = not any("post_force" in fix.hooks() for fix in fixes)
         self._loop.setup(self.nsteps, self.nsteps + steps)
+        self._from = atoms.get_positions(), system.box.unwrap(system.x, system.image)
         return self._loop
 
+    # ---- loop -> atoms ------------------------------------------------------------------------------------------------------------------
     def _publish(self, result) -> None:
         """Positions, momenta and results of the loop to the atoms."""
-        loop, u, atoms = self._loop, self._factors(), self.atoms
-        system = loop.system
-        x = system.box.unwrap(system.x, system.image) * u["distance"]
-        atoms.arrays["positions"][:] = x
+        atoms, calc, system = self.atoms, self.atoms.calc, self._loop.system
+        u = {d: unit_styles.factor(d, calc.units) for d in ("distance", "velocity")}
+        there, here = self._from     # atoms that do not move keep their positions to the last bit
+        atoms.arrays["positions"][:] = there + (system.box.unwrap(system.x, system.image) - here) * u["distance"]
         atoms.set_momenta(system.v * u["velocity"] * self.masses, apply_constraint=False)
-        calc = atoms.calc
-        calc.atoms = atoms.copy()
-        energy = result.potential * u["energy"]
-        calc.results = {"energy": energy, "free_energy": energy, "forces": result.forces * u["force"]}
-        if atoms.cell.rank == 3:
-            from asemd.calculator import VOIGT
-            calc.results["stress"] = -(result.virial + result.virial_of.get("tail", 0.0))[VOIGT] * u["energy"] / atoms.get_volume()
+        if result is not None:
+            results = calc.convert(result, atoms)
+            if not self._forces_are_own:     # the loop's forces hold those of thermostats too: the calculator computes its own when asked
+                del results["forces"]
+            calc.adopt(atoms, results)
+
+    def _changed(self) -> bool:
+        """Whether the loop cannot go on: the atoms, the fixes or the timestep are not those it has left."""
+        atoms = self.atoms
+        if self._loop is None or self._loop.step != self.nsteps or not np.array_equal(atoms.arrays["momenta"], self._momenta):
+            return True
+        calc, dt, fixes, groups, held = self._given
+        same = calc is atoms.calc and dt == self.dt and fixes == self.fixes and all(groups.get(k) is m for k, m in self.groups.items())
+        return not same or bool(calc.check_state(atoms)) or not np.array_equal(held, self._held(atoms))
+
+    def _advance(self, steps: int, begin: int, end: int) -> None:
+        """That many compiled steps."""
+        if self._changed():
+            self._start(end - self.nsteps)
+        loop = self._loop
+        loop.begin, loop.end = begin, end
+        try:
+            self._publish(loop.advance(steps))
+        except KeyboardInterrupt:
+            self._publish(None)
+            self.nsteps = loop.step
+            loop.finish()
+            self._loop = None
+            raise
+        except Exception:
+            self._loop = None
+            raise
+        self._momenta = self.atoms.arrays["momenta"].copy()
 
     def step(self):
         """One step (for code that drives the dynamics by hand)."""
-        loop = self._start(1)
-        self._publish(loop.advance(1))
-        loop.finish()
+        self._advance(1, self.nsteps, self.nsteps + 1)
+        self._loop.finish()
 
-    def irun(self, steps=50):
-        """As in ASE, but compiled from one observer call to the next; yields whenever Python has control."""
-        self.max_steps = self.nsteps + steps
+    def _stretches(self, steps: int, longest: int) -> Iterator[bool]:
+        begin = self.nsteps
+        self.max_steps = end = begin + steps
         if self.nsteps == 0:
             self._refresh_properties()
             self.log()
             self.call_observers()
         yield self.nsteps == self.max_steps
-        loop = self._start(steps) if steps else None
-        while self.nsteps < self.max_steps:
-            stretch = min([self.max_steps - self.nsteps] + [
-                interval - self.nsteps % interval if interval > 0 else max(1, -interval - self.nsteps)
-                for _, interval, _, _ in self.observers])
-            self._publish(loop.advance(stretch))
+        while self.nsteps < end:
+            calls = [interval - self.nsteps % interval if interval > 0 else -interval - self.nsteps for _, interval, _, _ in self.observers]
+            stretch = min([longest, end - self.nsteps, *(c for c in calls if c > 0)])
+            self._advance(stretch, begin, end)
             self.nsteps += stretch
             self.log()
             self.call_observers()
             yield self.nsteps == self.max_steps
-        if loop is not None:
-            loop.finish()
+        if self._loop is not None:
+            self._loop.finish()
+
+    def irun(self, steps=50):
+        """As in ASE: yields before the first and after every step."""
+        return self._stretches(steps, 1)
+
+    def run(self, steps=50):
+        """As in ASE, but compiled from one observer call to the next."""
+        return list(self._stretches(steps, max(steps, 1)))[-1]
 
     def todict(self):
         return {"type": "molecular-dynamics", "md-type": "asemd", "timestep": self.dt, "fixes": [f.style for f in self.fixes]}
