@@ -464,7 +464,7 @@ def test_added_forces_are_part_of_the_calculator(tmp_path):
     assert "addforce 0.5 0 -1 on group two" in repr(atoms.calc)
     energy = atoms.get_potential_energy()
     session = both.asemd(script("real", more) + "thermo_style custom step pe\nthermo_modify norm no\nrun 0\n")
-    assert session.last_thermo["pe"] * kcal == pytest.approx(energy, rel=1e-9)
+    assert session.last_thermo["PotEng"] * kcal == pytest.approx(energy, rel=1e-9)
     atoms.arrays["image"][two] += 1            # unwrapped positions count
     jump = -(forces[two] @ atoms.cell.array.sum(0)).sum()
     assert atoms.get_potential_energy() - energy == pytest.approx(jump, rel=1e-9)
