@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asemd.errors import InputError, InputWarning
-from asemd.style import PairStyle, PairTables, missing_pairs
+from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 
 if TYPE_CHECKING:
     from asemd.forcefield import Interactions, Use

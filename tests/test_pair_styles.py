@@ -15,7 +15,8 @@ import pytest
 
 from asemd import style
 from asemd.errors import InputError
-from asemd.style import mix_distance, mix_energy, module_of
+from asemd.pairstyle import mix_distance, mix_energy
+from asemd.style import module_of
 
 STYLES = [n for n in style.names("pair") if style.find("pair", n).parts and n != "table"]
 QQ = -302.0

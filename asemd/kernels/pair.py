@@ -10,7 +10,7 @@ import numpy as np
 
 from asemd.kernels import pair_cluster, pair_list
 from asemd.kernels.generate import Builder
-from asemd.style import PairStyle
+from asemd.pairstyle import PairStyle
 
 ROWS = (536, 1048, 2072, 4120, 8216, 16408, 32792)
 

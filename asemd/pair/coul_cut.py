@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.style import pair
+from asemd.pairstyle import pair
 
 
 @pair("coul/cut", settings="cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="10.0", example="9.0",

@@ -5,6 +5,7 @@ them. Each sub-style is a `asemd.forcefield.Use` of `asemd.forcefield.Interactio
 """
 from __future__ import annotations
 
-from asemd.style import PairStyle, register
+from asemd.pairstyle import PairStyle
+from asemd.style import register
 
 register(PairStyle("hybrid", [], doc=__doc__, see="LAMMPS manual, pair_style hybrid"))

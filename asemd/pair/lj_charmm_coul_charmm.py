@@ -13,7 +13,7 @@ import math
 from asemd.errors import InputError
 from asemd.pair.coul_cut import coul_cut
 from asemd.pair.lj_cut import lj_cut
-from asemd.style import PairStyle, make_part, pack_parts, pair_sum
+from asemd.pairstyle import PairStyle, make_part, pack_parts, pair_sum
 
 
 def lj_charmm(r2, epsilon: "energy", sigma: "distance", inner2, outer2, scale):

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.style import pair
+from asemd.pairstyle import pair
 
 
 def tail(c, cut):

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from asemd.pair.coul_cut import coul_cut
 from asemd.pair.lj_cut import lj_cut, tail
-from asemd.style import pair_sum
+from asemd.pairstyle import pair_sum
 
 pair_sum("lj/cut/coul/cut", (lj_cut, "cut_lj"), (coul_cut, "cut_coul"), settings="cut_lj [cut_coul]",
          coeff="epsilon sigma [cut_lj] [cut_coul]", defaults={"cut_coul": "cut_lj"}, mix={"epsilon": "sigma", "sigma": "distance"},

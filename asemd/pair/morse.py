@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.style import pair
+from asemd.pairstyle import pair
 
 
 @pair("morse", settings="cut", coeff="D0 alpha r0 [cut]", settings_example="2.5", example="1.0 2.0 1.2 2.4",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.style import pair
+from asemd.pairstyle import pair
 
 
 @pair("soft", settings="cut", coeff="A [cut]", mix={"A": "geometric"}, settings_example="1.2", example="10.0 1.1",

@@ -14,7 +14,8 @@ import numpy as np
 
 from asemd import tabulated, words
 from asemd.errors import InputError
-from asemd.style import PairStyle, PairTables, register
+from asemd.pairstyle import PairStyle, PairTables
+from asemd.style import register
 from asemd.tabulated import clamped_spline, cubic_coefficients, spline_value
 
 METHODS = ("lookup", "linear", "spline", "bitmap")

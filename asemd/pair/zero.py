@@ -2,7 +2,8 @@ r"""No forces; makes a neighbour list with the given cutoff.  Words after the cu
 from __future__ import annotations
 
 from asemd.errors import InputError, nearest
-from asemd.style import PairStyle, register
+from asemd.pairstyle import PairStyle
+from asemd.style import register
 
 
 class Zero(PairStyle):

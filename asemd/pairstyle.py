@@ -1,0 +1,278 @@
+r"""Pair styles: functions of the distance, and the axes around them (cutoff, shift, mixing, special factors).
+
+A pair style is a sum of parts, each a function of ``r2`` (or ``r``) that returns energy and derivative by that argument::
+
+    @pair("lj/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, example=...)
+    def lj_cut(r2, epsilon: "energy", sigma: "distance"): ...
+
+A part that takes ``qq`` (the product of charges times the Coulomb constant) is a Coulomb part: it follows the Coulomb special
+factors and is counted as ``ecoul``. Cutoff, shift, mixing, special factors are axes around the function, never inside it.
+
+Annotations and bodies follow the rules of `asemd.style`.
+"""
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.style import Parameter, Style, register, units_of
+
+
+@dataclass(frozen=True)
+class Part:
+    """One function of a pair style: `kind` vdwl or coul says which special factor and which thermo column it has;
+    `cut` is the name of the coefficient or setting that ends it."""
+
+    function: Callable
+    kind: str
+    cut: str
+    rows: tuple[str, ...]        # per-pair coefficients it takes, in order
+    constants: tuple[str, ...]   # settings it takes, in order
+    arrays: tuple[str, ...]
+    coordinate: str              # "r" or "r2"
+    charged: bool
+
+
+@dataclass(frozen=True)
+class PairTables:
+    """`rows (nrow, ntypes+1, ntypes+1)`: for each part cut^2, offset, then its coefficients; `constants`: settings of all parts."""
+
+    rows: np.ndarray
+    constants: np.ndarray
+    arrays: tuple[np.ndarray, ...] = ()
+
+
+def mix_energy(rule: str, ei: float, ej: float, si: float, sj: float) -> float:
+    """Energy of a mixed pair; `si, sj` are the sizes that the rule ``sixthpower`` weighs with."""
+    if ei * ej < 0.0:
+        raise InputError(f"energies {ei:g} and {ej:g} of different sign cannot be mixed: give pair_coeff for that pair of types")
+    energy = math.sqrt(ei * ej)
+    if rule == "sixthpower":
+        a, b = abs(si) ** 3, abs(sj) ** 3
+        return 2.0 * energy * a * b / (a * a + b * b) if a + b > 0.0 else 0.0
+    return energy
+
+
+def mix_distance(rule: str, si: float, sj: float) -> float:
+    """Length of a mixed pair."""
+    if rule == "geometric":
+        if si * sj < 0.0:
+            raise InputError(f"lengths {si:g} and {sj:g} of different sign cannot be mixed: give pair_coeff for that pair of types")
+        return math.sqrt(si * sj)
+    if rule == "arithmetic":
+        return 0.5 * (si + sj)
+    return ((si**6 + sj**6) / 2.0) ** (1.0 / 6.0)
+
+
+def _names(spec: str) -> list[tuple[str, bool]]:
+    """``"epsilon sigma [cut]"`` -> [(epsilon, False), (sigma, False), (cut, True)]."""
+    return [(w.strip("[]"), w.startswith("[")) for w in spec.split()]
+
+
+class PairStyle(Style):
+    """A pair style: a fused sum of parts on a grid of type pairs.
+
+    Parameters
+    ----------
+    parts : sequence of (function, cut)
+        Functions and the name of the setting or coefficient that is their cutoff.
+    settings, coeff : str
+        ``"cut_lj [cut_coul]"``: names of the words, optional ones in brackets; an optional coefficient defaults to the setting of the
+        same name or follows the coefficient named in `defaults`, an optional setting to `defaults`.
+    mix : mapping
+        Coefficient -> how i-j follows from i-i and j-j: ``distance``; for an energy the coefficient that plays sigma in the rule
+        ``sixthpower``, or ``geometric`` whatever the rule. Cutoffs mix as distances. Empty: i-j must be given. `mix_rule` is the
+        default rule.
+    tail : callable, optional
+        ``tail(coeff, cut) -> (e, p)``: integrals for ``pair_modify tail yes`` of one type pair (energy and pressure, without the
+        factors of number and volume), see `asemd/pair/lj_cut.py`.
+    units : mapping
+        Units of settings and coefficients that no function argument names.
+    rows : str
+        Names of function arguments that differ by pair of types but are not words of ``pair_coeff`` (`pack_pairs` makes them).
+    """
+
+    twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
+
+    def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
+                 mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", **options):
+        notes = dict(units)
+        for function, _ in parts:
+            notes = {**units_of(function), **notes}
+        self.mix, self.mix_rule, self.tail = dict(mix), mix_rule, tail
+
+        def parameters(spec):
+            return tuple(Parameter(n, notes.get(n) or ("distance" if n.startswith(("cut", "inner", "outer")) else ""), optional,
+                                   defaults.get(n)) for n, optional in _names(spec))
+        main = parts[0][0] if parts else None
+        super().__init__("pair", name, main, settings=parameters(settings), coeff=parameters(coeff), **options)
+        mine = {p.name for p in self.coeff} | set(rows.split())
+        self.parts = tuple(make_part(function, cut, mine) for function, cut in parts)
+        self.charged = any(p.charged for p in self.parts)
+
+    def functions(self):
+        return tuple(p.function for p in self.parts)
+
+    def variant(self, settings: Mapping[str, Any], compat: str = "") -> PairStyle:
+        """The style whose parts are computed: this one, unless settings or ``compat="lammps"`` ask for other functions."""
+        return self.twin if compat == "lammps" and self.twin else self
+
+    def parse_settings(self, words):
+        values = super().parse_settings(words)
+        for p in self.settings:
+            if p.name not in values and p.default is not None:
+                values[p.name] = values[p.default] if isinstance(p.default, str) else p.default
+        for p in self.settings:
+            if p.name.startswith("cut") and values.get(p.name, 1.0) < 0.0:
+                raise InputError(f"pair_style {self.name}: cutoff {p.name} must not be negative, got {values[p.name]:g}")
+        return values
+
+    def parse_coeff(self, words, settings):
+        values = super().parse_coeff(words, settings)
+        for p in self.coeff:
+            if p.name.startswith("cut") and values.get(p.name, 1.0) < 0.0:
+                raise InputError(f"pair_coeff {self.name}: cutoff {p.name} must not be negative, got {values[p.name]:g}")
+        return values
+
+    def reset_cutoffs(self, coeffs: Mapping[tuple[int, int], Mapping[str, Any]]) -> dict[tuple[int, int], dict[str, Any]]:
+        """Coefficients after the same ``pair_style`` is given again: cutoffs of single pairs go back to the setting."""
+        return {pair: {n: v for n, v in values.items() if not n.startswith("cut")} for pair, values in coeffs.items()}
+
+    def cutoffs(self, coeff: Mapping[str, Any], settings: Mapping[str, Any]) -> list[float]:
+        """Cutoff of each part for one pair of types."""
+        return [float(coeff.get(p.cut, settings.get(p.cut, 0.0))) for p in self.parts]
+
+    def reach(self, coeff: Mapping[str, Any], settings: Mapping[str, Any]) -> float:
+        """The distance up to which the neighbour list must go for one pair of types."""
+        return max(self.cutoffs(coeff, settings), default=0.0)
+
+    def complete(self, values: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+        """Coefficients of one pair with the optional ones filled in: those given, else the one it follows, else the setting."""
+        out = dict(values)
+        for p in self.coeff:
+            if p.name not in out:
+                if isinstance(p.default, str) and p.default in values:
+                    out[p.name] = values[p.default]
+                elif p.name in settings:
+                    out[p.name] = settings[p.name]
+        return out
+
+    def mixed(self, a: Mapping[str, Any], b: Mapping[str, Any], rule: str) -> dict[str, Any]:
+        """Coefficients of i-j from the complete ones of i-i and j-j."""
+        out = {}
+        for p in self.coeff:
+            how = self.mix.get(p.name) or ("distance" if p.name.startswith("cut") else "")
+            if how == "distance":
+                out[p.name] = mix_distance(rule, a[p.name], b[p.name])
+            elif how == "geometric":
+                out[p.name] = mix_energy(how, a[p.name], b[p.name], 0.0, 0.0)
+            elif how:
+                out[p.name] = mix_energy(rule, a[p.name], b[p.name], a[how], b[how])
+        return out
+
+    def filled(self, coeffs: Mapping[tuple[int, int], Mapping[str, Any]], settings: Mapping[str, Any], ntypes: int,
+               rule: str | None = None, only=None) -> dict[tuple[int, int], dict[str, Any]]:
+        """Coefficients of every pair i <= j: given ones, else mixed ones.
+
+        Parameters
+        ----------
+        rule : str, optional
+            ``geometric``, ``arithmetic`` or ``sixthpower`` of pair_modify; None is the style's own.
+        only : set of (i, j), optional
+            The pairs this sub-style of a hybrid serves; None: all.
+
+        Raises
+        ------
+        InputError
+            A pair is neither given nor mixable.
+        """
+        pairs = only if only is not None else {(i, j) for i in range(1, ntypes + 1) for j in range(i, ntypes + 1)}
+        out, missing = {}, []
+        for i, j in sorted(pairs):
+            if (i, j) in coeffs:
+                out[i, j] = self.complete(coeffs[i, j], settings)
+            elif i != j and self.mix and (i, i) in coeffs and (j, j) in coeffs:
+                a, b = self.complete(coeffs[i, i], settings), self.complete(coeffs[j, j], settings)
+                try:
+                    out[i, j] = self.mixed(a, b, rule or self.mix_rule)
+                except InputError as e:
+                    raise InputError(f"pair style {self.name}, types {i} {j}: {e.message}") from None
+            else:
+                missing.append((i, j))
+        if missing:
+            raise InputError(missing_pairs(missing) + ("" if self.mix else f" (pair style {self.name} does not mix)"))
+        return out
+
+    def constants(self, settings: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the functions may take besides coefficients: the settings. Override to add numbers that follow from them."""
+        return settings
+
+    def pack_pairs(self, settings: Mapping[str, Any], filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int, units,
+                   shift: bool = False) -> PairTables:
+        """Tables for the kernels; pairs that are not in `filled` have cut^2 = 0 and never interact.
+
+        Parameters
+        ----------
+        shift : bool
+            ``pair_modify shift yes``: the offset of parts without charges is their energy at the cutoff.
+        """
+        return pack_parts(self.parts, self.constants(settings), filled, ntypes, lambda c: self.cutoffs(c, settings), shift,
+                          {p.name for p in self.coeff if p.unit == "angle"})
+
+
+def make_part(function: Callable, cut: str, by_pair) -> Part:
+    """The `Part` of one function; arguments named in `by_pair` are rows, the others constants."""
+    args = units_of(function)
+    names = [n for n in args if n not in ("r", "r2", "qq")]
+    return Part(function, "coul" if "qq" in args else "vdwl", cut,
+                rows=tuple(n for n in names if n in by_pair and args[n] != "array"),
+                constants=tuple(n for n in names if n not in by_pair and args[n] != "array"),
+                arrays=tuple(n for n in names if args[n] == "array"),
+                coordinate="r2" if "r2" in args else "r", charged="qq" in args)
+
+
+def pack_parts(parts, constants, filled, ntypes: int, cutoffs: Callable, shift: bool, angles=frozenset(), arrays=()) -> PairTables:
+    """`PairTables` of `parts` from complete coefficients by pair; `cutoffs(coeff)` gives the cutoff of each part."""
+    rows = np.zeros((sum(2 + len(p.rows) for p in parts), ntypes + 1, ntypes + 1))
+    numbers = [[float(constants[n]) for n in p.constants] for p in parts]
+    for (i, j), c in filled.items():
+        k = 0
+        for part, fixed, cut in zip(parts, numbers, cutoffs(c), strict=True):
+            values = [math.radians(c[n]) if n in angles else c[n] for n in part.rows]
+            offset = 0.0
+            if shift and not part.charged and cut > 0.0:
+                offset = part.function(cut * cut if part.coordinate == "r2" else cut, *values, *fixed)[0]
+            end = k + 2 + len(values)
+            rows[k:end, i, j] = rows[k:end, j, i] = [cut * cut, offset, *values]
+            k = end
+    return PairTables(rows, np.array([x for fixed in numbers for x in fixed]), tuple(arrays))
+
+
+def missing_pairs(pairs) -> str:
+    """The message for type pairs without coefficients."""
+    listed = ", ".join(f"{i} {j}" for i, j in pairs[:6]) + (", ..." if len(pairs) > 6 else "")
+    return f"All pair coeffs are not set: pair_coeff for type pairs {listed} is missing"
+
+
+def pair(name: str, **options):
+    """Register one function as pair style `name`; its cutoff is the setting or coefficient ``cut``. Options as in `PairStyle`."""
+    cls = options.pop("cls", PairStyle)
+
+    def decorate(function):
+        cut = options.pop("cut", "cut")
+        register(cls(name, [(function, cut)], doc=inspect.getdoc(inspect.getmodule(function)) or "", **options))
+        return function
+    return decorate
+
+
+def pair_sum(name: str, *parts: tuple[Callable, str], **options) -> PairStyle:
+    """Register the fused sum of `parts` (function, name of its cutoff) as pair style `name`."""
+    doc = inspect.getdoc(inspect.getmodule(inspect.stack()[1][0])) or ""
+    return register(options.pop("cls", PairStyle)(name, list(parts), doc=doc, **options))
