@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from asemd.errors import InputError, nearest
-from asemd.formula import Clock, Parser, Provider, Value
+from asemd.formula import Parser, Provider
+from asemd.formula_functions import Clock, Value
 from asemd.marsaglia import Marsaglia
 
 STYLES = ("delete", "index", "loop", "string", "getenv", "format", "internal", "equal", "atom")

@@ -1,7 +1,6 @@
 """LAMMPS's input language: sessions, scripts, data files, and `Lammps`, with the methods of the ``lammps`` Python module."""
 from __future__ import annotations
 
-import ctypes
 import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -9,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.lammps.atom_arrays import AtomArrays
 
 if TYPE_CHECKING:
     from asemd.scene import Scene
 
 LMP_STYLE_GLOBAL, LMP_STYLE_ATOM, LMP_STYLE_LOCAL = 0, 1, 2
 LMP_TYPE_SCALAR, LMP_TYPE_VECTOR, LMP_TYPE_ARRAY, LMP_SIZE_VECTOR, LMP_SIZE_ROWS, LMP_SIZE_COLS = 0, 1, 2, 3, 4, 5
-INT_FIELDS = ("id", "type", "mask", "molecule", "image")
 TYPE_COUNTS = ("ntypes", "nbondtypes", "nangletypes", "ndihedraltypes", "nimpropertypes")
 ITEMS = {"nbonds": "bonds", "nangles": "angles", "ndihedrals": "dihedrals", "nimpropers": "impropers"}
 
 
-class Lammps:
+class Lammps(AtomArrays):
     """A session with the methods of the ``lammps`` Python module.
 
     Parameters
@@ -132,109 +131,6 @@ class Lammps:
     @property
     def is_running(self) -> bool:
         return self.session.running
-
-    # ---------------------------------------------------------------- atoms ---
-
-    def get_natoms(self) -> int:
-        return self.scene.system.n if self.scene.system is not None else 0
-
-    def _field(self, name: str) -> np.ndarray:
-        """The session's own array of a per-atom quantity, (n,) or (n, 3)."""
-        system = self.scene.need_system("extract_atom")
-        if name == "mask":
-            return sum((m.astype(np.int32) << self.scene.groups.bit(g) for g, m in self.scene.groups.items()), np.zeros(system.n, np.int32))
-        if name == "mass":
-            return system.mass
-        if name in ("x", "v", "f", "id", "type", "molecule", "image", "q", "rmass"):
-            values = getattr(system, name)
-        else:
-            values = system.extra.get(name)
-        if values is None:
-            raise InputError(f"atoms of style {system.atom_style} have no property {name!r}")
-        return values
-
-    def extract_atom(self, name: str, dtype=None) -> np.ndarray:
-        """The session's array of a per-atom property: ``l.extract_atom("x")[i][k]``; mass is by type."""
-        values = self._field(name)
-        return self.encode_image_array(values) if name == "image" else values
-
-    def _ordered(self) -> np.ndarray:
-        """Rows in order of id, which must be 1 to N."""
-        system = self.scene.need_system("gather_atoms")
-        rows = np.argsort(system.id, kind="stable")
-        if not np.array_equal(system.id[rows], np.arange(1, system.n + 1)):
-            raise InputError("gather and scatter by id need atom ids from 1 to N without gaps")
-        return rows
-
-    def gather_atoms(self, name: str, dtype: int, count: int):
-        """A property of all atoms in order of id: ctypes array of ``count`` numbers per atom; dtype 0 int, 1 double."""
-        return self._c_array(self._columns(name, count)[self._ordered()], dtype)
-
-    def gather_atoms_concat(self, name: str, dtype: int, count: int):
-        """As `gather_atoms`, in the session's order."""
-        return self._c_array(self._columns(name, count), dtype)
-
-    def gather_atoms_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int]):
-        """As `gather_atoms`, for the given ids."""
-        return self._c_array(self._columns(name, count)[self._rows(ids, ndata)], dtype)
-
-    def scatter_atoms(self, name: str, dtype: int, count: int, data) -> None:
-        """Set a property of all atoms, given in order of id."""
-        self._scatter(name, count, data, self._ordered())
-
-    def scatter_atoms_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int], data) -> None:
-        """Set a property of the atoms with the given ids."""
-        self._scatter(name, count, data, self._rows(ids, ndata))
-
-    def _columns(self, name: str, count: int) -> np.ndarray:
-        values = self._field(name)
-        if name == "image" and count == 1:
-            values = self.encode_image_array(values)
-        width = 1 if values.ndim == 1 else values.shape[1]
-        if width != count:
-            raise InputError(f"gather_atoms: {name} has {width} value(s) per atom, not {count}")
-        return values
-
-    def _rows(self, ids: Sequence[int], ndata: int) -> np.ndarray:
-        return self.scene.need_system("gather_atoms").index_of(np.asarray(list(ids)[:ndata], dtype=np.int64))
-
-    def _scatter(self, name: str, count: int, data, rows: np.ndarray) -> None:
-        target = self._field(name)
-        values = np.array(data[:len(rows) * count], dtype=float if target.dtype.kind == "f" else np.int64)
-        if name == "image" and count == 1:
-            values = np.array([self.decode_image_flags(int(v)) for v in values])
-        if name in ("mask", "mass") or values.size != target[rows].size:
-            raise InputError(f"scatter_atoms: {name} cannot be set with {count} value(s) per atom")
-        target[rows] = values.reshape(target[rows].shape)
-        self.session.changed()
-
-    @staticmethod
-    def _c_array(values: np.ndarray, dtype: int):
-        kind = ctypes.c_double if dtype == 1 else ctypes.c_int
-        flat = np.asarray(values).ravel()
-        return (kind * flat.size)(*(flat.tolist() if dtype == 1 else flat.astype(np.int64).tolist()))
-
-    def gather_bonds(self):
-        """Number of bonds and a ctypes int array of type, id, id."""
-        system = self.scene.need_system("gather_bonds")
-        topology = system.topology
-        table = np.column_stack([topology.bond_types, system.id[topology.bonds]]) if len(topology.bonds) else np.zeros((0, 3), int)
-        return len(table), self._c_array(table, 0)
-
-    @staticmethod
-    def encode_image_flags(ix: int, iy: int, iz: int) -> int:
-        """Three image flags in one integer."""
-        return (ix + 512 & 1023) | (iy + 512 & 1023) << 10 | (iz + 512 & 1023) << 20
-
-    @staticmethod
-    def decode_image_flags(image: int) -> list[int]:
-        """Three image flags out of one integer."""
-        return [(image >> shift & 1023) - 512 for shift in (0, 10, 20)]
-
-    @staticmethod
-    def encode_image_array(image: np.ndarray) -> np.ndarray:
-        flags = image.astype(np.int64) + 512 & 1023
-        return (flags[:, 0] | flags[:, 1] << 10 | flags[:, 2] << 20).astype(np.int32)
 
     # ------------------------------------------------------------------ box ---
 

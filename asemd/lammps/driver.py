@@ -10,7 +10,8 @@ import numpy as np
 from asemd import units
 from asemd.errors import InputError
 from asemd.lammps import log
-from asemd.thermo import Moment, Progress, evaluate
+from asemd.moment import Moment, Progress
+from asemd.thermo import evaluate
 
 CHUNK = 0.5     # seconds between looks at the keyboard and updates of the progress bar
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from asemd import thermo, units
 from asemd.errors import InputError, nearest
-from asemd.formula import Clock
+from asemd.formula_functions import Clock
 from asemd.lammps import catalog
 
 AXES = {"x": 0, "y": 1, "z": 2}

@@ -12,8 +12,8 @@ from asemd.lammps.log import Log, to_stdout
 from asemd.lammps.providers import Providers
 from asemd.lammps.script import Command
 from asemd.lammps.switches import Switches
+from asemd.moment import Moment, Progress
 from asemd.scene import Scene
-from asemd.thermo import Moment, Progress
 from asemd.variable import Variables
 
 NESTING = 16

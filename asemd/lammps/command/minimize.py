@@ -9,7 +9,7 @@ from asemd.errors import InputError
 from asemd.lammps import log
 from asemd.lammps.driver import Driver, Plan, check, memory
 from asemd.minimize import Problem, find
-from asemd.thermo import Progress
+from asemd.moment import Progress
 from asemd.words import number, whole
 
 DAMPED = ("fire", "quickmin")       # they move atoms with velocities, which stay
