@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import importlib
 import importlib.util
 import inspect
 import os
+import re
 import sys
 import tempfile
 import textwrap
 import types
 from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
@@ -194,13 +197,20 @@ class Builder:
         return load(self.source())
 
 
+@cache
+def _source_of(module: str) -> str:
+    """The text of a module of asemd that generated code imports: it is part of what the code is."""
+    return inspect.getsource(importlib.import_module(module))
+
+
 def load(text: str) -> types.ModuleType:
     """The module with that text, written to the cache folder unless it is there."""
     import numba
 
     import asemd
     _wide_vectors(numba)
-    key = f"{asemd.__version__}|{numba.__version__}|{np.__version__}|{sys.version_info[:2]}|{text}"
+    imported = "".join(map(_source_of, sorted(set(re.findall(r"^from (asemd\.[\w.]+) import", text, re.M)))))
+    key = f"{asemd.__version__}|{numba.__version__}|{np.__version__}|{sys.version_info[:2]}|{text}|{imported}"
     stem = "k_" + hashlib.sha256(key.encode()).hexdigest()[:24]
     name = f"{PACKAGE}.{stem}"
     if name in sys.modules:
