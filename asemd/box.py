@@ -286,6 +286,7 @@ class Box:
         """The box with its shrink-wrapped faces moved to the atoms (LAMMPS's frame only; others come back as they are).
 
         A face ``s`` ends 1e-4 of the initial box length beyond the outermost atom; ``m`` does not go inside the initial bound.
+        Directions whose vector is tilted stay as they are.
         """
         if not self.is_lammps_frame or not len(x) or not any(set(b) & set("sm") for b in self.boundary):
             return self
@@ -295,6 +296,8 @@ class Box:
         margin = MARGIN * (self.initial[1] - self.initial[0])
         new_lo, new_hi = lo.copy(), hi.copy()
         for k, (lower, upper) in enumerate(self.boundary):
+            if np.count_nonzero(self.cell[k]) > 1:      # a tilted vector would change its direction, and with it what is inside the cell
+                continue
             if lower in "sm":
                 new_lo[k] = lo[k] + s[:, k].min() * length[k] - margin[k]
             if lower == "m":
@@ -306,6 +309,12 @@ class Box:
         box = Box.from_lammps(new_lo, new_hi, self.tilt, self.boundary, self.triclinic)
         box.initial = self.initial
         return box
+
+    def beyond(self, x: np.ndarray) -> np.ndarray:
+        """(n, 3) bool: which atoms are beyond a fixed face along each cell vector."""
+        s = self.fractional(x)
+        lower, upper = (np.array([faces[k] == "f" for faces in self.boundary]) for k in (0, 1))
+        return (s < 0.0) & lower | (s >= 1.0) & upper
 
     def to_lammps(self) -> tuple[Box, np.ndarray]:
         """The box in LAMMPS's frame, at the origin, and how to get there.
