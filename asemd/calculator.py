@@ -15,6 +15,7 @@ from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
 from asemd.loads import Load, constraints_of, loads_of
+from asemd.native import as_json, coefficients, with_keys
 from asemd.system import System
 from asemd.topology import Topology
 
@@ -67,7 +68,7 @@ class ForceField(Calculator):
         if not skin >= 0.0:
             raise InputError(f"skin must not be negative, got {skin}")
         given = dict(bond=bond, angle=angle, dihedral=dihedral, improper=improper, pair=pair)
-        self.arguments = {category: _keyed(styles or {}) for category, styles in given.items()} | dict(
+        self.arguments = {category: with_keys(styles or {}) for category, styles in given.items()} | dict(
             special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric)
         self.interactions: Interactions | None = None
         self.topology = Topology(**topology) if isinstance(topology, Mapping) else topology
@@ -143,7 +144,7 @@ class ForceField(Calculator):
 
     def todict(self, skip_default: bool = True) -> dict:
         """The arguments, JSON-able; of a script's force field the commands that make it."""
-        out: dict[str, Any] = {k: _plain(v) for k, v in self.arguments.items() if v and not (k == "dielectric" and v == 1.0)}
+        out: dict[str, Any] = {k: as_json(v) for k, v in self.arguments.items() if v and not (k == "dielectric" and v == 1.0)}
         if self.interactions is not None and not self.arguments:
             out["units"], out["commands"] = self.units, self.commands()
         if self.topology is not None and self.arguments:
@@ -187,7 +188,7 @@ class ForceField(Calculator):
         if "type" not in atoms.arrays:
             if self.like is not None:
                 raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements")
-            named = {k for style in self.arguments["pair"].values() for key in _coefficients(style)
+            named = {k for style in self.arguments["pair"].values() for key in coefficients(style)
                      for k in (key if isinstance(key, tuple) else (key,)) if isinstance(k, str)}
             symbols = set(atoms.get_chemical_symbols())
             self.types += sorted((symbols | (named if not self.types else set())) - set(self.types))
@@ -372,31 +373,3 @@ class ForceField(Calculator):
 
 def _same(a, b) -> bool:
     return a is b or (a is not None and b is not None and a.shape == b.shape and bool((a == b).all()))
-
-
-def _coefficients(style) -> Mapping:
-    """The part of a style's entry that goes by types."""
-    return style.get("coeff", {}) if isinstance(style, Mapping) and style and not set(style) - {"settings", "coeff"} else style
-
-
-def _keyed(styles: Mapping) -> dict:
-    """Styles with keys as JSON has to write them (``"1"``, ``"Ar Kr"``) turned back into numbers and pairs."""
-    def key(k):
-        if not isinstance(k, str):
-            return k
-        words = [int(w) if w.isdigit() else w for w in k.split()]
-        return words[0] if len(words) == 1 else tuple(words)
-    out = {}
-    for name, style in styles.items():
-        coeff = {key(k): v for k, v in _coefficients(style).items()}
-        out[name] = coeff if _coefficients(style) is style else {**style, "coeff": coeff}
-    return out
-
-
-def _plain(value):
-    """Values that JSON can write; pairs of types become words."""
-    if isinstance(value, Mapping):
-        return {k if isinstance(k, str) else " ".join(map(str, k)) if isinstance(k, tuple) else str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
-    return value.item() if isinstance(value, np.generic) else value

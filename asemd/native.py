@@ -75,3 +75,31 @@ def text(values, style=None) -> list[str]:
     if not hasattr(values, "__iter__"):
         values = (values,)
     return [repr(float(v)) if isinstance(v, float) else str(v) for v in values]
+
+
+def coefficients(style) -> Mapping:
+    """The part of a style's entry that goes by types."""
+    return style.get("coeff", {}) if isinstance(style, Mapping) and style and not set(style) - {"settings", "coeff"} else style
+
+
+def with_keys(styles: Mapping) -> dict:
+    """Styles with keys as JSON has to write them (``"1"``, ``"Ar Kr"``) turned back into numbers and pairs."""
+    def key(k):
+        if not isinstance(k, str):
+            return k
+        words = [int(w) if w.isdigit() else w for w in k.split()]
+        return words[0] if len(words) == 1 else tuple(words)
+    out = {}
+    for name, style in styles.items():
+        coeff = {key(k): v for k, v in coefficients(style).items()}
+        out[name] = coeff if coefficients(style) is style else {**style, "coeff": coeff}
+    return out
+
+
+def as_json(value):
+    """Values that JSON can write; pairs of types become words."""
+    if isinstance(value, Mapping):
+        return {" ".join(map(str, k)) if isinstance(k, tuple) else str(k): as_json(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):      # numbers and arrays of numpy
+        return value.tolist()
+    return [as_json(v) for v in value] if isinstance(value, (list, tuple)) else value

@@ -74,6 +74,17 @@ def test_slab_in_vacuum(mode):
 
 
 @pytest.mark.parametrize("mode", ["cluster", "plain"])
+def test_slab_in_a_tilted_cell_with_vacuum(mode):
+    """Only part of a tilted, non-periodic direction is filled; periodic images stay what they are."""
+    rng = np.random.default_rng(4)
+    for name in ("triclinic", "most negative tilt", "left-handed"):
+        for k in range(3):
+            x = scattered(60, CELLS[name], 0, rng)
+            cell = CELLS[name] * np.where(np.arange(3) == k, 3.0, 1.0)[:, None]
+            assert errors(make(x, cell, np.arange(3) != k, rng), mode)[1] < 1e-12, (name, k)
+
+
+@pytest.mark.parametrize("mode", ["cluster", "plain"])
 @pytest.mark.parametrize("name", ["orthogonal", "triclinic", "rotated"])
 def test_atoms_on_faces_and_outside(name, mode):
     """Lattice sites on all faces, edges and corners, and the same atoms moved by whole cell vectors."""
