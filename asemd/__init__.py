@@ -15,6 +15,7 @@ _LAZY = {
     "ForceField": "asemd.calculator",
     "plan": "asemd.lammps.plan",
     "validate": "asemd.testing.validate",
+    "MolecularDynamics": "asemd.dynamics",
     "Atoms": "asemd.system",
     "System": "asemd.system",
     "Box": "asemd.box",
