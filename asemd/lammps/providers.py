@@ -87,7 +87,7 @@ class Providers:
             if "radius" not in s.extra:
                 raise InputError(f"atom style {s.atom_style} has no radius")
             return s.extra["radius"]
-        return {"x": s.x, "v": s.v, "f": s.f}[name[0]][:, AXES[name[-1]]]
+        return (s.x if len(name) == 1 else {"v": s.v, "f": s.f}[name[0]])[:, AXES[name[-1]]]      # x y z, vx .. fz
 
     def row(self, atom_id: int) -> int:
         rows = np.flatnonzero(self.system.id == atom_id)
