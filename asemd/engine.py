@@ -2,93 +2,21 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 
 import numpy as np
 from numba import config
 
 from asemd import units as unit_styles
-from asemd.errors import InputError, SimulationError
-from asemd.kernels.state import State, cell_arrays
-from asemd.neighbor import SMALL, BinCell, ClusterList, PlainList, kernels, partner_table
-from asemd.term import BONDED_KEY, BondedTerm, PairListTerm, PairRowsTerm, PairTerm
+from asemd.errors import LostAtoms, SimulationError
+from asemd.exclusions import Exclusions
+from asemd.kernels.state import cell_arrays, empty_state
+from asemd.kernels.team import Team
+from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, kernels
+from asemd.result import Result, Settings, Snapshot
+from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
-CATEGORIES = ("pair", "bond", "angle", "dihedral", "improper")
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
-PLURAL = {"bond": "bonds", "angle": "angles", "dihedral": "dihedrals", "improper": "impropers"}
-
-
-@dataclass
-class Settings:
-    """How lists are built and forces computed.
-
-    Parameters
-    ----------
-    skin : float
-        Extra distance of the neighbour list.
-    every, delay, check
-        When to rebuild, as in ``neigh_modify``.
-    exclude : list
-        ``("type", i, j)``, ``("group", mask_i, mask_j)``, ``("molecule/intra", mask)``, ``("molecule/inter", mask)``; masks (n,) bool.
-    threads : int
-    precision : str
-        ``double``, or ``mixed``: pair arithmetic in single precision, sums in double.
-    """
-
-    skin: float = 0.3
-    every: int = 1
-    delay: int = 0
-    check: bool = True
-    exclude: list = field(default_factory=list)
-    threads: int = 1
-    precision: str = "double"
-
-
-@dataclass
-class Result:
-    """Energies, forces, virial of one configuration, in the units of the system.
-
-    `virial` (6,): xx yy zz xy xz yz, sum of r_i f_i over all terms (energy units, without tail corrections);
-    `virial_of` and `energies_of`, `virials_of`: the same by category.
-    """
-
-    energy: dict[str, float]
-    virial: np.ndarray
-    virial_of: dict[str, np.ndarray]
-    forces: np.ndarray
-    energies: np.ndarray | None = None
-    virials: np.ndarray | None = None
-    energies_of: dict[str, np.ndarray] = field(default_factory=dict)
-    virials_of: dict[str, np.ndarray] = field(default_factory=dict)
-
-    @property
-    def potential(self) -> float:
-        return float(sum(self.energy.values()))
-
-
-@dataclass
-class Snapshot:
-    """What computes, thermo output and dumps see of a step."""
-
-    system: object
-    result: Result
-    groups: dict[str, np.ndarray]
-    dt: float
-    step: int = 0
-    fixes: list = field(default_factory=list)
-
-    @property
-    def units(self):
-        return unit_styles.get(self.system.units)
-
-    @property
-    def dimension(self) -> int:
-        return self.system.dimension
-
-    def mask(self, group: str) -> np.ndarray:
-        return self.groups[group]
 
 
 class Engine:
@@ -111,7 +39,7 @@ class Engine:
         self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
-        self._pool = None
+        self.parallel = Team(self.threads)
         self.groups: dict[str, np.ndarray] = {}
         self.bits: dict[str, int] = {"all": 1}
         self.result: Result | None = None
@@ -123,25 +51,32 @@ class Engine:
     def update(self, system) -> None:
         """Take over types, charges, topology, box and groups after they changed; coefficients too."""
         self.system = system
-        n = system.n
         self._set_box()
-        s = self.settings
-        inter = self.interactions
-        nt = system.counts["ntypes"]
-        self.pair_terms = [t for t in inter.pair_terms(nt, self.units) if t.style.parts]
-        single = s.precision == "mixed"
+        s, inter = self.settings, self.interactions
+        self.pair_terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts]
         for kind, *pair in s.exclude:
             if kind == "type":
                 for t in self.pair_terms:
-                    row = 0
-                    for part in t.style.parts:
-                        t.tables.rows[row, pair[0], pair[1]] = t.tables.rows[row, pair[1], pair[0]] = 0.0
-                        row += 2 + len(part.rows)
-        self.cutoff = max((float(t.tables.rows[r].max()) for t in self.pair_terms for r in self._cut_rows(t)), default=0.0) ** 0.5
+                    t.exclude(*pair)
+        self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) for t in self.pair_terms), default=0.0) ** 0.5
         self.reach = self.cutoff + s.skin
-        self._set_special()
-        rules = [e for e in s.exclude if e[0] != "type"]
-        self._set_rules(rules, n)
+        self.exclusions = Exclusions(system, inter, s.exclude, bool(self.pair_terms))
+        self._choose_list()
+        self.terms = self._make_terms()
+        for k, t in enumerate(self.terms):
+            t.index = k
+        self.acc = np.zeros((self.threads, max(1, len(self.terms)), 8))
+        self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
+        self._rows()
+        width = 16 if s.precision == "mixed" else 8
+        self.list = ClusterList(self.threads, self.reach, width) if self.mode == "cluster" else PlainList(self.reach)
+        self.state = None
+        self._offset = None
+        self.ns = 0
+
+    def _choose_list(self) -> None:
+        """Which neighbour list the scene needs, and why."""
+        n = self.system.n
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
         widths = 1.0 / np.linalg.norm(np.linalg.inv(self.vectors), axis=0)
         if not self.pair_terms:
@@ -152,13 +87,16 @@ class Engine:
             self.mode, self.why = "plain", "a periodic cell width is below twice cutoff plus skin"
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
-        self.expanded = self.mode == "cluster" and (table or bool(len(self.rules)))
+        self.expanded = self.mode == "cluster" and (table or bool(len(self.exclusions.rules)))
         volume = abs(float(np.linalg.det(self.vectors)))
         self.sparse = self.mode == "cluster" and not self.expanded and 2.1 * self.reach**3 * n < SPARSE * volume
         if self.sparse:
             self.why = f"fewer than {SPARSE} neighbours per atom: rows of single atoms"
+
+    def _make_terms(self) -> list:
         terms: list = []
-        weighted = bool(len(self.special_kept))
+        single = self.settings.precision == "mixed"
+        weighted = bool(len(self.exclusions.weighted))
         for t in self.pair_terms:
             if self.mode == "cluster" and not self.expanded:
                 terms.append(PairRowsTerm(t) if self.sparse else PairTerm(t, single))
@@ -166,33 +104,7 @@ class Engine:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special"))
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all"))
-        for category in CATEGORIES[1:]:
-            items = getattr(system.topology, PLURAL[category])
-            types = getattr(system.topology, f"{category}_types")
-            for use in inter.uses.get(category, []):
-                if use.style.function is None or not len(items):
-                    continue
-                mine = np.isin(types, list(use.coeff))
-                if mine.any():
-                    terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], self.units))
-                    self._one_four(use, items[mine], types[mine], terms)
-        for k, t in enumerate(terms):
-            t.index = k
-        self.terms = terms
-        self.acc = np.zeros((self.threads, max(1, len(terms)), 8))
-        self.bad = np.zeros((self.threads, max(1, len(terms)), 4))
-        self._rows(n)
-        self.list = ClusterList(self.threads, self.reach, 16 if single else 8) if self.mode == "cluster" else PlainList(self.reach)
-        self.state = None
-        self._offset = None
-        self.ns = 0
-
-    @staticmethod
-    def _cut_rows(term):
-        row = 0
-        for part in term.style.parts:
-            yield row
-            row += 2 + len(part.rows)
+        return terms + bonded_terms(self.system, self.interactions, self.pair_terms, self.units)
 
     def _set_box(self) -> None:
         box = self.system.box
@@ -205,66 +117,19 @@ class Engine:
         self.ortho = not np.count_nonzero(off) and bool((np.diag(self.vectors) > 0).all())
         self.inverse = np.ascontiguousarray(np.linalg.inv(self.vectors))
         self.cell = cell_arrays(self.vectors, self.periodic)
-        codes = np.array([(a, b, c) for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1)], float)
-        self.shifts27 = codes @ self.cell.reduced
-        self.periodic27 = (codes[:, ~self.periodic] == 0).all(axis=1)
+        self.shifts27 = IMAGES @ self.cell.reduced
+        self.periodic27 = (IMAGES[:, ~self.periodic] == 0).all(axis=1)
         self.k = kernels(self.ortho)
         self._bins = None
 
-    def _set_special(self) -> None:
-        inter, system = self.interactions, self.system
-        self.weight_lj = np.array([1.0, *inter.special_lj])
-        self.weight_coul = np.array([1.0, *inter.special_coul])
-        self.special_kept = np.zeros((0, 2), np.int32)
-        self.special_kinds = np.zeros(0, np.int32)
-        self.partners = None
-        if not self.pair_terms or system.topology.is_empty:
-            return
-        pairs, kinds = inter.special_pairs(system)
-        changed = (self.weight_lj[kinds] != 1.0) | (self.weight_coul[kinds] != 1.0)
-        pairs, kinds = pairs[changed], kinds[changed].astype(np.int32)
-        if not len(pairs):
-            return
-        self.partners = partner_table(system.n, pairs, kinds)
-        self.keep = np.array([True] + [bool(a != 0 or b != 0) for a, b in zip(self.weight_lj[1:], self.weight_coul[1:])])
-        kept = self.keep[kinds]
-        self.special_kept, self.special_kinds = np.ascontiguousarray(pairs[kept], np.int32), np.ascontiguousarray(kinds[kept])
+    def set_groups(self, groups, bits) -> None:
+        """Masks of groups (n,) and their bits, for the masks of the slots from the next list on."""
+        self.groups, self.bits = dict(groups), dict(bits)
+        self._rows()
 
-    def _set_rules(self, rules, n: int) -> None:
-        self.rules = np.zeros((len(rules), 3), np.int64)
-        self.rule_mask = np.zeros(n, np.int64)
-        bit = 1
-        for k, (kind, *masks) in enumerate(rules):
-            self.rules[k, 0] = {"group": 0, "molecule/intra": 1, "molecule/inter": 2}[kind]
-            for m, mask in enumerate(masks):
-                self.rule_mask[mask] |= bit
-                self.rules[k, 1 + m] = bit
-                bit <<= 1
-        self.molecule = np.asarray(self.system.molecule, np.int64) if self.system.molecule is not None else np.zeros(n, np.int64)
-
-    def _one_four(self, use, items, types, terms) -> None:
-        """Weighted 1-4 pairs of dihedral style charmm, computed with the pair style's 1-4 coefficients."""
-        weight = getattr(use.style, "weight_14", "")
-        if not weight:
-            return
-        weights = np.array([0.0] + [float(use.coeff.get(t, {}).get(weight, 0.0)) for t in range(1, int(types.max()) + 1)])
-        w = weights[types]
-        used = w != 0.0
-        if not used.any():
-            return
-        owner = next((t for t in self.pair_terms if hasattr(t.style, "one_four")), None)
-        if owner is None:
-            raise InputError("dihedral style charmm with a nonzero weight needs a pair style with 1-4 coefficients, such as lj/charmm/coul/charmm")
-        tables = owner.style.one_four(owner.use.settings, owner.filled, self.system.counts["ntypes"], self.units)
-        for value in np.unique(w[used]):
-            pairs = np.ascontiguousarray(items[w == value][:, [0, 3]], np.int32)
-            term = PairListTerm(owner.style, tables, owner.style.one_four_parts, "one_four",
-                                (pairs, np.full(len(pairs), 1, np.int32), np.array([1.0, value, value, value])))
-            terms.append(term)
-
-    def _rows(self, n: int) -> None:
+    def _rows(self) -> None:
         """Per-atom constants by row, from which slots are filled at each build."""
-        s = self.system
+        s, n = self.system, self.system.n
         self.type_row = np.ascontiguousarray(s.type, np.int32)
         self.mass_row = np.ascontiguousarray(np.nan_to_num(s.atom_masses(), nan=1.0), float)
         self.inverse_row = self.units.ftm2v / self.mass_row
@@ -278,8 +143,7 @@ class Engine:
 
     def _allocate(self, capacity: int) -> None:
         old = self.state
-        new = State(np.zeros((3, capacity)), np.zeros((3, capacity)), np.zeros((3, capacity)), np.full(capacity, -1, np.int32),
-                    np.zeros(capacity, np.int32), np.ones(capacity), np.zeros(capacity), np.zeros(capacity), np.zeros(capacity, np.int32))
+        new = empty_state(capacity)
         if old is not None:
             m = self.ns
             for a, b in zip(new, old):
@@ -288,18 +152,6 @@ class Engine:
         self.state = new._replace(f=self.buffers[0])
         self.held = np.zeros((3, capacity))
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
-
-    def parallel(self, work) -> None:
-        """Run ``work(tid)`` on every thread; kernels release the interpreter lock."""
-        if self.threads == 1:
-            work(0)
-            return
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(self.threads - 1)
-        futures = [self._pool.submit(work, t) for t in range(1, self.threads)]
-        work(0)
-        for f in futures:
-            f.result()
 
     def __getstate__(self):
         raise TypeError("an Engine holds compiled code and is made anew from its scene")
@@ -338,21 +190,21 @@ class Engine:
                 self._allocate(self.list.capacity)
                 s = self.state
             self.ns = self.list.sort(k, s, self.ns, bins)
-        k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row, s.type, s.mass,
-                 s.inverse_mass, s.q, s.mask, s.x, self.held)
+        k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row,
+                 s.type, s.mass, s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":
-            hide = None if self.expanded or self.sparse else self.partners
+            partners = self.exclusions.partners
+            hide = None if self.expanded or self.sparse else partners
             self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel)
             if self.expanded:
                 self._mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             if self.sparse:
                 nobody = (np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32))
-                self.rows = self.list.rows(k, s, self.ns, self.partners[:2] if self.partners is not None else nobody, self.parallel)
-            if self.expanded:
-                self.special = None
-            elif len(self.special_kept):
-                self.special = [np.empty(len(self.special_kept), np.int32) for _ in range(3)]
-                k.special_pairs(self.special_kept, self.special_kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
+                self.rows = self.list.rows(k, s, self.ns, partners[:2] if partners is not None else nobody, self.parallel)
+            weighted, kinds = self.exclusions.weighted, self.exclusions.weighted_kinds
+            self.special = [np.empty(len(weighted), np.int32) for _ in range(3)]
+            if len(weighted) and not self.expanded:
+                k.special_pairs(weighted, kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
         elif self.mode == "plain":
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self._mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
@@ -367,38 +219,28 @@ class Engine:
         box = self.system.box
         if not box.is_lammps_frame:
             return
-        inside = self.state.row[:self.ns] >= 0
-        x, rows = self.state.x[:, :self.ns].T[inside], self.state.row[:self.ns][inside]
+        rows = self.state.row[:self.ns]
+        inside = rows >= 0
+        x, rows = self.state.x[:, :self.ns].T[inside], rows[inside]
         new = box.shrink_wrapped(x)
         if new is not box:
-            self.system.box = new
+            self.system.box = box = new
             self._set_box()
-            box = new
-        s = box.fractional(x)
-        for a in np.flatnonzero([b in ("ff", "fs", "sf", "fm", "mf") for b in box.boundary]):
-            below, above = box.boundary[a]
-            out = ((s[:, a] < 0.0) & (below == "f")) | ((s[:, a] >= 1.0) & (above == "f"))
-            if out.any() and self.system.dimension > a:
-                ids = np.sort(self.system.id[rows[out]])
-                first = rows[out][np.argmin(self.system.id[rows[out]])]
-                where = self.state.x[a, self.slot_of_row(first)]
-                raise SimulationError(
-                    f"{len(ids)} atom{'s' * (len(ids) > 1)} lost: atom {ids[0]} at {'xyz'[a]} = {where:g} left the box [{box.lo[a]:g}, {box.hi[a]:g}] through a "
-                    "fixed boundary; use a shrink-wrapped boundary, a wall, or a shorter time step")
-
-    def slot_of_row(self, row: int) -> int:
-        """The slot an atom stands in."""
-        return int(np.flatnonzero(self.state.row[:self.ns] == row)[0])
+        out = box.beyond(x)[:, :self.system.dimension]
+        lost = np.flatnonzero(out.any(axis=1))
+        if len(lost):
+            ids = self.system.id[rows[lost]]
+            first = lost[np.argmin(ids)]
+            a = int(np.flatnonzero(out[first])[0])
+            raise LostAtoms(f"{len(lost)} atom{'s' * (len(lost) > 1)} lost: atom {ids.min()} at {'xyz'[a]} = {x[first, a]:g} left the box "
+                            f"[{box.lo[a]:g}, {box.hi[a]:g}] through a fixed boundary; use a shrink-wrapped boundary, a wall, "
+                            "or a shorter time step", np.sort(rows[lost]))
 
     def _mark(self, i, j, code, shifts) -> None:
-        """Special pairs and exclusions of a plain list."""
-        n = len(i)
-        if len(self.rules):
-            n = self.k.drop_excluded(self.state.row, i, j, code, n, self.rule_mask, self.molecule, self.rules)
-        if self.partners is not None:
-            n = self.k.mark_special(self.state.x, self.state.row, i, j, code, n, shifts, *self.partners, self.keep, self.cell.reduced * self.periodic[:, None],
-                                    self.cell.reduced_inverse)
-        self.plain, self.plain_shifts = [i[:n], j[:n], code[:n]], shifts
+        """Keep a plain list, special pairs and exclusions marked."""
+        s = self.state
+        self.plain = self.exclusions.mark(self.k, s.x, s.row, i, j, code, shifts, self.cell, self.periodic)
+        self.plain_shifts = shifts
 
     @property
     def pairs(self) -> int:
@@ -479,7 +321,8 @@ class Engine:
                 d = self.state.x[:, i] - self.state.x[:, j] - self.list.shifts[code >> 2].T
                 m = int(np.argmin((d * d).sum(0)))
                 a, b = sorted(int(s.id[self.state.row[t[m]]]) for t in (i, j))
-                return SimulationError(f"atoms {a} and {b} overlap (distance {np.sqrt((d[:, m]**2).sum()):.3g}): energy or force is not finite")
+                distance = np.sqrt((d[:, m] ** 2).sum())
+                return SimulationError(f"atoms {a} and {b} overlap (distance {distance:.3g}): energy or force is not finite")
         who = f"atom {s.id[bad[0]]}: force is not finite (NaN or infinite)" if len(bad) else "the energy is not finite"
         return SimulationError(who + "; atoms overlap, or the time step is too long")
 

@@ -56,6 +56,21 @@ class SimulationError(AsemdError):
     """The physics went wrong: an atom lost, a bond past its limit, NaN; the message names atom ids."""
 
 
+class LostAtoms(SimulationError):
+    """Atoms that are beyond a fixed face of the box, where nothing interacts with them.
+
+    Parameters
+    ----------
+    message : str
+    rows : (m,) int array
+        Their rows in the system.
+    """
+
+    def __init__(self, message: str, rows):
+        super().__init__(message)
+        self.rows = rows
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """` (did you mean X?)` for the closest known word, or an empty string."""
     match = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)

@@ -56,9 +56,7 @@ class Loop:
         self.engine = Engine(system, interactions, settings)
         self.units = self.engine.units
         self.result: Result | None = None
-        self.engine.groups = {name: groups[name] for name in groups}
-        self.engine.bits = {name: self.group_bit(name) for name in groups}
-        self.engine._rows(system.n)
+        self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)

@@ -12,7 +12,7 @@ from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 
 SMALL = 256            # below this many atoms a plain list is cheaper than clusters
-CENTRE = 13            # code of "no shift" among the 27
+IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
 
 
 @cache
@@ -72,7 +72,6 @@ class ClusterList:
 
     def __init__(self, threads: int, reach: float, width: int = 8):
         self.threads, self.reach, self.width = threads, reach, width
-        self.codes = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)
         self.capacity = 0
         self.nx = self.ny = self.nz = 0
         self.entries = np.zeros((threads, 0), np.int32)
@@ -133,7 +132,7 @@ class ClusterList:
     def build(self, k, state, ns: int, cell_vectors: np.ndarray, periodic: np.ndarray, partners, slot_of, parallel) -> None:
         """Build the list and its exclusions in the sorted slots."""
         ncl = ns // CLUSTER
-        self.shifts = self.codes @ cell_vectors
+        self.shifts = IMAGES @ cell_vectors
         again = self.shares is None and self.threads > 1
         while True:
             self._split(ncl)

@@ -34,6 +34,16 @@ class PairTerm:
     label: str
     has_tail: bool
 
+    @property
+    def cut_rows(self) -> list[int]:
+        """Which rows of the tables are squared cutoffs: the first one of each part."""
+        lengths = [2 + len(part.rows) for part in self.style.parts]
+        return [sum(lengths[:k]) for k in range(len(lengths))]
+
+    def exclude(self, i: int, j: int) -> None:
+        """Take a pair of types out."""
+        self.tables.rows[self.cut_rows, i, j] = self.tables.rows[self.cut_rows, j, i] = 0.0
+
     def tail(self, system, units) -> tuple[float, float]:
         """Long-range correction of this term: energy, and pressure in the pressure units of the scene; zero without ``tail yes``."""
         if not self.has_tail or self.style.tail is None:

@@ -45,7 +45,6 @@ COORDINATES = {
     "improper": ("phi", "chi", "omega"),
     "pair": ("r", "r2"),
 }
-ATOMS = {"bond": 2, "angle": 3, "dihedral": 4, "improper": 4}
 ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
 _registry: dict[tuple[str, str], Style] = {}
 

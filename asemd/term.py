@@ -5,8 +5,9 @@ from typing import Protocol
 
 import numpy as np
 
-from asemd.errors import SimulationError
+from asemd.errors import InputError, SimulationError
 from asemd.kernels import pair as pair_kernels
+from asemd.kernels.cluster import CLUSTER
 
 BONDED_KEY = {"bond": "ebond", "angle": "eangle", "dihedral": "edihed", "improper": "eimp"}
 
@@ -49,12 +50,14 @@ class BondedTerm:
         self.periodic, self.orthogonal = bool(engine.periodic.any()), engine.ortho
         if self.start is None or len(self.start) != engine.system.n + 1:
             self.start = np.searchsorted(self.items[:, 0], np.arange(engine.system.n + 1)).astype(np.int32)
-        engine.k.to_slots(engine.state.row, engine.ns, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types, self.order)
+        engine.k.to_slots(engine.state.row, engine.ns, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types,
+                          self.order)
 
     def arguments(self, engine, tid):
         m, nth = len(self.items), engine.threads
-        return (engine.state.x, engine.buffers[tid], self.slots, self.slot_types, engine.cell, self.packed.coeff, self.packed.arrays, m * tid // nth,
-                m * (tid + 1) // nth, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+        return (engine.state.x, engine.buffers[tid], self.slots, self.slot_types, engine.cell, self.packed.coeff, self.packed.arrays,
+                m * tid // nth, m * (tid + 1) // nth, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid],
+                engine.bad[tid, self.index])
 
     def describe(self, engine, item, value):
         from asemd.kernels import bonded
@@ -77,7 +80,7 @@ class PairTerm:
         return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single)[0]
 
     def rebuild(self, engine):
-        self.exclude = engine.partners is not None
+        self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(engine.list.longest())
         if row > self.row:
             self.row = pair_kernels.row_length(int(1.15 * engine.list.longest()))
@@ -91,9 +94,9 @@ class PairTerm:
 
     def arguments(self, engine, tid):
         s, c = engine.state, engine.list
-        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.reach_first, c.unshifted, c.shifts, c.excluded_first[tid], c.excluded[tid],
-                int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, self.buffer[tid], self.types[tid],
-                self.saved[tid], engine.acc[tid, self.index])
+        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.reach_first, c.unshifted, c.shifts,
+                c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
+                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
@@ -118,8 +121,8 @@ class PairRowsTerm:
     def arguments(self, engine, tid):
         s, c = engine.state, engine.list
         start, neighbors = engine.rows
-        return (s.x, engine.buffers[tid], s.q, s.type, start[tid], neighbors[tid], c.shifts, 8 * int(c.bounds[tid]), 8 * int(c.bounds[tid + 1]),
-                self.p, self.tables.rows, engine.qqr2e, engine.acc[tid, self.index])
+        return (s.x, engine.buffers[tid], s.q, s.type, start[tid], neighbors[tid], c.shifts, CLUSTER * int(c.bounds[tid]),
+                CLUSTER * int(c.bounds[tid + 1]), self.p, self.tables.rows, engine.qqr2e, engine.acc[tid, self.index])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
@@ -146,10 +149,10 @@ class PairListTerm:
     def rebuild(self, engine):
         if self.pairs == "all":
             self.i, self.j, self.code, self.shifts = *engine.plain, engine.plain_shifts
-            self.lj, self.coul = engine.weight_lj, engine.weight_coul
+            self.lj, self.coul = engine.exclusions.weight_lj, engine.exclusions.weight_coul
         elif self.pairs == "special":
             self.i, self.j, self.code, self.shifts = *engine.special, engine.shifts27
-            self.lj, self.coul = engine.weight_lj, engine.weight_coul
+            self.lj, self.coul = engine.exclusions.weight_lj, engine.exclusions.weight_coul
         else:
             pairs, kinds, weights = self.one_four
             out = [np.empty(len(pairs), np.int32) for _ in range(3)]
@@ -160,12 +163,52 @@ class PairListTerm:
     def arguments(self, engine, tid):
         s, m, nth = engine.state, len(self.i), engine.threads
         return (s.x, engine.buffers[tid], s.q, s.type, self.i, self.j, self.code, self.shifts, self.lj, self.coul, m * tid // nth,
-                m * (tid + 1) // nth, self.tables.rows, self.tables.constants, self.tables.arrays, engine.qqr2e, engine.acc[tid, self.index],
-                engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+                m * (tid + 1) // nth, self.tables.rows, self.tables.constants, self.tables.arrays, engine.qqr2e,
+                engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
 
     def describe(self, engine, item, value):
         s = engine.state
         ids = sorted(int(engine.system.id[s.row[a[item]]]) for a in (self.i, self.j))
         why = "the atoms coincide" if value == 0 else self.style.domain or "outside the style's domain"
-        return SimulationError(f"pair style {self.style.name}: energy or force between atoms {ids[0]} and {ids[1]} at distance {value:.6g} "
-                               f"is not finite: {why}")
+        return SimulationError(f"pair style {self.style.name}: energy or force between atoms {ids[0]} and {ids[1]} "
+                               f"at distance {value:.6g} is not finite: {why}")
+
+
+def bonded_terms(system, interactions, pair_terms, units) -> list:
+    """The terms of all bonded styles in use, and the weighted 1-4 pairs that dihedral styles ask for."""
+    terms: list = []
+    for category, items, types in system.topology:
+        for use in interactions.uses.get(category, []):
+            mine = np.isin(types, list(use.coeff))
+            if use.style.function is not None and mine.any():
+                terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units))
+                terms += one_four_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"], units)
+    return terms
+
+
+def one_four_terms(use, items: np.ndarray, types: np.ndarray, pair_terms, ntypes: int, units) -> list[PairListTerm]:
+    """Weighted 1-4 pairs of dihedral style charmm, computed with the pair style's 1-4 coefficients.
+
+    Raises
+    ------
+    InputError
+        No pair style in use has such coefficients.
+    """
+    weight = getattr(use.style, "weight_14", "")
+    if not weight:
+        return []
+    w = np.array([0.0] + [float(use.coeff.get(t, {}).get(weight, 0.0)) for t in range(1, int(types.max()) + 1)])[types]
+    values = np.unique(w[w != 0.0])
+    if not len(values):
+        return []
+    owner = next((t for t in pair_terms if hasattr(t.style, "one_four")), None)
+    if owner is None:
+        raise InputError("dihedral style charmm with a nonzero weight needs a pair style with 1-4 coefficients, "
+                         "such as lj/charmm/coul/charmm")
+    tables = owner.style.one_four(owner.use.settings, owner.filled, ntypes, units)
+    terms = []
+    for value in values:
+        pairs = np.ascontiguousarray(items[w == value][:, [0, 3]], np.int32)
+        terms.append(PairListTerm(owner.style, tables, owner.style.one_four_parts, "one_four",
+                                  (pairs, np.full(len(pairs), 1, np.int32), np.array([1.0, value, value, value]))))
+    return terms

@@ -17,7 +17,8 @@ from asemd.bonded_table import periodic_spline, spline_slope
 from asemd.errors import InputError
 from asemd.kernels import bonded, image
 from asemd.kernels.state import cell_arrays
-from asemd.style import ATOMS, Style
+from asemd.style import Style
+from asemd.topology import ATOMS
 from asemd.tabulated import spline_value
 from asemd.testing import styles
 

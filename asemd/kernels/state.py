@@ -20,6 +20,13 @@ class State(NamedTuple):
     mask: np.ndarray          # (cap,) int32 group bits, 0 for an empty slot
 
 
+def empty_state(capacity: int) -> State:
+    """Slots without atoms."""
+    x, v, f = np.zeros((3, capacity)), np.zeros((3, capacity)), np.zeros((3, capacity))
+    row, types, mask = np.full(capacity, -1, np.int32), np.zeros(capacity, np.int32), np.zeros(capacity, np.int32)
+    return State(x, v, f, row, types, np.ones(capacity), np.zeros(capacity), np.zeros(capacity), mask)
+
+
 class Thread(NamedTuple):
     """One thread's view of one timestep."""
 

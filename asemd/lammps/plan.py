@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from asemd.engine import PLURAL, Engine
+from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 from asemd.text_table import Table
@@ -163,21 +163,21 @@ def _term(e: Engine, t) -> Item:
     style = t.style
     if isinstance(t, BondedTerm):
         function = "minimum image" if e.periodic.any() else "no images: nothing is periodic"
-        return Item(f"{t.category} {style.name}", f"{len(t.items)} {PLURAL[t.category]} of {len(np.unique(t.types))} types, {function}",
+        return Item(f"{t.category} {style.name}", f"{len(t.items)} {t.category}s of {len(np.unique(t.types))} types, {function}",
                     f"{t.category}_style and {t.category}_coeff")
     charged = "with charges" if style.charged and getattr(t, "pairs", "") != "one_four" else "without charges"
     if isinstance(t, PairTerm):
         varying = sum(not u for u in t.uniform)
         rows = f"{varying} of {len(t.uniform)} coefficients by type pair" if varying else "coefficients the same for all pairs of types"
-        hidden = "excluded partners moved away" if e.partners is not None else "no exclusions"
+        hidden = "excluded partners moved away" if e.exclusions.partners is not None else "no exclusions"
         precision = "single" if t.single else "double"
         return Item(f"pair {style.name}", f"cluster kernel, {precision} precision, {charged}, {rows}, {hidden}", "pair_style")
     if isinstance(t, PairRowsTerm):
-        hidden = "excluded partners left out of the rows" if e.partners is not None else "no exclusions"
+        hidden = "excluded partners left out of the rows" if e.exclusions.partners is not None else "no exclusions"
         return Item(f"pair {style.name}", f"rows of single atoms, double precision, {charged}, {hidden}", e.why)
     assert isinstance(t, PairListTerm)
     if t.pairs == "special":
-        return Item(f"pair {style.name} (special)", f"{len(e.special_kept)} weighted pairs, one by one",
+        return Item(f"pair {style.name} (special)", f"{len(e.exclusions.weighted)} weighted pairs, one by one",
                     "special_bonds factors between 0 and 1, which the cluster kernel leaves out")
     if t.pairs == "one_four":
         return Item(f"pair {style.name} (1-4)", f"{len(t.one_four[0])} pairs, one by one", "dihedral style with weights of 1-4 pairs")
@@ -191,7 +191,7 @@ def _specials(e: Engine) -> list[Item]:
     _, kinds = e.interactions.special_pairs(e.system)
     out = []
     for kind, name in ((1, "1-2"), (2, "1-3"), (3, "1-4")):
-        n, lj, coul = int((kinds == kind).sum()), e.weight_lj[kind], e.weight_coul[kind]
+        n, lj, coul = int((kinds == kind).sum()), e.exclusions.weight_lj[kind], e.exclusions.weight_coul[kind]
         if n:
             how = "excluded" if lj == coul == 0.0 else "ordinary pairs" if lj == coul == 1.0 else "weighted"
             out.append(Item(f"{name} pairs", f"{n} {how}", f"special_bonds factors {lj:g} (lj) and {coul:g} (coul)"))
@@ -205,12 +205,12 @@ def _absent(e: Engine) -> list[Item]:
     elif not any(t.style.charged for t in e.pair_terms):
         out.append(Item("Coulomb part", "", "no pair style in use has one" + (", the charges act on nothing" if s.has_charge else "")))
     out.append(Item("k-space", "", "no style has a long-range part"))
-    for category, plural in PLURAL.items():
+    for category, n in s.topology.counts().items():
         if not any(isinstance(t, BondedTerm) and t.category == category for t in e.terms):
-            n, style = len(getattr(s.topology, plural)), inter.style_name(category)
+            plural, style = f"{category}s", inter.style_name(category)
             why = f"{category}_style {style}: {n} {plural} without forces" if n else f"there are no {plural}"
             out.append(Item(f"{category} forces", "", why))
-    if e.mode != "none" and e.partners is None:
+    if e.mode != "none" and e.exclusions.partners is None:
         out.append(Item("exclusion of bonded pairs", "", "no bonds" if s.topology.is_empty else "all special_bonds factors are 1"))
     if e.mode != "none" and not inter.tail:
         out.append(Item("tail correction", "", "pair_modify tail no"))

@@ -16,7 +16,8 @@ import numpy as np
 
 from asemd.kernels import bonded
 from asemd.kernels.state import Cell, cell_arrays
-from asemd.style import ATOMS, Packed, Style
+from asemd.style import Packed, Style
+from asemd.topology import ATOMS
 
 ITEMS = 12
 BOX = 40.0

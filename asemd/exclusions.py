@@ -1,0 +1,78 @@
+"""Pairs that interact with a weight, or not at all: ``special_bonds`` and ``neigh_modify exclude``."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.neighbor import partner_table
+
+RULES = {"group": 0, "molecule/intra": 1, "molecule/inter": 2}
+
+
+class Exclusions:
+    """What a neighbour list must leave out or mark.
+
+    Parameters
+    ----------
+    system : asemd.system.System
+    interactions : asemd.forcefield.Interactions
+    exclude : list
+        As in `asemd.result.Settings`; ``type`` is not for the list but for the pair tables and is passed over.
+    pairs : bool
+        False: no pair interactions, so that bonded partners do not matter.
+
+    Attributes
+    ----------
+    weight_lj, weight_coul : (4,) arrays
+        Factors of ordinary pairs (1) and of 1-2, 1-3, 1-4 partners.
+    partners : (start, partner, kind) or None
+        For each atom row the rows whose factor is not 1, see `asemd.neighbor.partner_table`.
+    keep : (4,) bool
+        Kinds that interact with a weight, not 0.
+    weighted, weighted_kinds : (m, 2), (m,) int32 arrays
+        The pairs of such kinds.
+    rules : (m, 3) int64
+        Rules of neigh_modify exclude: number of the kind, bits of the masks.
+    """
+
+    def __init__(self, system, interactions, exclude: list, pairs: bool):
+        self.weight_lj = np.array([1.0, *interactions.special_lj])
+        self.weight_coul = np.array([1.0, *interactions.special_coul])
+        self.keep = np.array([True, *((self.weight_lj[1:] != 0.0) | (self.weight_coul[1:] != 0.0))])
+        self.partners = None
+        self.weighted, self.weighted_kinds = np.zeros((0, 2), np.int32), np.zeros(0, np.int32)
+        if pairs and not system.topology.is_empty:
+            self._find_partners(system.n, *interactions.special_pairs(system))
+        self._set_rules(system, [rule for rule in exclude if rule[0] != "type"])
+
+    def _find_partners(self, n: int, pairs: np.ndarray, kinds: np.ndarray) -> None:
+        changed = (self.weight_lj[kinds] != 1.0) | (self.weight_coul[kinds] != 1.0)
+        pairs, kinds = pairs[changed], kinds[changed].astype(np.int32)
+        if len(pairs):
+            self.partners = partner_table(n, pairs, kinds)
+            kept = self.keep[kinds]
+            self.weighted, self.weighted_kinds = np.ascontiguousarray(pairs[kept], np.int32), np.ascontiguousarray(kinds[kept])
+
+    def _set_rules(self, system, rules: list) -> None:
+        self.rules = np.zeros((len(rules), 3), np.int64)
+        self.rule_mask = np.zeros(system.n, np.int64)
+        bit = 1
+        for k, (kind, *masks) in enumerate(rules):
+            self.rules[k, 0] = RULES[kind]
+            for m, mask in enumerate(masks):
+                self.rule_mask[mask] |= bit
+                self.rules[k, 1 + m] = bit
+                bit <<= 1
+        self.molecule = np.asarray(system.molecule, np.int64) if system.molecule is not None else np.zeros(system.n, np.int64)
+
+    def mark(self, k, x, row, i, j, code, shifts, cell, periodic) -> list[np.ndarray]:
+        """The pairs (i, j, code) of a plain list without those that a rule forbids, the partners among them marked by their kind.
+
+        `k` are the compiled list functions, `x (3, cap)` and `row` those of the slots.
+        """
+        n = len(i)
+        if len(self.rules):
+            n = k.drop_excluded(row, i, j, code, n, self.rule_mask, self.molecule, self.rules)
+        if self.partners is not None:
+            n = k.mark_special(x, row, i, j, code, n, shifts, *self.partners, self.keep, cell.reduced * periodic[:, None],
+                               cell.reduced_inverse)
+        return [i[:n], j[:n], code[:n]]

@@ -1,0 +1,79 @@
+"""What goes into a computation of forces besides the scene, and what comes out."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from asemd import units as unit_styles
+
+
+@dataclass
+class Settings:
+    """How lists are built and forces computed.
+
+    Parameters
+    ----------
+    skin : float
+        Extra distance of the neighbour list.
+    every, delay, check
+        When to rebuild, as in ``neigh_modify``.
+    exclude : list
+        ``("type", i, j)``, ``("group", mask_i, mask_j)``, ``("molecule/intra", mask)``, ``("molecule/inter", mask)``; masks (n,) bool.
+    threads : int
+    precision : str
+        ``double``, or ``mixed``: pair arithmetic in single precision, sums in double.
+    """
+
+    skin: float = 0.3
+    every: int = 1
+    delay: int = 0
+    check: bool = True
+    exclude: list = field(default_factory=list)
+    threads: int = 1
+    precision: str = "double"
+
+
+@dataclass
+class Result:
+    """Energies, forces, virial of one configuration, in the units of the system.
+
+    `virial` (6,): xx yy zz xy xz yz, sum of r_i f_i over all terms (energy units, without tail corrections);
+    `virial_of` and `energies_of`, `virials_of`: the same by category.
+    """
+
+    energy: dict[str, float]
+    virial: np.ndarray
+    virial_of: dict[str, np.ndarray]
+    forces: np.ndarray
+    energies: np.ndarray | None = None
+    virials: np.ndarray | None = None
+    energies_of: dict[str, np.ndarray] = field(default_factory=dict)
+    virials_of: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def potential(self) -> float:
+        return float(sum(self.energy.values()))
+
+
+@dataclass
+class Snapshot:
+    """What computes, thermo output and dumps see of a step."""
+
+    system: object
+    result: Result
+    groups: dict[str, np.ndarray]
+    dt: float
+    step: int = 0
+    fixes: list = field(default_factory=list)
+
+    @property
+    def units(self):
+        return unit_styles.get(self.system.units)
+
+    @property
+    def dimension(self) -> int:
+        return self.system.dimension
+
+    def mask(self, group: str) -> np.ndarray:
+        return self.groups[group]
