@@ -18,9 +18,9 @@ from asemd.errors import InputError
 from asemd.kernels import bonded, image
 from asemd.kernels.state import cell_arrays
 from asemd.style import Style
-from asemd.topology import ATOMS
 from asemd.tabulated import spline_value
 from asemd.testing import styles
+from asemd.topology import ATOMS
 
 STYLES = [(c, n) for c in ATOMS for n in registry.names(c)]
 FORCES = [(c, n) for c, n in STYLES if registry.find(c, n).function]

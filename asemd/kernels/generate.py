@@ -1,8 +1,9 @@
 """Generated kernel modules: plain functions of asemd, pasted together as text, compiled once and cached on disk.
 
-Why text: numba's disk cache never hits for closures over a style, and it looks only at a function's own file, so an edited helper in another
-file would run stale. A module that holds all its source and is named by the hash of that source has neither problem: the same scene finds the
-same file in every process, and an edited style makes a new one. A kernel that calls another generated kernel imports it by its hashed name.
+Why text: numba's disk cache never hits for closures over a style, and it looks only at a function's own file, so an edited helper in
+another file would run stale. A module that holds all its source and is named by the hash of that source has neither problem: the same scene
+finds the same file in every process, and an edited style makes a new one. A kernel that calls another generated kernel imports it by its
+hashed name.
 """
 from __future__ import annotations
 

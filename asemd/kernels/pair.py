@@ -4,7 +4,7 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -50,7 +50,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
         row += 2 + len(part.rows)
         lines.append(f"    e{k}, d{k} = {name}({', '.join(args)})")
         lines.append(f"    m{k} = r2 < {cut2}")
-        lines.append(f"    f{k} = {'real(-2) * d%d' % k if part.coordinate == 'r2' else '-d%d / r' % k}")
+        lines.append(f"    f{k} = " + (f"real(-2) * d{k}" if part.coordinate == "r2" else f"-d{k} / r"))
         lines.append(f"    f{k} = f{k} if m{k} else real(0)")
         total.append(f"f{k}")
         if energy:
@@ -64,7 +64,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
     return "\n".join(lines)
 
 
-@lru_cache(maxsize=None)
+@cache
 def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool):
     """The kernel over cluster lists.
 
@@ -83,7 +83,8 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
-                            CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude, SLOT_BITS=pair_cluster.SLOT_BITS).items():
+                            CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
+                            SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
     if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(inspect.getsource, style.functions())):
         from asemd.kernels import vector_math
@@ -114,7 +115,7 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
     return tuple(bool(np.all(r[1:, 1:] == r[1, 1])) for r in rows)
 
 
-@lru_cache(maxsize=None)
+@cache
 def list_kernel(style, parts, *, energy: bool, per_atom: bool):
     """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts."""
     b = Builder(f"pair {style.name}: plain list")
@@ -148,7 +149,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool):
     return module.list_forces, module
 
 
-@lru_cache(maxsize=None)
+@cache
 def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool):
     """The kernel over rows of single atoms, for sparse systems; `uniform` as in `cluster_kernel`."""
     b = Builder(f"pair {style.name}: rows of atoms")

@@ -1,11 +1,13 @@
 """Pair forces over the cluster list: the hot loop.
 
-For each cluster the neighbours are packed, relative to the cluster's first atom, into one flat buffer whose rows are `ROW` apart (a constant, so that
-the compiler sees no aliasing): x y z, force x y z, charge, then the coefficient rows of the two atoms i in hand. Two atoms i at a time run over the buffer
-in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
+For each cluster the neighbours are packed, relative to the cluster's first atom, into one flat buffer whose rows are `ROW` apart (a
+constant, so that the compiler sees no aliasing): x y z, force x y z, charge, then the coefficient rows of the two atoms i in hand. Two
+atoms i at a time run over the buffer in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and
+excluded partners are moved far away instead of being masked.
 
-Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient differs between
-type pairs), EXCLUDE, SHARE (one division for two pairs); `real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
+Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient
+differs between type pairs), EXCLUDE, SHARE (one division for two pairs); `real` is the working precision; `pair_force`, `pair_energy` and
+`fill_rows` are made from the style.
 """
 from __future__ import annotations
 
@@ -26,7 +28,10 @@ pair_force = pair_energy = fill_rows = None
 
 
 def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
-    """Two atoms a, b against `n` packed ones from place `o` on; adds to their forces in the buffer and returns the forces on a and b, energies and virial."""
+    """Two atoms a, b against `n` packed ones from place `o` on, whose forces in the buffer it adds to.
+
+    Returns the forces on a and b, energies and virial.
+    """
     zero = real(0)
     fxa, fya, fza, fxb, fyb, fzb = zero, zero, zero, zero, zero, zero
     ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
@@ -84,7 +89,7 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
 
 
 def one_pair(b, k, x, y, z, qi, p, rows, f):
-    """One atom against place `k` of the buffer: force on the atom, energies and virial into `f (11,)`; the opposite force into the buffer."""
+    """One atom against place `k` of the buffer, which gets the opposite force; force on the atom, energies, virial into `f (11,)`."""
     dx = x - b[place(k)]
     dy = y - b[place(k + ROW)]
     dz = z - b[place(k + 2 * ROW)]
@@ -110,7 +115,8 @@ def one_pair(b, k, x, y, z, qi, p, rows, f):
     b[place(k + 5 * ROW)] -= dz * fp
 
 
-def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_, qqr2e, b, types, saved, acc):
+def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
+                   qqr2e, b, types, saved, acc):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz)."""
     far = real(far_)
     on_a = np.empty(11, b.dtype)

@@ -1,8 +1,11 @@
-"""Pair forces over a plain list of pairs: small systems and cells below twice the cutoff, special pairs with a weight, and per-atom energies.
+"""Pair forces over a plain list of pairs: small systems, cells below twice the cutoff, special pairs with a weight, per-atom energies.
 
-An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4 partners.
-Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
-Constants: ENERGY, PER_ATOM, CHARGED; `furthest`, `pair_of` (from tuple or table, as `uniform` says) and `pair_energy_one(r2, qq, lj, coul, rows, ti, tj)` -> force/r, E_vdwl, E_coul is made from the style.
+An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
+partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
+
+Constants of the generated module: ENERGY, PER_ATOM, CHARGED. Made from the style: `pair_energy_one(r2, qq, lj, coul, rows, constants,
+arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients from tuple or
+table, as `uniform` says).
 """
 from __future__ import annotations
 

@@ -103,15 +103,16 @@ def add_buffers(buffers, ns):
 
 
 def clear(buffer, ns):
+    """Zero forces (3, cap)."""
     for d in range(3):
         for i in range(ns):
             buffer[d, i] = 0.0
 
 
 def mark_special(x, row, pair_i, pair_j, code, n, shifts, start, partner, kind, keep, reduced, reduced_inverse):
-    """Write the kind of special pairs into `code`; pairs whose weights are all zero (`keep[kind]` false) leave the list. Returns its length.
+    """Write the kind of special pairs into `code`; pairs whose weights are all zero (`keep[kind]` false) leave the list.
 
-    Only the closest image of a partner is special (larger images interact fully), as in LAMMPS.
+    Returns its length. Only the closest image of a partner is special (larger images interact fully), as in LAMMPS.
     """
     m = 0
     for p in range(n):
@@ -148,7 +149,10 @@ def mark_special(x, row, pair_i, pair_j, code, n, shifts, start, partner, kind, 
 
 
 def drop_excluded(row, pair_i, pair_j, code, n, mask_row, molecule_row, rules):
-    """Take out pairs by ``neigh_modify exclude``; `rules (k, 3)`: 0 group-group (bits), 1 same molecule in a group, 2 different molecules in a group."""
+    """Take out pairs by ``neigh_modify exclude``; returns how many stay.
+
+    `rules (k, 3)`: kind and two group bits; kind 0 group-group, 1 same molecule in a group, 2 different molecules in a group.
+    """
     m = 0
     for p in range(n):
         ri = row[pair_i[p]]

@@ -1,17 +1,16 @@
 """The compiled time loop: text generated for exactly the terms and fixes of a run.
 
-The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built by Python, loop entered again), pre_force, forces,
-post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after forces are complete.
+The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built by Python, loop entered again), pre_force,
+forces, post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after forces are
+complete.
 """
 from __future__ import annotations
 
-import hashlib
-import inspect
 import textwrap
 from collections.abc import Sequence
 from types import ModuleType
 
-from asemd.kernels import random, threads
+from asemd.kernels import random
 from asemd.kernels.generate import FAST, Builder, plain_source
 
 FINISHED, REBUILD, BAD = 0, 1, 2
@@ -19,10 +18,6 @@ COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "f
 # places in `control` (int64) and `numbers` (float64)
 STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY = range(11)
 DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
-
-
-def _hash(module: ModuleType) -> str:
-    return hashlib.sha256(inspect.getsource(module).encode()).hexdigest()[:16]
 
 
 def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[dict[str, object]], everys: Sequence[int]) -> ModuleType:
@@ -39,10 +34,10 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
     everys : sequence of int
         Per fix: `end_of_step` is called on multiples of this.
     """
-    from asemd.kernels import clock, state
     b = Builder("time loop")
-    b.line(f"# {_hash(threads)} {_hash(state)} {_hash(clock)}")
-    b.line("from asemd.kernels.threads import barrier, reduce_sum\nfrom asemd.kernels.state import Thread\nfrom asemd.kernels.clock import now")
+    b.line("from asemd.kernels.threads import barrier, reduce_sum")
+    b.line("from asemd.kernels.state import Thread")
+    b.line("from asemd.kernels.clock import now")
     b.function(random.uniform, fast=True)
     b.function(random.normal, fast=True)
     for k, (plain, energy) in enumerate(kernels):
