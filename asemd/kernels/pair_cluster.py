@@ -88,8 +88,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
     return fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5
 
 
-def one_pair(b, k, x, y, z, qi, p, rows, f):
-    """One atom against place `k` of the buffer, which gets the opposite force; force on the atom, energies, virial into `f (11,)`."""
+def one_pair(b, k, x, y, z, qi, p, rows):
+    """One atom against place `k` of the buffer: force on the atom, energies and virial; the opposite force goes into the buffer."""
     dx = x - b[place(k)]
     dy = y - b[place(k + ROW)]
     dz = z - b[place(k + 2 * ROW)]
@@ -97,30 +97,21 @@ def one_pair(b, k, x, y, z, qi, p, rows, f):
     qq = qi * b[place(k + 6 * ROW)] if CHARGED else real(0)
     if ENERGY:
         fp, ev, ec = pair_energy(r2, real(1) / r2, qq, p, b, k + rows)
-        f[3] += ev
-        f[4] += ec
-        f[5] += dx * dx * fp
-        f[6] += dy * dy * fp
-        f[7] += dz * dz * fp
-        f[8] += dx * dy * fp
-        f[9] += dx * dz * fp
-        f[10] += dy * dz * fp
     else:
-        fp = pair_force(r2, real(1) / r2, qq, p, b, k + rows)
-    f[0] += dx * fp
-    f[1] += dy * fp
-    f[2] += dz * fp
-    b[place(k + 3 * ROW)] -= dx * fp
-    b[place(k + 4 * ROW)] -= dy * fp
-    b[place(k + 5 * ROW)] -= dz * fp
+        fp, ev, ec = pair_force(r2, real(1) / r2, qq, p, b, k + rows), real(0), real(0)
+    fx = dx * fp
+    fy = dy * fp
+    fz = dz * fp
+    b[place(k + 3 * ROW)] -= fx
+    b[place(k + 4 * ROW)] -= fy
+    b[place(k + 5 * ROW)] -= fz
+    return fx, fy, fz, ev, ec, dx * fx, dy * fy, dz * fz, dx * fy, dx * fz, dy * fz
 
 
 def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
                    qqr2e, b, types, saved, acc):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz)."""
     far = real(far_)
-    on_a = np.empty(11, b.dtype)
-    on_b = np.empty(11, b.dtype)
     done = real(2) * far      # atoms of the cluster that have had their turn
     for ci in range(c0, c1):
         s = ci * CLUSTER
@@ -193,9 +184,6 @@ def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted
                     b[k] = far
                     xp += 1
             fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p)
-            for k in range(11):
-                on_a[k] = real(0)
-                on_b[k] = real(0)
             if EXCLUDE:
                 for y in range(xp - 1, x0 - 1, -1):
                     b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
@@ -207,31 +195,59 @@ def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted
                     twin = False
                     for z in range(x0, xp):
                         twin = twin or (z != y and (excluded[z] & np.int32(0xFFFF)) == k)
-                    if not twin:
-                        if (excluded[y] >> 16) == a0:
-                            one_pair(b, k, xb, yb, zb, qb, p, (7 + NROWS) * ROW, on_b)
-                        else:
-                            one_pair(b, k, xa, ya, za, qa, p, 7 * ROW, on_a)
+                    if twin:
+                        continue
+                    if (excluded[y] >> 16) == a0:
+                        gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, k, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
+                        fxb += gx
+                        fyb += gy
+                        fzb += gz
+                    else:
+                        gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, k, xa, ya, za, qa, p, 7 * ROW)
+                        fxa += gx
+                        fya += gy
+                        fza += gz
+                    if ENERGY:
+                        ev += ev1
+                        ec += ec1
+                        v0 += w0
+                        v1 += w1
+                        v2 += w2
+                        v3 += w3
+                        v4 += w4
+                        v5 += w5
             if together:
                 # b was hidden from a, too, lest they met twice
                 b[place(mine + a0 + 1)] = xb
-                one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, 7 * ROW, on_a)
+                gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, 7 * ROW)
                 b[place(mine + a0 + 1)] = done
-            b[place(mine + a0 + 3 * ROW)] += fxa + on_a[0]
-            b[place(mine + a0 + 4 * ROW)] += fya + on_a[1]
-            b[place(mine + a0 + 5 * ROW)] += fza + on_a[2]
-            b[place(mine + a0 + 1 + 3 * ROW)] += fxb + on_b[0]
-            b[place(mine + a0 + 1 + 4 * ROW)] += fyb + on_b[1]
-            b[place(mine + a0 + 1 + 5 * ROW)] += fzb + on_b[2]
+                fxa += gx
+                fya += gy
+                fza += gz
+                if ENERGY:
+                    ev += ev1
+                    ec += ec1
+                    v0 += w0
+                    v1 += w1
+                    v2 += w2
+                    v3 += w3
+                    v4 += w4
+                    v5 += w5
+            b[place(mine + a0 + 3 * ROW)] += fxa
+            b[place(mine + a0 + 4 * ROW)] += fya
+            b[place(mine + a0 + 5 * ROW)] += fza
+            b[place(mine + a0 + 1 + 3 * ROW)] += fxb
+            b[place(mine + a0 + 1 + 4 * ROW)] += fyb
+            b[place(mine + a0 + 1 + 5 * ROW)] += fzb
             if ENERGY:
-                acc[0] += ev + on_a[3] + on_b[3]
-                acc[1] += ec + on_a[4] + on_b[4]
-                acc[2] += v0 + on_a[5] + on_b[5]
-                acc[3] += v1 + on_a[6] + on_b[6]
-                acc[4] += v2 + on_a[7] + on_b[7]
-                acc[5] += v3 + on_a[8] + on_b[8]
-                acc[6] += v4 + on_a[9] + on_b[9]
-                acc[7] += v5 + on_a[10] + on_b[10]
+                acc[0] += ev
+                acc[1] += ec
+                acc[2] += v0
+                acc[3] += v1
+                acc[4] += v2
+                acc[5] += v3
+                acc[6] += v4
+                acc[7] += v5
         for k in range(full):
             j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
             f[0, j] += b[k + 3 * ROW]
