@@ -4,11 +4,12 @@ from __future__ import annotations
 import signal
 import threading
 import time
+import warnings
 
 import numpy as np
 
 from asemd.engine import Engine, Result, Settings, Snapshot
-from asemd.errors import InputError, SimulationError
+from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import Fix
 from asemd.kernels import timeloop as tl
 from asemd.kernels.state import Thread
@@ -29,6 +30,11 @@ class Interrupt:
     def __exit__(self, *error) -> None:
         if self._before is not None:
             signal.signal(signal.SIGINT, self._before)
+
+
+def warn(message: str) -> None:
+    """A Python warning; `Loop.warn` may be another function."""
+    warnings.warn(message, InputWarning, stacklevel=3)
 
 
 class Loop:
@@ -56,6 +62,9 @@ class Loop:
         self.engine = Engine(system, interactions, settings)
         self.units = self.engine.units
         self.result: Result | None = None
+        self.gone: dict[str, int] = {}        # atoms of each group lost since `setup`
+        self.warn = warn
+        self._fix_data: tuple = ()
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
@@ -92,7 +101,9 @@ class Loop:
         self.begin = self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
         e = self.engine
-        e.load()
+        self._fix_data = ()
+        self._with_lost(e.load)
+        self.gone = {}
         e.forces(True)
         self._ago = 0
         self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
@@ -117,9 +128,9 @@ class Loop:
         terms = self.engine.terms
         kernels = [(t.kernel(False, False), t.kernel(True, False)) for t in terms]
         key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks))
-        if self._module is None or self._module[0] != key:
-            module = tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes])
-            self._module = (key, module)
+        if self._module is not None and self._module[0] == key:
+            return
+        self._module = (key, tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes]))
         if self._compiled:
             self._enter(0, False)     # compiles, or loads from the cache, without moving anything
 
@@ -187,11 +198,60 @@ class Loop:
 
     def _rebuild(self) -> None:
         try:
-            self.engine.rebuild()
+            self._with_lost(self.engine.rebuild)
         except SimulationError as error:
             self.engine.store()
-            raise SimulationError(f"step {self.step}: {error}") from None
+            error.args = (f"step {self.step}: {error}",)
+            raise
+        self._make_module()
         self._ago = 0
+
+    def _with_lost(self, build) -> None:
+        """A list build; atoms that are lost by then leave the system, unless `settings.lost` makes that an error."""
+        try:
+            build()
+        except LostAtoms as error:
+            if self.settings.lost == "error":
+                raise
+            self.remove(error.rows)
+
+    def remove(self, rows) -> None:
+        """Take atoms out of the system in the midst of a run: system, groups, exclusions, lists and the fixes' arrays by atom.
+
+        Raises
+        ------
+        SimulationError
+            An atom is bonded to one that stays, unless `settings.lost_bond` says otherwise.
+        """
+        e, system, s = self.engine, self.system, self.settings
+        gone = np.zeros(system.n, bool)
+        gone[rows] = True
+        for kind, atoms, _ in system.topology:
+            torn = np.flatnonzero(gone[atoms].any(axis=1) & ~gone[atoms].all(axis=1)) if len(atoms) else ()
+            if len(torn) and s.lost_bond == "error":
+                ids = " ".join(str(i) for i in system.id[atoms[torn[0]]])
+                raise SimulationError(f"{kind} atoms {ids} missing: one of them left the box; use thermo_modify lost/bond ignore or warn "
+                                      "to go on without them")
+            if len(torn) and s.lost_bond == "warn":
+                self.warn(f"step {self.step}: {len(torn)} {kind}{'s' * (len(torn) > 1)} lost with an atom")
+        e.store()
+        system.keep(~gone)
+        for name in self.groups:
+            self.gone[name] = self.gone.get(name, 0) + int(np.count_nonzero(self.groups[name] & gone))
+            self.groups[name] = self.groups[name][~gone]
+        s.exclude = [(kind, *(m if kind == "type" else m[~gone] for m in masks)) for kind, *masks in s.exclude]
+        e.set_groups(self.groups, e.bits)
+        e.update(system)
+        e.load()
+        if self._fix_data:
+            self._fix_data = tuple(self._resize(fix, *data, gone) for fix, data in zip(self.fixes, self._fix_data))
+
+    def _resize(self, fix: Fix, p: np.ndarray, old: np.ndarray, gone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        a = self._arrays(fix)
+        if len(old) == len(gone):
+            a[:] = old[~gone]
+        fix.resize(self)
+        return p, a
 
     def _enter(self, last: int, energy: bool, resume: bool = False) -> int:
         e, s, c, x = self.engine, self.settings, self._control, self._numbers
@@ -271,6 +331,18 @@ class Loop:
         """Positions, velocities and forces of the slots into the system."""
         self.engine.store()
 
+    def evaluate(self) -> Result:
+        """Energy, forces and virial at the system's positions, with what the fixes do to forces; the list stays while it serves."""
+        e = self.engine
+        self.sync_in()
+        if not e.k.moved(e.state.x, e.held, e.ns) <= (0.5 * self.settings.skin) ** 2:
+            e.rebuild()
+            self._make_module()
+        e.forces(True)
+        self._hook("post_force")
+        self.result = e.collect()
+        return self.result
+
     def sync_in(self) -> None:
         """Positions and velocities of the system into the slots (the list stays)."""
         e = self.engine
@@ -284,7 +356,7 @@ class Loop:
 
     def snapshot(self) -> Snapshot:
         """What observers see now."""
-        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes)
+        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes, self.gone)
 
 
 __all__ = ["Loop"]

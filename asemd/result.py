@@ -23,6 +23,9 @@ class Settings:
     threads : int
     precision : str
         ``double``, or ``mixed``: pair arithmetic in single precision, sums in double.
+    lost, lost_bond : str
+        What a run does with atoms beyond a fixed face, and when one of them is bonded to an atom that stays: ``error``, or ``warn`` and
+        ``ignore``, which take them out of the system, as ``thermo_modify``.
     """
 
     skin: float = 0.3
@@ -32,6 +35,8 @@ class Settings:
     exclude: list = field(default_factory=list)
     threads: int = 1
     precision: str = "double"
+    lost: str = "error"
+    lost_bond: str = "error"
 
 
 @dataclass
@@ -58,7 +63,10 @@ class Result:
 
 @dataclass
 class Snapshot:
-    """What computes, thermo output and dumps see of a step."""
+    """What computes, thermo output and dumps see of a step.
+
+    `gone`: group -> how many of its atoms were lost since the run began.
+    """
 
     system: object
     result: Result
@@ -66,6 +74,7 @@ class Snapshot:
     dt: float
     step: int = 0
     fixes: list = field(default_factory=list)
+    gone: dict[str, int] = field(default_factory=dict)
 
     @property
     def units(self):

@@ -186,7 +186,8 @@ class Scene:
         exclude = []
         for kind, *words in self.neighbor.exclude:
             exclude.append((kind, *words) if kind == "type" else (kind, *(self.groups.mask(w, "neigh_modify exclude") for w in words)))
-        return replace(self.neighbor, exclude=exclude, threads=self.threads, precision=self.precision)
+        return replace(self.neighbor, exclude=exclude, threads=self.threads, precision=self.precision, lost=self.thermo.lost,
+                       lost_bond=self.thermo.lost_bond)
 
     def to_atoms(self):
         """`asemd.system.Atoms` in order of id, with the force field as calculator."""

@@ -229,6 +229,7 @@ class Thermo:
     norm: bool | None = None               # None: yes for units lj
     lost: str = "error"
     lost_bond: str = "error"
+    lost_told: bool = False                # the user knows that atoms were lost
     flush: bool = False
     temp: str = "thermo_temp"
     press: str = "thermo_press"

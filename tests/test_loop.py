@@ -279,6 +279,26 @@ def test_dangerous_builds_are_counted_alike():
     assert counts[0] == counts[1] == (4, 4)
 
 
+def test_lists_that_outgrow_their_buffers():
+    """Atoms that rush into a plane: the kernels for longer rows take over in the midst of a run."""
+    n, edge = 1500, 16.0
+    x = np.random.default_rng(1).uniform(0, edge, (n, 3))
+    v = np.zeros((n, 3))
+    v[:, 0] = -0.9 * (x[:, 0] - edge / 2)
+    system = System(box=Box(np.zeros(3), np.eye(3) * edge), x=x, type=1, v=v, units="lj", mass=np.array([np.nan, 1.0]))
+    inter = Interactions.build(pair={"soft 6.0": {(1, 1): (1e-9,)}})
+    loop = loop_of(system, interactions=inter, dt=0.01)
+    loop.setup()
+    before = loop.engine.terms[0].row
+    for _ in range(7):
+        result = loop.advance(10)
+        forces = system.f.copy()
+        expected = engines.Engine(system, inter, Settings()).compute()
+        np.testing.assert_allclose(result.potential, expected.potential, rtol=1e-12)
+        np.testing.assert_allclose(forces, expected.forces, rtol=0, atol=1e-12 * abs(expected.forces).max())
+    assert loop.engine.terms[0].row > before
+
+
 # ------------------------------------------------------------------------------------------------------------------- boundaries ---
 
 def test_atom_that_leaves_through_a_fixed_face_is_named():

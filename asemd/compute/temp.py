@@ -3,8 +3,8 @@ r"""Temperature of a group from its translational kinetic energy, and the kineti
 .. math:: T = \frac{\sum_i m_i v_i^2}{f k_B}, \qquad K_{ab} = \sum_i m_i v_{ia} v_{ib}
 
 with :math:`f` degrees of freedom: dimension times the number of atoms, minus those that fixes remove (SHAKE, rigid bodies), minus the
-dimension for the conserved momentum (``compute_modify ID extra/dof N`` sets another number). The count follows the group as it is now, so
-``dynamic/dof`` changes nothing.
+dimension for the conserved momentum (``compute_modify ID extra/dof N`` sets another number). Atoms lost during a run (``thermo_modify lost
+ignore``) count until its end, as in LAMMPS, unless ``compute_modify ID dynamic/dof yes``.
 
 Source: LAMMPS manual, compute temp and compute_modify. Units: temperature; the tensor is an energy (twice the kinetic energy on its trace).
 """
@@ -35,6 +35,7 @@ class Temp(Compute):
     def __init__(self, group: str = "all", extra_dof: float | None = None):
         super().__init__(group)
         self.extra_dof = extra_dof
+        self.dynamic = False
 
     def dof(self, state) -> float:
         """Degrees of freedom of the group; `state` is a `asemd.engine.Snapshot` or a `asemd.loop.Loop`.
@@ -45,7 +46,8 @@ class Temp(Compute):
             Constraints and extra/dof leave fewer than none.
         """
         mask = state.groups[self.group]
-        n, dimension = int(np.count_nonzero(mask)), state.system.dimension
+        gone = 0 if self.dynamic else state.gone.get(self.group, 0)
+        n, dimension = int(np.count_nonzero(mask)) + gone, state.system.dimension
         extra = dimension if self.extra_dof is None else self.extra_dof
         dof = dimension * n - extra - sum(fix.removed_dof(mask) for fix in state.fixes)
         if dof < 0.0 and n > 0:
@@ -78,6 +80,6 @@ class Temp(Compute):
             if keyword in ("extra/dof", "extra"):
                 self.extra_dof = number(value, f"compute_modify {keyword}")
             elif keyword in ("dynamic/dof", "dynamic"):
-                yes_no(value, f"compute_modify {keyword}")
+                self.dynamic = yes_no(value, f"compute_modify {keyword}")
             else:
                 super().modify([keyword], session)

@@ -114,6 +114,9 @@ class Fix:
     def setup(self, loop: Loop) -> None:
         """Called at the start of every run, after the first forces; compiled post_force hooks are applied to those forces by the loop."""
 
+    def resize(self, loop: Loop) -> None:
+        """Called when atoms have left the system during a run, after `atom_arrays`; numbers in ``p`` that depend on them are set here."""
+
     def finish(self, loop: Loop) -> None:
         """Called after every run; read results back from ``p`` here."""
 

@@ -118,6 +118,9 @@ class Langevin(Thermostat):
             self._follow_variable(loop)
         return self.a
 
+    def resize(self, loop) -> None:
+        self.p[9] = max(np.count_nonzero(loop.groups[self.group]), 1)
+
     def _follow_variable(self, loop) -> None:
         self.a[:, 3] = np.sqrt(self.target(loop))
 

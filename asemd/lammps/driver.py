@@ -76,6 +76,7 @@ class Driver:
         self.session, self.plan, self.scene = session, plan, session.scene
         self.words = self.scene.thermo.columns(any(getattr(f, "box_change", False) for f in self.scene.fixes.values()))
         self.output_seconds = 0.0
+        self.natoms = self.scene.system.n
 
     def run(self) -> None:
         """Setup, steps, summary."""
@@ -89,6 +90,7 @@ class Driver:
             session.close_loop()
             loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), list(scene.fixes.values()),
                                        scene.groups, scene.dt, step=begin)
+            loop.warn = session.log.warn
             loop.setup(plan.first, plan.last, virial=True)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         else:
@@ -210,6 +212,7 @@ class Driver:
 
     def _thermo(self, step: int) -> None:
         session, scene = self.session, self.scene
+        self._tell_lost()
         norm = scene.thermo.is_normalised(scene.units)
         values = [evaluate(session.moment, w, norm) for w in self.words]
         session.log.write(scene.thermo.row(self.words, values, step, self.progress.cpu() if step > self.progress.begin else 0.0) + "\n")
@@ -217,6 +220,13 @@ class Driver:
         session.last_thermo_step = step
         if scene.thermo.flush or session.watched:
             session.log.flush()
+
+    def _tell_lost(self) -> None:
+        """With ``thermo_modify lost warn``: say once that atoms are gone."""
+        thermo, n = self.scene.thermo, self.scene.system.n
+        if thermo.lost == "warn" and n < self.natoms and not thermo.lost_told:
+            self.session.log.warn(f"Lost atoms: original {self.natoms} current {n}")
+            thermo.lost_told = True
 
     def _watch(self, what: str, *args) -> None:
         if self.session.observer is not None:

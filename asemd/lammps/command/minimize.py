@@ -40,16 +40,11 @@ class Landscape:
         self.x0 = loop.system.x.copy()
 
     def __call__(self, x: np.ndarray) -> tuple[float, np.ndarray]:
-        loop, system, engine = self.loop, self.system, self.loop.engine
+        loop, system = self.loop, self.system
         system.x[:] = x - (system.image - self.image) @ system.box.cell
-        loop.sync_in()
-        if not engine.k.moved(engine.state.x, engine.held, engine.ns) <= (0.5 * loop.settings.skin) ** 2:
-            engine.rebuild()
-        engine.forces(True)
-        loop._hook("post_force")
-        loop.result = engine.collect()
+        result = loop.evaluate()
         fixes = sum(f.scalar() for f in loop.fixes if f.thermo_energy)
-        return loop.result.potential + fixes, system.f
+        return result.potential + fixes, system.f
 
 
 class Minimization(Driver):
