@@ -106,7 +106,7 @@ class ClusterList:
         self.first = np.zeros((self.threads, ncl), np.int32)
         self.excluded_first = np.zeros((self.threads, ncl), np.int32)
         self.unshifted = np.zeros(ncl, np.bool_)
-        self.own, self.reach_first = np.zeros(ncl, np.int32), np.zeros(ncl, np.int32)
+        self.own, self.span = np.zeros(ncl, np.int32), np.zeros((ncl, CLUSTER), np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
         self._room()
         self.bounds = np.zeros(self.threads + 1, np.int64)
@@ -118,9 +118,9 @@ class ClusterList:
 
     def _room(self) -> None:
         """Work space for the candidates of one cluster."""
-        self.work = np.zeros((self.threads, 5, self.candidates))
+        self.work = np.zeros((self.threads, 7, self.candidates))
         self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
-        self.heaps = np.zeros((self.threads, 3, self.candidates + 1), np.int32)
+        self.needed = np.zeros((self.threads, self.candidates), np.int32)
         self.earlier = np.zeros((self.threads, self.candidates + 64), np.int32)
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
@@ -142,8 +142,8 @@ class ClusterList:
                 c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
-                                     c0, c1, self.first[t], self.entries[t], self.own, self.reach_first, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.heaps[t], self.width, ns)
+                                     c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
+                                     self.work_codes[t], self.needed[t], self.width, ns)
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
@@ -170,7 +170,7 @@ class ClusterList:
 
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-            results[t] = k.rows(state.x, state.row, self.first[t], self.entries[t], self.own, self.reach_first, c0, c1, self.shifts,
+            results[t] = k.rows(state.x, state.row, self.first[t], self.entries[t], self.own, self.span, c0, c1, self.shifts,
                                 self.reach**2, *partners, self.row_start[t], self.neighbors[t], self.row_work[t])
         while True:
             parallel(work)

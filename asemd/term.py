@@ -94,7 +94,7 @@ class PairTerm:
 
     def arguments(self, engine, tid):
         s, c = engine.state, engine.list
-        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.reach_first, c.unshifted, c.shifts,
+        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts,
                 c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
                 engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index])
 

@@ -142,13 +142,13 @@ def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2)
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, own, reach_first, unshifted, work, codes, heaps, width, empty):
+          first, entries, own, span, unshifted, work, codes, needed, width, empty):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
-    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (5, w)`, `codes (w,)`, `heaps (3, w + 1)`: candidates of
-    one cluster; `unshifted[c]` is set if no entry of cluster c needs a shift. A row holds first what only the first four atoms of the
-    cluster need, then the cluster itself (at `own[c]`, a multiple of 8), then what both halves need, then what only the last four need: the
-    first half runs from the start to `reach_first[c]`, the second from `own[c]` to the end. Rows end with copies of the slot `empty`, so
+    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (7, w)`, `codes (w,)`, `needed (w,)`: candidates of
+    one cluster; `unshifted[c]` is set if no entry of cluster c needs a shift. A row is sorted so that each of the four pairs of atoms in the cluster
+    needs one stretch of it only, ``span[c, 2 p]`` to ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, pair p
+    then needs the sums p to p + 3. The cluster itself stands in the middle, at ``own[c]``. Rows end with copies of the slot `empty`, so
     that they fill whole vectors of `width`.
     """
     n = 0
@@ -159,6 +159,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     ra = int(reach / wa) + 1
     rb = int(reach / wb) + 1
     capacity = codes.shape[0]
+    tally = np.zeros(9, np.int64)
+    keys = np.array([0, 0, 2, 1, 4, 2, 3, 2, 6, 3, 4, 3, 5, 3, 4, 3])      # bits of pairs in need -> first + last
     index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
     index_b, image_b, gap_b = np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1)
     for ci in range(c0, c1):
@@ -233,64 +235,56 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                         codes[nt + q] = np.int32(k0 + q) | high
                     nt += count
         unshifted[ci] = all_in
-        for half in range(2):
-            td = work[3 + half]
-            k0 = ci * CLUSTER + half * (CLUSTER // 2)
-            k1 = min(ci * CLUSTER + m, k0 + CLUSTER // 2)
-            for t in range(nt):
-                td[t] = 1e300
-            for k in range(k0, k1, 2):
-                k2 = min(k + 1, k1 - 1)
-                xi, yi, zi = x[0, k], x[1, k], x[2, k]
-                xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
+        for pair in range(CLUSTER // 2):
+            td = work[3 + pair]
+            k = ci * CLUSTER + 2 * pair
+            k2 = min(k + 1, ci * CLUSTER + m - 1)
+            if k2 < k:
                 for t in range(nt):
-                    a = tx[t] - xi
-                    b = ty[t] - yi
-                    c = tz[t] - zi
-                    e = tx[t] - xj
-                    f = ty[t] - yj
-                    g = tz[t] - zj
-                    td[t] = min(td[t], min(a * a + b * b + c * c, e * e + f * f + g * g))
+                    td[t] = 1e300
+                continue
+            xi, yi, zi = x[0, k], x[1, k], x[2, k]
+            xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
+            for t in range(nt):
+                a = tx[t] - xi
+                b = ty[t] - yi
+                c = tz[t] - zi
+                e = tx[t] - xj
+                f = ty[t] - yj
+                g = tz[t] - zj
+                td[t] = min(a * a + b * b + c * c, e * e + f * f + g * g)
         if n + nt + CLUSTER + width > entries.shape[0]:
             return -1
-        # those near anyone, then three heaps; every candidate is written and kept by moving a counter: no branches to mispredict
-        da, db = work[3], work[4]
-        start = n
+        # which pairs need each candidate, as bits; those nobody needs are dropped by not moving the counter: no branches to mispredict
+        d0, d1, d2, d3 = work[3], work[4], work[5], work[6]
+        for t in range(nt):
+            needed[t] = (d0[t] < r2) + 2 * (d1[t] < r2) + 4 * (d2[t] < r2) + 8 * (d3[t] < r2)
         kept = 0
         for t in range(nt):
             codes[np.uint64(kept)] = codes[t]
-            da[np.uint64(kept)] = da[t]
-            db[np.uint64(kept)] = db[t]
-            kept += min(da[t], db[t]) < r2
-        first_heap, both_heap, second_heap = heaps[0], heaps[1], heaps[2]
-        n0, n1, n2 = 0, 0, 0
+            needed[np.uint64(kept)] = needed[t]
+            kept += needed[t] != 0
+        # counting sort by first + last pair in need
+        for k in range(8):
+            tally[k] = 0
         for t in range(kept):
-            code = codes[t]
-            a = da[t]
-            b = db[t]
-            first_heap[np.uint64(n0)] = code
-            both_heap[np.uint64(n1)] = code
-            second_heap[np.uint64(n2)] = code
-            n0 += (a < r2) & (b >= r2)
-            n1 += (a < r2) & (b < r2)
-            n2 += (a >= r2) & (b < r2)
-        # the cluster itself stands at a multiple of 8; what it displaces goes behind it
-        at = (n0 // CLUSTER) * CLUSTER
-        for t in range(at):
-            entries[n + t] = first_heap[t]
+            tally[keys[needed[t]] + 1] += 1
+        for k in range(7):
+            tally[k + 1] += tally[k]
+        mine = (tally[3] // width) * width      # the cluster's own place; what it displaces goes behind it
+        for pair in range(4):
+            span[ci, 2 * pair] = min((tally[pair] // width) * width, mine)
+            span[ci, 2 * pair + 1] = ((tally[pair + 4] + CLUSTER + width - 1) // width) * width
+        own[ci] = mine
+        start = n
         for k in range(CLUSTER):
-            entries[n + at + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
-        for t in range(at, n0):
-            entries[n + t + CLUSTER] = first_heap[t]
-        own[ci] = at
-        n += n0 + CLUSTER
-        for t in range(n1):
-            entries[n + t] = both_heap[t]
-        n += n1
-        reach_first[ci] = ((n - start + width - 1) // width) * width
-        for t in range(n2):
-            entries[n + t] = second_heap[t]
-        n += n2
+            entries[start + mine + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
+        for t in range(kept):
+            key = keys[needed[t]]
+            q = tally[key]
+            tally[key] = q + 1
+            entries[start + q + (CLUSTER if q >= mine else 0)] = codes[t]
+        n = start + kept + CLUSTER
         while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)
             n += 1

@@ -96,7 +96,7 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
     return n
 
 
-def rows(x, row, first, entries, own, reach_first, c0, c1, shifts, reach2, partner_start, partners, start, neighbors, work):
+def rows(x, row, first, entries, own, span, c0, c1, shifts, reach2, partner_start, partners, start, neighbors, work):
     """The cluster list as rows of single atoms, for sparse systems: slots of clusters c0..c1-1, entries as in the cluster list.
 
     Partners (special pairs) are left out. `start (nslots+1,)`, `neighbors (m,)`, `work (4, w)`; returns the number of entries, or -1 if
@@ -126,8 +126,8 @@ def rows(x, row, first, entries, own, reach_first, c0, c1, shifts, reach2, partn
             r = row[s + a]
             if r < 0:
                 continue
-            low = np.int64(0) if a < CLUSTER // 2 else mine
-            count = np.int64(reach_first[ci]) if a < CLUSTER // 2 else full - mine
+            low = np.int64(span[ci, a - a % 2])
+            count = np.int64(span[ci, a - a % 2 + 1]) - low
             xi, yi, zi = x[0, s + a], x[1, s + a], x[2, s + a]
             for k in range(count):
                 dx = xi - px[np.uint64(low + k)]

@@ -108,7 +108,7 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     return fx, fy, fz, ev, ec, dx * fx, dy * fy, dz * fz, dx * fy, dx * fz, dy * fz
 
 
-def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
+def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
                    qqr2e, b, types, saved, acc):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz)."""
     far = real(far_)
@@ -150,12 +150,9 @@ def cluster_forces(x, f, q, type_of, first, entries, own, reach_first, unshifted
         if EXCLUDE:
             xp = excluded_first[ci]
             xe = excluded_first[ci + 1]
-        base = np.int64(0)
-        count = np.int64(reach_first[ci])
         for a0 in range(0, CLUSTER, 2):
-            if a0 == CLUSTER // 2:
-                base = mine
-                count = full - mine
+            base = np.int64(span[ci, a0])
+            count = np.int64(span[ci, a0 + 1]) - base
             xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
             xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
             qa = real(0)
