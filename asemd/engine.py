@@ -63,6 +63,7 @@ class Engine:
         self.exclusions = Exclusions(system, inter, s.exclude, bool(self.pair_terms))
         self._choose_list()
         self.terms = self._make_terms()
+        self.changed = True      # loops look whether their kernels are still the right ones
         for k, t in enumerate(self.terms):
             t.index = k
         self.acc = np.zeros((self.threads, max(1, len(self.terms)), 8))

@@ -122,6 +122,7 @@ class Loop:
         return np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)
 
     def _make_module(self) -> None:
+        self.engine.changed = False
         self._kinds = [f.hooks() for f in self.fixes]
         self._compiled = all(compiled for kinds in self._kinds for compiled in kinds.values())
         hooks = [{name: getattr(f, name) for name in tl.COMPILED if kinds.get(name)} for f, kinds in zip(self.fixes, self._kinds)]
@@ -203,7 +204,8 @@ class Loop:
             self.engine.store()
             error.args = (f"step {self.step}: {error}",)
             raise
-        self._make_module()
+        if self.engine.changed:
+            self._make_module()
         self._ago = 0
 
     def _with_lost(self, build) -> None:

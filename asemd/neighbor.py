@@ -78,11 +78,16 @@ class ClusterList:
         self.excluded = np.zeros((threads, 64), np.int32)
         self.candidates = 2048
         self.shares = None
+        self.row_length = np.zeros((threads, 1), np.int64)
+        self.bins, self.n = None, -1
         self.row_start, self.neighbors = np.zeros((threads, 0), np.int32), np.zeros((threads, 0), np.int32)
         self.row_work = np.zeros((threads, 4, 512))
 
     def shape(self, bins: BinCell, n: int) -> bool:
         """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
+        if bins is self.bins and n == self.n:
+            return False
+        self.bins, self.n = bins, n
         wa, wb, wc = bins.widths
         share = CLUSTER / max(n, 1)
         # edge of the cube that holds one cluster; in layers and rows that are thinner than that, of the square or the line
@@ -125,7 +130,6 @@ class ClusterList:
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
         """Sort the slots; returns their number."""
-        self.bins = bins
         return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
                       self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach)
 
@@ -143,7 +147,7 @@ class ClusterList:
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
                                      c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.needed[t], self.width, ns)
+                                     self.work_codes[t], self.needed[t], self.width, ns, self.row_length[t])
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
@@ -199,8 +203,7 @@ class ClusterList:
 
     def longest(self) -> int:
         """Most neighbours of one cluster."""
-        lengths = (np.diff(self.first[t, self.bounds[t]:self.bounds[t + 1] + 1]) for t in range(self.threads))
-        return max((int(length.max(initial=0)) for length in lengths), default=0)
+        return int(self.row_length.max())
 
     def expand(self, k, state, reach: float, room: int = 0):
         """The same pairs as plain arrays (i, j, code), closer than `reach`."""

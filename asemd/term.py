@@ -83,6 +83,7 @@ class PairTerm:
         self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(engine.list.longest())
         if row > self.row:
+            engine.changed = True
             self.row = pair_kernels.row_length(int(1.15 * engine.list.longest()))
             real = np.float32 if self.single else np.float64
             size = (7 + 2 * (len(self.uniform) - sum(self.uniform)) + 1) * self.row

@@ -142,14 +142,15 @@ def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2)
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, own, span, unshifted, work, codes, needed, width, empty):
+          first, entries, own, span, unshifted, work, codes, needed, width, empty, longest):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
     `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (7, w)`, `codes (w,)`, `needed (w,)`: candidates of
     one cluster; `unshifted[c]` is set if no entry of cluster c needs a shift. A row is sorted so that each of the four pairs of atoms in the cluster
     needs one stretch of it only, ``span[c, 2 p]`` to ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, pair p
     then needs the sums p to p + 3. The cluster itself stands in the middle, at ``own[c]``. Rows end with copies of the slot `empty`, so
-    that they fill whole vectors of `width`.
+    that they fill whole vectors of `width`. `longest[0]` is the length of
+    the longest row.
     """
     n = 0
     r2 = reach * reach
@@ -159,6 +160,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     ra = int(reach / wa) + 1
     rb = int(reach / wb) + 1
     capacity = codes.shape[0]
+    longest[0] = 0
     tally = np.zeros(9, np.int64)
     keys = np.array([0, 0, 2, 1, 4, 2, 3, 2, 6, 3, 4, 3, 5, 3, 4, 3])      # bits of pairs in need -> first + last
     index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
@@ -288,5 +290,6 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)
             n += 1
+        longest[0] = max(longest[0], n - start)
     first[c1] = n
     return n
