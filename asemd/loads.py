@@ -9,6 +9,7 @@ import numpy as np
 from asemd.fix import Fix
 from asemd.fix.addforce import AddForce
 from asemd.fix.setforce import SetForce
+from asemd.result import COMPONENTS
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class Load:
     def act(self, x: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Energies (n,), forces (n, 3) and virials (n, 6; xx yy zz xy xz yz) of atoms at unwrapped positions `x (n, 3)`."""
         f = np.where(mask[:, None], np.array(self.force, float), 0.0)
-        w = np.stack([0.5 * (f[:, a] * x[:, b] + f[:, b] * x[:, a]) for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], axis=1)
+        w = np.stack([0.5 * (f[:, a] * x[:, b] + f[:, b] * x[:, a]) for a, b in COMPONENTS], axis=1)
         return -(f * x).sum(axis=1), f, w
 
     def __str__(self) -> str:

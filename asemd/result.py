@@ -7,6 +7,8 @@ import numpy as np
 
 from asemd import units as unit_styles
 
+COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))     # of tensors given as six numbers: xx yy zz xy xz yz
+
 
 @dataclass
 class Settings:

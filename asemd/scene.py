@@ -17,6 +17,7 @@ from asemd.thermo import Thermo
 if TYPE_CHECKING:
     from asemd.compute import Compute
     from asemd.fix import Fix
+    from asemd.region import Region
     from asemd.system import System
 
 MAX_GROUPS = 32
@@ -175,6 +176,18 @@ class Scene:
         if self.system is None:
             raise InputError(f"{command} command before simulation box is defined: use read_data or create_box first")
         return self.system
+
+    def region(self, id: str, what: str) -> Region:
+        """The region of that ID; `what` names the command that asks.
+
+        Raises
+        ------
+        InputError
+            No region of that ID; offers the nearest match.
+        """
+        if id not in self.regions:
+            raise InputError(f"{what}: unknown region {id!r}{nearest(id, self.regions)}")
+        return self.regions[id]
 
     def sync_groups(self) -> None:
         """Fit the group masks to the number of atoms."""

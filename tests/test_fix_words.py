@@ -9,6 +9,7 @@ import pytest
 import asemd.compute
 import asemd.fix
 from asemd.errors import InputError
+from asemd.scene import Scene
 from asemd.variable import Variables
 
 
@@ -20,7 +21,7 @@ def session():
     region = SimpleNamespace(inside=lambda x: np.ones(len(x), bool))
     temp, pe = asemd.compute.Temp(), asemd.compute.PE()
     temp.id, pe.id = "t", "pe"
-    return SimpleNamespace(variables=variables, scene=SimpleNamespace(regions={"box": region}, computes={"t": temp, "pe": pe}))
+    return SimpleNamespace(variables=variables, scene=Scene(regions={"box": region}, computes={"t": temp, "pe": pe}))
 
 
 @pytest.mark.parametrize("line", [

@@ -7,14 +7,11 @@ Source: LAMMPS manual, compute pe. Units: energy, for the whole system (not per 
 """
 from __future__ import annotations
 
-from asemd.compute import Compute
-from asemd.errors import InputError, nearest
-
-TERMS = {"pair": ("evdwl", "ecoul", "etail"), "bond": ("ebond",), "angle": ("eangle",), "dihedral": ("edihed",), "improper": ("eimp",),
-         "kspace": ("elong",), "fix": ()}
+from asemd.compute._energy_terms import TERMS, EnergyTerms
+from asemd.errors import InputError
 
 
-class PE(Compute):
+class PE(EnergyTerms):
     """Potential energy.
 
     Parameters
@@ -34,20 +31,9 @@ class PE(Compute):
     needs = frozenset({"energy"})
 
     def __init__(self, group: str = "all", terms=None):
-        super().__init__(group)
         if group != "all":
             raise InputError(f"compute pe must use group all, got {group}; compute pe/atom and reduce give the energy of a group")
-        for term in terms or ():
-            if term not in TERMS:
-                raise InputError(f"compute pe: unknown keyword {term!r}{nearest(term, TERMS)}")
-        self.terms = tuple(terms or ())
-
-    @classmethod
-    def from_lammps(cls, group, words, session):
-        return cls(group, words)
-
-    def to_lammps(self) -> list[str]:
-        return list(self.terms)
+        super().__init__(group, terms)
 
     def scalar(self, state) -> float:
         """The sum of the terms."""

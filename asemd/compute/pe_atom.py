@@ -9,13 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.compute import Compute
-from asemd.errors import InputError, nearest
-
-TERMS = ("pair", "bond", "angle", "dihedral", "improper", "kspace", "fix")
+from asemd.compute._energy_terms import EnergyTerms
 
 
-class PEAtom(Compute):
+class PEAtom(EnergyTerms):
     """Potential energy per atom.
 
     Parameters
@@ -33,20 +30,6 @@ class PEAtom(Compute):
 
     style = "pe/atom"
     needs = frozenset({"energy", "energies"})
-
-    def __init__(self, group: str = "all", terms=None):
-        super().__init__(group)
-        for term in terms or ():
-            if term not in TERMS:
-                raise InputError(f"compute pe/atom: unknown keyword {term!r}{nearest(term, TERMS)}")
-        self.terms = tuple(terms or ())
-
-    @classmethod
-    def from_lammps(cls, group, words, session):
-        return cls(group, words)
-
-    def to_lammps(self) -> list[str]:
-        return list(self.terms)
 
     def per_atom(self, state) -> np.ndarray:
         """(n,) energies; zero outside the group."""

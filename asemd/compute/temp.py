@@ -14,9 +14,8 @@ import numpy as np
 
 from asemd.compute import Compute
 from asemd.errors import InputError
+from asemd.result import COMPONENTS
 from asemd.words import number, yes_no
-
-COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))     # xx yy zz xy xz yz
 
 
 class Temp(Compute):

@@ -303,9 +303,10 @@ class Dump:
         self.pad = max(0, whole(values[0], what))
 
     def _modify_region(self, values, what, session):
-        if values[0] != "none" and values[0] not in session.scene.regions:
-            raise InputError(f"{what}: unknown region {values[0]!r}{nearest(values[0], session.scene.regions)}")
-        self.region = "" if values[0] == "none" else values[0]
+        self.region = ""
+        if values[0] != "none":
+            session.scene.region(values[0], what)
+            self.region = values[0]
 
     def _modify_sort(self, values, what, session):
         if values[0] not in ("off", "id"):

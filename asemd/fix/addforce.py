@@ -18,6 +18,7 @@ from asemd.fix import hook
 from asemd.fix.applied_force import AppliedForce
 from asemd.fix.formula import Value, read, write
 from asemd.kernels.threads import reduce_sum
+from asemd.result import COMPONENTS
 from asemd.words import whole, yes_no
 
 KEYWORDS = ("every", "region", "energy")
@@ -146,7 +147,7 @@ class AddForce(AppliedForce):
     def virials(self, state) -> np.ndarray:
         """(n, 6) each atom's virial, xx yy zz xy xz yz, energy units; `state` is a `asemd.engine.Snapshot`."""
         force, r = self._constant(state.system, state.mask(self.group)) if self._is_constant() else (self._force, self._positions)
-        return np.stack([force[:, i] * r[:, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], axis=1)
+        return np.stack([force[:, i] * r[:, j] for i, j in COMPONENTS], axis=1)
 
     def modify_option(self, keyword, value, session):
         if keyword in ("energy", "virial"):

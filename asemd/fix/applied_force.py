@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asemd.errors import InputError, nearest
+from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.fix.formula import Value
 
@@ -42,9 +42,7 @@ class AppliedForce(Fix):
         """The region named by a ``region`` keyword."""
         if not words:
             raise InputError(f"{what}: region needs the ID of a region")
-        if words[0] not in session.scene.regions:
-            raise InputError(f"{what}: there is no region {words[0]}{nearest(words[0], session.scene.regions)}")
-        return session.scene.regions[words[0]]
+        return session.scene.region(words[0], what)
 
     def selected(self, loop: Loop) -> np.ndarray:
         """(m,) slots of the atoms it acts on now."""

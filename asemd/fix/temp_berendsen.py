@@ -9,14 +9,10 @@ fix temp/berendsen. Units: temperature, time. Output: the scalar is the energy t
 """
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from asemd.errors import InputError
 from asemd.fix import hook
 from asemd.fix.formula import write
-from asemd.fix.thermostat import VelocityScaling, measured_temperature
+from asemd.fix.thermostat import VelocityScaling, measured_temperature, ramped, scale_velocities
 from asemd.words import number
 
 
@@ -60,21 +56,7 @@ class TempBerendsen(VelocityScaling):
     def settings(self) -> tuple[float, ...]:
         return (self.damping,)
 
-    @hook(uses=[measured_temperature, relaxed])
+    @hook(uses=[measured_temperature, ramped, relaxed, scale_velocities])
     def end_of_step(th, s, p, a):
         now = measured_temperature(th, s, p)
-        done = 0.0
-        if th.end != th.begin:
-            done = (th.step - th.begin) / (th.end - th.begin)
-        new = relaxed(now, p[5] + done * (p[6] - p[5]), th.dt, p)
-        factor = math.sqrt(new / now) if now > 0.0 else 1.0
-        bit = np.int32(np.int64(p[0]))
-        mask = s.mask[th.lo:th.hi]
-        for d in range(3):
-            v = s.v[d, th.lo:th.hi]
-            for i in range(v.size):
-                if mask[i] & bit != 0:
-                    v[i] *= factor
-        if th.tid == 0:
-            p[7] += 0.5 * p[3] * p[2] * (now - new) if now > 0.0 else 0.0
-            p[8] += 1.0 if now <= 0.0 else 0.0
+        scale_velocities(th, s, p, now, relaxed(now, ramped(th, p), th.dt, p))

@@ -110,6 +110,30 @@ def measured_temperature(th, s, p):
     return p[4] * twice / (p[2] * p[3]) if p[2] > 0.0 else 0.0
 
 
+def ramped(th, p):
+    """The target temperature of this step, from ``p[5]`` to ``p[6]`` over the run."""
+    done = 0.0
+    if th.end != th.begin:
+        done = (th.step - th.begin) / (th.end - th.begin)
+    return p[5] + done * (p[6] - p[5])
+
+
+def scale_velocities(th, s, p, now, new):
+    """Velocities of the group with bit ``p[0]`` from one temperature to another; ``p[7]`` gets the energy, ``p[8]`` counts zeros."""
+    factor = math.sqrt(new / now) if now > 0.0 else 1.0
+    if factor != 1.0:
+        bit, mine = np.int32(np.int64(p[0])), slice(th.lo, th.hi)
+        mask = s.mask[mine]
+        for d in range(3):
+            v = s.v[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    v[i] *= factor
+    if th.tid == 0:
+        p[7] += 0.5 * p[3] * p[2] * (now - new) if now > 0.0 else 0.0
+        p[8] += 1.0 if now <= 0.0 else 0.0
+
+
 class VelocityScaling(Thermostat):
     """Base class of thermostats that scale all velocities at the end of a step.
 

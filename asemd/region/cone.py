@@ -41,13 +41,18 @@ class Cone(Region):
         return lo, hi
 
     @classmethod
-    def parse(cls, words, spacings, side, session):
-        what = "region cone"
+    def read(cls, words, spacings, session):
+        """Axis, center, radii, lo and hi from ``dim c1 c2 radius ... lo hi``."""
+        what = f"region {cls.style}"
         axis = "xyz".index(choice(words[0], ("x", "y", "z"), what))
         a, b = across(axis)
         center = number(words[1], what) * spacings[a], number(words[2], what) * spacings[b]
-        (lo,), (hi,) = limits(words[5:7], [axis], spacings, session, what)
-        radii = [radius(w, spacings[a], what) for w in words[3:5]]
+        (lo,), (hi,) = limits(words[-2:], [axis], spacings, session, what)
+        return axis, center, [radius(w, spacings[a], what) for w in words[3:-2]], lo, hi
+
+    @classmethod
+    def parse(cls, words, spacings, side, session):
+        axis, center, radii, lo, hi = cls.read(words, spacings, session)
         if radii == [0.0, 0.0] or lo == hi:
             raise InputError("region cone: one radius must be positive and lo must be below hi")
         return cls(axis, center, *radii, lo, hi, side=side)

@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.region import limits, radius
-from asemd.region.cone import Cone, across
-from asemd.words import choice, number
+from asemd.region.cone import Cone
 
 
 class Cylinder(Cone):
@@ -22,9 +20,5 @@ class Cylinder(Cone):
 
     @classmethod
     def parse(cls, words, spacings, side, session):
-        what = "region cylinder"
-        axis = "xyz".index(choice(words[0], ("x", "y", "z"), what))
-        a, b = across(axis)
-        center = number(words[1], what) * spacings[a], number(words[2], what) * spacings[b]
-        (lo,), (hi,) = limits(words[4:6], [axis], spacings, session, what)
-        return cls(axis, center, radius(words[3], spacings[a], what), lo, hi, side=side)
+        axis, center, (radius,), lo, hi = cls.read(words, spacings, session)
+        return cls(axis, center, radius, lo, hi, side=side)

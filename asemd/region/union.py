@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.errors import InputError, nearest
+from asemd.errors import InputError
 from asemd.region import Region, options
 from asemd.words import take, whole
 
@@ -33,10 +33,5 @@ class Union(Region):
         n = whole(take(words, 1, what)[0], what)
         if n < 2:
             raise InputError(f"{what} needs two regions at least, got {n}")
-        known = session.scene.regions
-        regions = []
-        for name in take(words[1:], n, what):
-            if name not in known:
-                raise InputError(f"{what}: unknown region {name!r}{nearest(name, known)}")
-            regions.append(known[name])
+        regions = [session.scene.region(name, what) for name in take(words[1:], n, what)]
         return cls(regions, side=options(words[1 + n:], cls.style)[1])

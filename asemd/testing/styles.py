@@ -16,6 +16,7 @@ import numpy as np
 
 from asemd.kernels import bonded
 from asemd.kernels.state import Cell, cell_arrays
+from asemd.result import COMPONENTS
 from asemd.style import Packed, Style
 from asemd.topology import ATOMS
 
@@ -227,7 +228,7 @@ def check_virial(style: Style) -> None:
     """The virial is minus the derivative of the energy by strain."""
     s = sample(style)
     a = s.run()
-    for i, (p, q) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+    for i, (p, q) in enumerate(COMPONENTS):
         def energy(h, p=p, q=q):
             strain = np.eye(3)
             strain[p, q] += 0.5 * h

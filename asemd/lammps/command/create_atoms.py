@@ -30,9 +30,7 @@ def run(session, args):
     options = _options(args[2 + len(values):], system, lattice)
     region = None
     if style in ("region", "random") and values[-1] != "NULL":
-        if values[-1] not in scene.regions:
-            raise InputError(f"create_atoms {style}: unknown region {values[-1]!r}{nearest(values[-1], scene.regions)}")
-        region = scene.regions[values[-1]]
+        region = scene.region(values[-1], f"create_atoms {style}")
     if style == "single":
         x, types = _single(values, system, lattice, options, kind)
     elif style == "random":

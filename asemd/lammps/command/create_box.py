@@ -24,8 +24,7 @@ def run(session, args):
         raise InputError(f"create_box: the number of atom types must be positive, got {count}")
     if name == "NULL":
         raise InputError("create_box NULL (general triclinic boxes) is not supported: use a region of style prism")
-    if name not in scene.regions:
-        raise InputError(f"create_box: unknown region {name!r}{nearest(name, scene.regions)}")
+    region = scene.region(name, "create_box")
     words = args[2:]
     while words:
         key, what = words[0], f"create_box {words[0]}"
@@ -38,7 +37,7 @@ def run(session, args):
             raise InputError(f"{what}: must not be negative, got {value}")
         counts[KEYWORDS[key]], words = value, words[2:]
     empty = np.zeros(0)
-    scene.system = System(box=_box(scene, scene.regions[name]), x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
+    scene.system = System(box=_box(scene, region), x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
                           q=empty if scene.atom_style in CHARGED else None, atom_style=scene.atom_style, dimension=scene.dimension,
                           step=scene.step)
     session.print(f"Created {describe(scene.system.box)}")

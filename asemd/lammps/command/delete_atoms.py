@@ -58,9 +58,7 @@ def _chosen(session, system, style: str, values: list[str], what: str) -> np.nda
     if style == "group":
         return scene.groups.mask(values[0], what).copy()
     if style == "region":
-        if values[0] not in scene.regions:
-            raise InputError(f"{what}: unknown region {values[0]!r}{nearest(values[0], scene.regions)}")
-        return scene.regions[values[0]].inside(system.x)
+        return scene.region(values[0], what).inside(system.x)
     if style == "variable":
         return session.variables.per_atom(values[0].removeprefix("v_"), system.n) != 0.0
     cutoff = number(values[0], f"{what}: cutoff")

@@ -57,9 +57,7 @@ def _members(session, system, old: np.ndarray, style: str, words: list[str], wha
         return np.zeros(system.n, bool)
     take(words, 1, what)
     if style == "region":
-        if words[0] not in scene.regions:
-            raise InputError(f"{what}: unknown region {words[0]!r}{nearest(words[0], scene.regions)}")
-        return scene.regions[words[0]].inside(system.x)
+        return scene.region(words[0], what).inside(system.x)
     if style == "variable":
         return session.variables.per_atom(words[0].removeprefix("v_"), system.n) != 0.0
     if style == "include":

@@ -36,9 +36,7 @@ def _selected(scene, system, style: str, name: str) -> np.ndarray:
     if style == "group":
         return scene.groups.mask(name, "set group")
     if style == "region":
-        if name not in scene.regions:
-            raise InputError(f"set region: unknown region {name!r}{nearest(name, scene.regions)}")
-        return scene.regions[name].inside(system.x)
+        return scene.region(name, "set region").inside(system.x)
     if style == "atom":
         values, (first, last) = system.id, bounds(name, 1, LARGEST, "set atom")
     elif style == "type":
