@@ -46,15 +46,9 @@ def angle(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, a
             w = -slope13 / r13 if r13 > 0.0 else 0.0
             fx, fy, fz = fx + w * cx, fy + w * cy, fz + w * cz
             gx, gy, gz = gx - w * cx, gy - w * cy, gz - w * cz
-        out[0, i] += fx
-        out[1, i] += fy
-        out[2, i] += fz
-        out[0, j] -= fx + gx
-        out[1, j] -= fy + gy
-        out[2, j] -= fz + gz
-        out[0, k] += gx
-        out[1, k] += gy
-        out[2, k] += gz
+        push(out, i, fx, fy, fz)
+        push(out, j, -(fx + gx), -(fy + gy), -(fz + gz))
+        push(out, k, gx, gy, gz)
         if ENERGY or PER_ATOM:
             pxx, pyy, pzz = ax * fx + bx * gx, ay * fy + by * gy, az * fz + bz * gz
             pxy, pxz, pyz = ax * fy + bx * gy, ax * fz + bx * gz, ay * fz + by * gz

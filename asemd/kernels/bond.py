@@ -19,12 +19,8 @@ def bond(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, at
             continue
         w = -slope / r if r > 0.0 else 0.0      # at r = 0 the force has no direction
         fx, fy, fz = w * dx, w * dy, w * dz
-        out[0, i] += fx
-        out[1, i] += fy
-        out[2, i] += fz
-        out[0, j] -= fx
-        out[1, j] -= fy
-        out[2, j] -= fz
+        push(out, i, fx, fy, fz)
+        push(out, j, -fx, -fy, -fz)
         if ENERGY:
             energy += e
             vxx += dx * fx

@@ -19,6 +19,13 @@ def report(bad, item, value):
         bad[0], bad[1], bad[2] = 1.0, item, value
 
 
+def push(out, atom, fx, fy, fz):
+    """Add to the force on an atom."""
+    out[0, atom] += fx
+    out[1, atom] += fy
+    out[2, atom] += fz
+
+
 def total(acc, energy, vxx, vyy, vzz, vxy, vxz, vyz):
     acc[0] += energy
     acc[2] += vxx
@@ -102,7 +109,7 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
     b.text(_adapter(style), cache=False)
     if periodic:
         b.text(plain_source(image.closest_orthogonal if orthogonal else image.closest_general, "closest"), cache=False)
-    for f in (report,) + (total,) * energy + (share,) * per_atom:
+    for f in (report, push) + (total,) * energy + (share,) * per_atom:
         b.text(plain_source(f), cache=False)
     b.text(plain_source(_loop(style), "loop"))
     return b

@@ -42,18 +42,10 @@ def torsion(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy,
         f4x, f4y, f4z = wb * bx, wb * by, wb * bz
         sx, sy, sz = p * ax - q * bx, p * ay - q * by, p * az - q * bz
         f3x, f3y, f3z = sx - f4x, sy - f4y, sz - f4z
-        out[0, i] += f1x
-        out[1, i] += f1y
-        out[2, i] += f1z
-        out[0, j] -= sx + f1x
-        out[1, j] -= sy + f1y
-        out[2, j] -= sz + f1z
-        out[0, k] += f3x
-        out[1, k] += f3y
-        out[2, k] += f3z
-        out[0, l] += f4x
-        out[1, l] += f4y
-        out[2, l] += f4z
+        push(out, i, f1x, f1y, f1z)
+        push(out, j, -(sx + f1x), -(sy + f1y), -(sz + f1z))
+        push(out, k, f3x, f3y, f3z)
+        push(out, l, f4x, f4y, f4z)
         if ENERGY or PER_ATOM:            # positions from atom 2: f, -g, h - g
             tx, ty, tz = hx - gx, hy - gy, hz - gz
             pxx, pyy, pzz = fx * f1x - gx * f3x + tx * f4x, fy * f1y - gy * f3y + ty * f4y, fz * f1z - gz * f3z + tz * f4z

@@ -48,18 +48,10 @@ def out_of_plane(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_en
         c3 = c * ((py * uz - pz * uy) * nx + (pz * ux - px * uz) * ny + (px * uy - py * ux) * nz)
         f2x, f2y, f2z = c2 * nx, c2 * ny, c2 * nz
         f3x, f3y, f3z = c3 * nx, c3 * ny, c3 * nz
-        out[0, i] -= f2x + f3x + f4x
-        out[1, i] -= f2y + f3y + f4y
-        out[2, i] -= f2z + f3z + f4z
-        out[0, j] += f2x
-        out[1, j] += f2y
-        out[2, j] += f2z
-        out[0, k] += f3x
-        out[1, k] += f3y
-        out[2, k] += f3z
-        out[0, l] += f4x
-        out[1, l] += f4y
-        out[2, l] += f4z
+        push(out, i, -(f2x + f3x + f4x), -(f2y + f3y + f4y), -(f2z + f3z + f4z))
+        push(out, j, f2x, f2y, f2z)
+        push(out, k, f3x, f3y, f3z)
+        push(out, l, f4x, f4y, f4z)
         if ENERGY or PER_ATOM:
             pxx, pyy, pzz = ux * f2x + vx * f3x + lx * f4x, uy * f2y + vy * f3y + ly * f4y, uz * f2z + vz * f3z + lz * f4z
             pxy, pxz, pyz = ux * f2y + vx * f3y + lx * f4y, ux * f2z + vx * f3z + lx * f4z, uy * f2z + vy * f3z + ly * f4z
