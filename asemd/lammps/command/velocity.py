@@ -225,6 +225,7 @@ class State:
     def __init__(self, scene):
         self.system, self.groups, self.fixes = scene.system, scene.groups, list(scene.fixes.values())
         self.units, self.dimension, self.step, self.dt = units.get(scene.units), scene.dimension, scene.step, scene.dt
+        self.gone: dict[str, int] = {}
 
     def mask(self, group: str) -> np.ndarray:
         return self.groups[group]
