@@ -138,7 +138,7 @@ class Lammps(AtomArrays):
         """[boxlo, boxhi, xy, yz, xz, periodicity, box_change]"""
         box = self.scene.need_system("extract_box").box
         xy, xz, yz = (float(t) for t in box.tilt)
-        change = int(any(getattr(f, "box_change", False) for f in self.scene.fixes.values()))
+        change = int(self.scene.box_changes)
         return [[float(v) for v in box.lo], [float(v) for v in box.hi], xy, yz, xz, [int(p) for p in box.periodic], change]
 
     def reset_box(self, boxlo: Sequence[float], boxhi: Sequence[float], xy: float, yz: float, xz: float) -> None:

@@ -74,7 +74,7 @@ class Driver:
 
     def __init__(self, session, plan: Plan):
         self.session, self.plan, self.scene = session, plan, session.scene
-        self.words = self.scene.thermo.columns(any(getattr(f, "box_change", False) for f in self.scene.fixes.values()))
+        self.words = self.scene.thermo.columns(self.scene.box_changes)
         self.output_seconds = 0.0
         self.natoms = self.scene.system.n
 
