@@ -82,7 +82,7 @@ def chain(v) -> System:
 
 
 def loop_of(system, fixes=None, threads=1, **options) -> Loop:
-    inter = Interactions.build(pair={"lj/cut 1.1": {(1, 1): (0.01, 0.5)}}, bond={"harmonic": {1: (0.001, 1.0)}},
+    inter = Interactions.build(pair={"soft 1.1": {(1, 1): (1.0,)}}, bond={"harmonic": {1: (0.001, 1.0)}},
                                special_bonds="lj/coul 0 1 1")
     groups = {"all": np.ones(system.n, bool), "odd": np.arange(system.n) % 2 == 0}
     return Loop(system, inter, Settings(threads=threads, **options), fixes or [NVE()], groups, 0.01)
