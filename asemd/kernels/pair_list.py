@@ -84,9 +84,13 @@ def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2
             entry = neighbors[m]
             j = np.uint32(entry & np.int32(0x3FFFFFF))
             c = np.uint32(entry >> 26)
-            dx = xi - (x[0, j] + shifts[c, 0])
-            dy = yi - (x[1, j] + shifts[c, 1])
-            dz = zi - (x[2, j] + shifts[c, 2])
+            dx = xi - x[0, j]
+            dy = yi - x[1, j]
+            dz = zi - x[2, j]
+            if c != 13:
+                dx -= shifts[c, 0]
+                dy -= shifts[c, 1]
+                dz -= shifts[c, 2]
             r2 = dx * dx + dy * dy + dz * dz
             if r2 < furthest(p, rows, ti, type_of[j]):
                 qq = qi * q[j] if CHARGED else 0.0
