@@ -71,6 +71,7 @@ class Loop:
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
         self._module = None
         self._chunk = 100
+        self._farthest = np.inf
 
     def group_bit(self, name: str) -> int:
         """The bit value of a group: 1 for ``all``, 2, 4, ...
@@ -108,6 +109,7 @@ class Loop:
         self._ago = 0
         self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
         self._make_module()
+        self._farthest = max(e.reach, *(1.0 / np.linalg.norm(np.linalg.inv(e.vectors), axis=0)))
         for n, f in enumerate(self.fixes):
             f.setup(self)
             if "post_force" in self._kinds[n]:
@@ -197,8 +199,19 @@ class Loop:
             self._rebuild()
             resume = True
 
+    def _check_step(self) -> None:
+        """Between two list builds no atom that interacts goes farther than the box is wide: its forces would have nothing to do with its path."""
+        e = self.engine
+        if not e.terms or not e.k.moved(e.state.x, e.held, e.ns) > self._farthest**2:
+            return          # a position that is not a number is reported by the build
+        far = np.linalg.norm(e.state.x[:, :e.ns] - e.held[:, :e.ns], axis=0)
+        slot = int(np.argmax(far))
+        raise SimulationError(f"atom {self.system.id[e.state.row[slot]]} moved {far[slot]:.4g} since the neighbour list was built, more than "
+                              "the width of the box: the time step is too long, or atoms are too close together")
+
     def _rebuild(self) -> None:
         try:
+            self._check_step()
             self._with_lost(self.engine.rebuild)
         except SimulationError as error:
             self.engine.store()

@@ -7,11 +7,14 @@ from functools import cache
 
 import numpy as np
 
+from asemd.errors import InputError
 from asemd.kernels import cluster, cluster_rows, pair_list, rebuild
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 
 SMALL = 256            # below this many atoms a plain list is cheaper than clusters
+MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
+MOST_PAIRS = 2e9
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
 
 
@@ -55,6 +58,9 @@ def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tup
     """All image shifts that may bring an atom within `reach`: vectors (m, 3), no shift first, and the index of each one's opposite."""
     widths = 1.0 / np.linalg.norm(np.linalg.inv(vectors), axis=0)
     counts = [int(math.floor(reach / w)) + 1 if p else 0 for w, p in zip(widths, periodic)]
+    if math.prod(2 * c + 1 for c in counts) > MOST_IMAGES:
+        raise InputError(f"cutoff plus skin, {reach:g}, is {reach / widths[periodic].min():.3g} times the width of the periodic cell: "
+                         f"more than {MOST_IMAGES} images of each atom are in reach; is the cutoff in the units of the scene?")
     cells = sorted(itertools.product(*(range(-c, c + 1) for c in counts)), key=lambda s: (s != (0, 0, 0), s))
     at = {s: k for k, s in enumerate(cells)}
     opposite = np.array([at[tuple(-u for u in s)] for s in cells], np.int32)
@@ -231,6 +237,9 @@ class PlainList:
     def build(self, k, state, ns: int, bins: BinCell, cell_vectors: np.ndarray, periodic: np.ndarray):
         """Returns (pair_i, pair_j, code) and keeps `shifts (m, 3)`."""
         self.shifts, opposite = image_shifts(cell_vectors, periodic, self.reach)
+        pairs = 2.1 * self.reach**3 * ns**2 / abs(np.linalg.det(cell_vectors)) if periodic.all() else 0.0
+        if pairs > MOST_PAIRS:
+            raise InputError(f"cutoff plus skin, {self.reach:g}: about {pairs:.2g} pairs of atoms are in reach, too many to list")
         while True:
             slot, image = np.empty(self.copies, np.int32), np.empty(self.copies, np.int32)
             copies = np.empty((3, self.copies))
