@@ -235,7 +235,7 @@ class _Reader(DataText):
 
     def read_atoms(self, box: Box, rotation: np.ndarray | None, counts: dict[str, int], mass: np.ndarray) -> System:
         columns, n = ATOM_STYLES[self.atom_style], self.number("atoms")
-        if n:
+        if n or ("Atoms" in self.sections and self.content(self.sections["Atoms"])):
             a, where = self.table("Atoms", columns, n, optional=IMAGE)
         else:
             a, where = {c: np.zeros(0) for c in columns}, None

@@ -26,7 +26,9 @@ def _lines(path: str | os.PathLike) -> list[str]:
         raise InputError(f"read_data: cannot read {path}: {e.strerror or e}") from None
     if b"\0" in raw:
         raise InputError(f"read_data: {path} is not a text file")
-    text = raw.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    text = raw.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
+    if not text.strip():
+        raise InputError(f"read_data: {path} is empty")
     return text.split("\n")
 
 
@@ -128,6 +130,11 @@ class DataText:
             if self.number(plural):
                 raise self.fail(f"{plural} need atom_style {word}, which is not supported", self.header_line[plural])
         kinds = BONDED.get(self.atom_style, ())
+        first = self.sections.get("Atoms")
+        for section in ("Velocities", *TOPOLOGY):
+            there = self.sections.get(section)
+            if first and there and there.line < first.line:
+                raise self.fail(f"section {section} must come after the section Atoms (line {first.line + 1})", there.line)
         for section, word in (("Atoms", "atoms"), *((s, k + "s") for s, k in TOPOLOGY.items())):
             n, there = self.number(word), self.sections.get(section)
             if section in TOPOLOGY and (n or there) and TOPOLOGY[section] not in kinds:

@@ -56,7 +56,7 @@ def read(path: str | os.PathLike) -> list[Command]:
         The file cannot be read.
     """
     try:
-        with open(path, encoding="utf-8", errors="replace") as f:
+        with open(path, encoding="utf-8-sig", errors="replace") as f:      # a byte order mark is no word
             text = f.read()
     except OSError as e:
         raise InputError(f"cannot open input script {os.fspath(path)}: {e.strerror}") from None
