@@ -13,6 +13,7 @@ from asemd.lammps import log
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
 
+STRETCH = 1.1   # LAMMPS's allowance for bonds that get longer
 CHUNK = 0.5     # seconds between looks at the keyboard and updates of the progress bar
 
 
@@ -42,10 +43,38 @@ def check(session) -> None:
             if not math.isfinite(system.mass[kind]):
                 raise InputError(f"no mass for atom type {kind}: use the mass command or a Masses section")
     scene.interactions.check_complete(system)
+    neighbor = scene.neighbor
+    if neighbor.delay % neighbor.every:
+        raise InputError(f"neigh_modify delay {neighbor.delay} must be 0 or a multiple of every {neighbor.every}")
+    for kind, atoms, _ in system.topology:
+        if len(atoms) and not scene.interactions.uses[kind]:
+            session.log.warn(f"{kind.capitalize()}s are defined but no {kind} style is set: they have no energy")
+    check_extent(session)
     if scene.interactions.style_name("bond") == "fene":
         lj, coul = tuple(scene.interactions.special_lj), tuple(scene.interactions.special_coul)
         if lj != (0.0, 1.0, 1.0) or (system.has_charge and coul != (0.0, 1.0, 1.0)):
             session.log.warn("bond_style fene should be used with special_bonds lj/coul 0 1 1 (special_bonds fene)")
+
+
+def check_extent(session) -> None:
+    """Warn when molecules are so large that the closest image of a bonded atom may be the wrong one.
+
+    Source: LAMMPS manual, "Bond/angle/dihedral extent > half of periodic box length".
+    """
+    system = session.scene.system
+    top, box = system.topology, system.box
+    if not len(top.bonds) or not box.periodic.any():
+        return
+    s = (system.x[top.bonds[:, 1]] - system.x[top.bonds[:, 0]]) @ box.inverse
+    s -= np.where(box.periodic, np.rint(s), 0.0)
+    lengths = np.linalg.norm(s @ box.cell, axis=1)
+    longest = int(np.argmax(lengths))
+    span = 3 if len(top.dihedrals) or len(top.impropers) else 2 if len(top.angles) else 1
+    half = 0.5 * float(box.lengths[box.periodic].min())
+    if STRETCH * span * lengths[longest] > half:
+        i, j = system.id[top.bonds[longest]]
+        session.log.warn(f"Bond/angle/dihedral extent > half of periodic box length ({half:g}): the longest bond, {i}-{j}, is "
+                         f"{lengths[longest]:.6g} long; closest images may be the wrong ones")
 
 
 def check_integration(session) -> None:
