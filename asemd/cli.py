@@ -5,13 +5,14 @@ import importlib
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
 from asemd import __version__
-from asemd.errors import AsemdError, InputError
+from asemd.errors import AsemdError, InputError, InputWarning
 from asemd.lammps import switches as lammps_switches
 from asemd.lammps.switches import Switches
 
@@ -47,6 +48,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for problem in getattr(e, "problems", [e]):
             complain(str(problem))
         return 1
+    except MemoryError:
+        return complain("not enough memory: fewer atoms, a shorter cutoff, or --precision mixed may help")
+    except RecursionError:
+        return complain("a formula or list is nested too deeply")
     except Exception as e:
         if hasattr(e, "format_message"):        # typer: a wrong option
             return complain(e.format_message())
@@ -136,7 +141,8 @@ def run(context: typer.Context,
     session = Session(switches=options, screen=watcher.write if options.screen is None else None)
     session.observer = watcher
     status = 0
-    with interruptible(session):
+    with interruptible(session), warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)       # printed as WARNING already
         try:
             session.file(path)
         except Stop as stop:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from asemd.errors import InputError, nearest
 
 BIG = 1.0e20    # LAMMPS's INF in regions
+LARGEST = 2**62     # sums of two such numbers still fit into 64 bits
 
 
 def number(word: str, what: str) -> float:
@@ -31,6 +32,8 @@ def whole(word: str, what: str) -> int:
     """A whole number."""
     if not re.fullmatch(r"[+-]?\d+", word):
         raise InputError(f"{what}: expected a whole number, got {word!r}")
+    if abs(int(word)) > LARGEST:
+        raise InputError(f"{what}: {word} is too large")
     return int(word)
 
 

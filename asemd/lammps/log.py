@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TextIO
 
 from asemd import __version__
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 
 ECHO = ("none", "screen", "log", "both")
 SECTIONS = ("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify")
@@ -84,7 +84,7 @@ class Log:
             return
         self.write(f"WARNING: {message}\n")
         self.flush()
-        warnings.warn(message, stacklevel=3)
+        warnings.warn(message, InputWarning, stacklevel=3)
 
     def close(self) -> None:
         """Finish the log file."""

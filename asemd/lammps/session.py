@@ -170,7 +170,10 @@ class Session:
                 self.execute(commands[i])
             except Jump as jump:
                 if jump.file not in ("SELF", path):
-                    commands, path = script.read(jump.file), jump.file
+                    try:
+                        commands, path = script.read(jump.file), jump.file
+                    except InputError as e:
+                        raise e.at(commands[i].where) from None
                 i, self.label = -1, jump.label
             i += 1
         if self.label is not None:
