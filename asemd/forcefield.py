@@ -1,7 +1,7 @@
 """Interactions: which styles act with which coefficients, as plain data in the units of the scene."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -301,8 +301,8 @@ class Interactions:
                 "angle", _yes(self.special_angle), "dihedral", _yes(self.special_dihedral)]
 
     @classmethod
-    def build(cls, *, bond=None, angle=None, dihedral=None, improper=None, pair=None, special_bonds: str | Mapping[str, Any] = "",
-              dielectric: float = 1.0, shift: bool = False, tail: bool = False, mix: str | None = None,
+    def build(cls, *, bond=None, angle=None, dihedral=None, improper=None, pair=None,
+              special_bonds: str | Mapping[str, Any] | Sequence[float] = "", dielectric: float = 1.0, shift: bool = False, tail: bool = False, mix: str | None = None,
               labels: Mapping[str, Mapping[int, str]] | None = None, compat: str = "") -> Interactions:
         """Interactions from Python, in the units of the scene (ASE's for a scene without a script), angles in degrees.
 
@@ -315,7 +315,7 @@ class Interactions:
             Style, settings included, -> {(type, type): values}, as ``{"lj/cut 10.0": {(1, 1): (0.01, 3.4)}}``, or style ->
             ``{"settings": (10.0,), "coeff": {...}}``. Several styles make a hybrid, an overlay if they share type pairs.
         special_bonds : str or mapping, optional
-            Words of the command (``"amber"``), or factors ``{"lj": (0, 0, 0.5), "coul": (0, 0, 0.8)}``.
+            Words of the command (``"amber"``), factors ``{"lj": (0, 0, 0.5), "coul": (0, 0, 0.8)}``, or three factors for both.
         dielectric, shift, tail, mix, compat
             As the attributes.
         labels : mapping, optional
@@ -335,6 +335,8 @@ class Interactions:
         out.shift, out.tail = bool(shift), bool(tail)
         out.mix = None if mix is None else read.choice(mix, modifiers.MIX_RULES, "mix")
         if special_bonds:
+            if not isinstance(special_bonds, (str, Mapping)):
+                special_bonds = {"lj/coul": tuple(special_bonds)}
             named = special_bonds.split() if isinstance(special_bonds, str) else [
                 str(w) for k, v in special_bonds.items() for w in (k, *(v if isinstance(v, (tuple, list)) else [_yes(v)]))]
             out.set_special(named)

@@ -21,6 +21,7 @@ from ase.optimize import BFGS, FIRE
 import asemd
 from asemd.calculator import ForceField
 from asemd.errors import InputError, InputWarning, SimulationError
+from asemd.forcefield import Interactions
 from asemd.topology import Topology
 
 ARGON = {"lj/cut 8.5": {("Ar", "Ar"): (0.0104, 3.4)}}
@@ -514,3 +515,9 @@ def test_atoms_can_be_written_and_printed():
     buffer.seek(0)
     assert ase_read(buffer, format="extxyz").get_potential_energy() == pytest.approx(atoms.get_potential_energy(), rel=1e-6)
     assert "lj/charmm" in repr(atoms.calc)
+
+
+def test_special_bonds_by_three_numbers():
+    same = [Interactions.build(pair={"lj/cut 3.0": {(1, 1): (1.0, 1.0)}}, special_bonds=special)
+            for special in ((0.0, 0.25, 0.5), {"lj/coul": (0.0, 0.25, 0.5)}, "lj/coul 0.0 0.25 0.5")]
+    assert {(i.special_lj, i.special_coul) for i in same} == {((0.0, 0.25, 0.5), (0.0, 0.25, 0.5))}
