@@ -302,7 +302,8 @@ class Interactions:
 
     @classmethod
     def build(cls, *, bond=None, angle=None, dihedral=None, improper=None, pair=None,
-              special_bonds: str | Mapping[str, Any] | Sequence[float] = "", dielectric: float = 1.0, shift: bool = False, tail: bool = False, mix: str | None = None,
+              special_bonds: str | Mapping[str, Any] | Sequence[float] = "", dielectric: float = 1.0, shift: bool = False,
+              tail: bool = False, mix: str | None = None,
               labels: Mapping[str, Mapping[int, str]] | None = None, compat: str = "") -> Interactions:
         """Interactions from Python, in the units of the scene (ASE's for a scene without a script), angles in degrees.
 
