@@ -200,14 +200,14 @@ class Loop:
             resume = True
 
     def _check_step(self) -> None:
-        """Between two list builds no atom that interacts goes farther than the box is wide: its forces would have nothing to do with its path."""
+        """Between two list builds no atom that interacts crosses the whole box: its forces would have nothing to do with its path."""
         e = self.engine
         if not e.terms or not e.k.moved(e.state.x, e.held, e.ns) > self._farthest**2:
             return          # a position that is not a number is reported by the build
         far = np.linalg.norm(e.state.x[:, :e.ns] - e.held[:, :e.ns], axis=0)
         slot = int(np.argmax(far))
-        raise SimulationError(f"atom {self.system.id[e.state.row[slot]]} moved {far[slot]:.4g} since the neighbour list was built, more than "
-                              "the width of the box: the time step is too long, or atoms are too close together")
+        raise SimulationError(f"atom {self.system.id[e.state.row[slot]]} moved {far[slot]:.4g} since the neighbour list was built, more "
+                              "than the width of the box: the time step is too long, or atoms are too close together")
 
     def _rebuild(self) -> None:
         try:
