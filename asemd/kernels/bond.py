@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 
 def bond(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad):
     energy = vxx = vyy = vzz = vxy = vxz = vyz = 0.0
     for m in range(lo, hi):
-        i, j = items[m, 0], items[m, 1]
+        i, j = np.uint32(items[m, 0]), np.uint32(items[m, 1])      # no test for negative indices
         dx, dy, dz = x[0, i] - x[0, j], x[1, i] - x[1, j], x[2, i] - x[2, j]
         if PERIODIC:
             dx, dy, dz = closest(dx, dy, dz, cell)

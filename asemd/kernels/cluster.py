@@ -230,10 +230,10 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                     pz = shifts[code, 2]
                     high = np.int32(code << 26)
                     for q in range(count):
-                        tx[nt + q] = x[0, k0 + q] + px
-                        ty[nt + q] = x[1, k0 + q] + py
-                        tz[nt + q] = x[2, k0 + q] + pz
-                        codes[nt + q] = np.int32(k0 + q) | high
+                        tx[np.uint64(nt + q)] = x[0, np.uint64(k0 + q)] + px
+                        ty[np.uint64(nt + q)] = x[1, np.uint64(k0 + q)] + py
+                        tz[np.uint64(nt + q)] = x[2, np.uint64(k0 + q)] + pz
+                        codes[np.uint64(nt + q)] = np.int32(k0 + q) | high
                     nt += count
         unshifted[ci] = all_in
         for pair in range(CLUSTER // 2):

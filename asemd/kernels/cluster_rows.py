@@ -113,7 +113,7 @@ def rows(x, row, first, entries, own, span, c0, c1, shifts, reach2, partner_star
         if n + CLUSTER * full > neighbors.shape[0]:
             return -1
         for k in range(full):
-            e = entries[f0 + k]
+            e = entries[np.uint64(f0 + k)]
             j = np.uint32(e & np.int32(SLOT_BITS))
             c = np.uint32(e >> 26)
             px[k] = x[0, j] + shifts[c, 0]
@@ -144,11 +144,12 @@ def rows(x, row, first, entries, own, span, c0, c1, shifts, reach2, partner_star
             if p1 > p0:
                 m = at
                 for k in range(at, n):
-                    other = row[neighbors[k] & SLOT_BITS]
+                    entry = neighbors[np.uint64(k)]
+                    other = row[np.uint32(entry & np.int32(SLOT_BITS))]
                     met = 0
                     for q in range(p0, p1):
-                        met += partners[q] == other
-                    neighbors[m] = neighbors[k]
+                        met += partners[np.uint64(q)] == other
+                    neighbors[np.uint64(m)] = entry
                     m += met == 0
                 n = m
     start[c1 * CLUSTER] = n

@@ -118,18 +118,18 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         ox = x[0, s]
         oy = x[1, s]
         oz = x[2, s]
-        f0 = first[ci]
-        full = ((first[ci + 1] - f0) // WIDTH) * WIDTH     # rows are padded: whole vectors
+        f0 = np.int64(first[ci])
+        full = ((np.int64(first[ci + 1]) - f0) // WIDTH) * WIDTH     # rows are padded: whole vectors
         mine = np.int64(own[ci])
         if unshifted[ci]:
             for k in range(full):
-                j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
+                j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
                 b[k] = x[0, j] - ox
                 b[k + ROW] = x[1, j] - oy
                 b[k + 2 * ROW] = x[2, j] - oz
         else:
             for k in range(full):
-                e = entries[f0 + k]
+                e = entries[place(f0 + k)]
                 j = np.uint32(e & np.int32(SLOT_BITS))
                 c = np.uint32(e >> 26)
                 b[k] = (x[0, j] + shifts[c, 0]) - ox
@@ -141,10 +141,10 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             b[k + 5 * ROW] = real(0)
         if CHARGED:
             for k in range(full):
-                b[k + 6 * ROW] = q[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
+                b[k + 6 * ROW] = q[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
         if VARYING:
             for k in range(full):
-                types[k] = type_of[np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))]
+                types[k] = type_of[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
             last0 = np.uint32(1 << 30)
             last1 = np.uint32(1 << 30)
         if EXCLUDE:
@@ -246,7 +246,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                 acc[6] += v4
                 acc[7] += v5
         for k in range(full):
-            j = np.uint32(entries[f0 + k] & np.int32(SLOT_BITS))
+            j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
             f[0, j] += b[k + 3 * ROW]
             f[1, j] += b[k + 4 * ROW]
             f[2, j] += b[k + 5 * ROW]

@@ -81,7 +81,7 @@ def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2
         ti = type_of[i]
         fx, fy, fz = 0.0, 0.0, 0.0
         for m in range(start[i], start[i + 1]):
-            entry = neighbors[m]
+            entry = neighbors[np.uint64(m)]
             j = np.uint32(entry & np.int32(0x3FFFFFF))
             c = np.uint32(entry >> 26)
             dx = xi - x[0, j]

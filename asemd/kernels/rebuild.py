@@ -1,6 +1,8 @@
 """Compiled steps of a neighbour-list rebuild that are not the list itself: atom data into slots, special pairs, displacement checks."""
 from __future__ import annotations
 
+import numpy as np
+
 
 def gather(ns, row, slot_of, varies, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
     """Per-atom constants into slot order, the inverse of `row`, and the positions from which displacements count.
@@ -53,7 +55,7 @@ def to_slots(row, ns, start, items, types, slot_of, out, out_types, order):
             continue
         for q in range(start[r], start[r + 1]):
             for k in range(items.shape[1]):
-                out[m, k] = slot_of[items[q, k]]
+                out[m, k] = slot_of[np.uint32(items[q, k])]
             out_types[m] = types[q]
             order[m] = q
             m += 1

@@ -85,7 +85,9 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
     trigger = numbers[{TRIGGER}]
     lo = ns * tid // nth
     hi = ns * (tid + 1) // nth
-    x, f = s.x, buffers[tid]
+    f = buffers[tid]
+    x0, x1, x2 = s.x[0, lo:hi], s.x[1, lo:hi], s.x[2, lo:hi]            # slices: indices that are surely not negative vectorise
+    held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
     t0 = now()
     th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
     barrier(th)
@@ -101,14 +103,14 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
                 need = check == 0
                 if check != 0:
                     m = 0.0
-                    for i in range(lo, hi):
-                        a = x[0, i] - held[0, i]
-                        b = x[1, i] - held[1, i]
-                        c = x[2, i] - held[2, i]
+                    odd = 0.0
+                    for i in range(hi - lo):
+                        a = x0[i] - held0[i]
+                        b = x1[i] - held1[i]
+                        c = x2[i] - held2[i]
                         m = max(m, a * a + b * b + c * c)
-                        if not (a * a + b * b + c * c <= 1e300):
-                            m = 1e301
-                    scratch[tid, 1] = m
+                        odd += 0.0 * (a + b + c)                # not zero where a position is not a number
+                    scratch[tid, 1] = m if odd == 0.0 else 1e301
             if tid == 0:
                 t1 = now()
                 numbers[{MODIFY_TIME}] += t1 - t0
@@ -145,8 +147,9 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             barrier(th)
             for t in range(1, nth):
                 for d in range(3):
-                    for i in range(lo, hi):
-                        buffers[0, d, i] += buffers[t, d, i]
+                    sum_of, part = buffers[0, d, lo:hi], buffers[t, d, lo:hi]
+                    for i in range(hi - lo):
+                        sum_of[i] += part[i]
         for t in range(nth):
             for k in range(bad.shape[1]):
                 if bad[t, k, 0] != 0.0:
