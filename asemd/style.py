@@ -68,6 +68,8 @@ class Parameter:
             raise InputError(f"{what}: {self.name} must be {kind}, got {word!r}") from None
         if not math.isfinite(value):
             raise InputError(f"{what}: {self.name} is {word}, not a finite number")
+        if self.unit == "integer" and abs(value) >= 2**31:
+            raise InputError(f"{what}: {self.name} is too large, got {word}")
         return value
 
     def write(self, value: Any) -> str:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,6 +15,7 @@ from asemd.errors import InputError, nearest
 from asemd.formula import Parser, Provider
 from asemd.formula_functions import Clock, Value
 from asemd.marsaglia import Marsaglia
+from asemd.words import LARGEST
 
 STYLES = ("delete", "index", "loop", "string", "getenv", "format", "internal", "equal", "atom")
 
@@ -59,7 +60,7 @@ class Variables:
                 raise InputError(f"variable {name} exists with style {old.style}; delete it before it becomes style {style}")
         self.table[name] = Variable(style, self._words(name, style, words))
 
-    def _words(self, name: str, style: str, words: list[str]) -> list[str]:
+    def _words(self, name: str, style: str, words: list[str]) -> Sequence[str]:
         if style == "loop":
             return _loop(name, words)
         need = {"format": 2, "string": 1, "getenv": 1, "internal": 1}
@@ -172,7 +173,20 @@ class Variables:
         return self._random[kind]
 
 
-def _loop(name: str, words: list[str]) -> list[str]:
+class Count(Sequence):
+    """The numbers from `first` to `last` as texts, filled up with zeros to `width` digits; none is stored."""
+
+    def __init__(self, first: int, last: int, width: int):
+        self.numbers, self.width = range(first, last + 1), width
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __getitem__(self, k: int) -> str:
+        return str(self.numbers[k]).zfill(self.width)
+
+
+def _loop(name: str, words: list[str]) -> Sequence[str]:
     """``loop N [pad]``, ``loop N1 N2 [pad]``."""
     pad = bool(words) and words[-1] == "pad"
     bounds = words[:-1] if pad else words
@@ -180,10 +194,12 @@ def _loop(name: str, words: list[str]) -> list[str]:
         first, last = (1, int(bounds[0])) if len(bounds) == 1 else (int(bounds[0]), int(bounds[1]))
     except (ValueError, IndexError):
         first, last = 1, 0
+    if last > LARGEST:
+        raise InputError(f"variable {name} loop: {last} is too large")
     if len(bounds) not in (1, 2) or first > last or last < 0:
         raise InputError(f"variable {name} loop needs N or N1 N2 with N1 <= N2, and optionally pad; got {' '.join(words) or 'nothing'}")
     width = len(str(last)) if pad else 0
-    return [str(k).zfill(width) for k in range(first, last + 1)]
+    return Count(first, last, width)
 
 
 def _number(text: str, what: str) -> float:

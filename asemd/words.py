@@ -85,3 +85,10 @@ def take(words: list[str], n: int, what: str) -> list[str]:
     if len(words) < n:
         raise InputError(f"{what} needs {n} value{'s' * (n != 1)}, got {len(words)}")
     return words[:n]
+
+
+def exactly(words: list[str], n: int, what: str) -> list[str]:
+    """All words, of which there must be n."""
+    if len(words) != n:
+        raise InputError(f"{what} needs {n} value{'s' * (n != 1)}, got {len(words)}")
+    return words

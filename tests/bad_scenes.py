@@ -574,3 +574,24 @@ for _name, _arguments, _words in (("threads 0", ["--threads", "0"], "threads"), 
                                   ("two scripts", ["in.other"], "in.other"), ("cap negative", ["--steps-cap", "-1"], "cap"),
                                   ("unknown switch", ["-vra", "x", "1"], "-v"), ("log in a missing folder", ["--log", "nowhere/x.log"], "nowhere/x.log")):
     CASES.append(Case(f"command line {_name}", "error", [_words], None, arguments=_arguments))
+
+# ---- more words than a command takes, and values LAMMPS refuses
+line("include with two files", "include a b", "include")
+line("neighbor with three words", "neighbor 0.3 bin x", "neighbor")
+line("thermo with two words", "thermo 10 x", "thermo")
+line("unfix with two words", "unfix 1 x", "unfix")
+line("group of a region and more", "region r block 0 1 0 1 0 1\ngroup g region r x", "region", at=("in.scene", "group g region r x"))
+line("group subtract of one", "group g subtract all", "subtract")
+line("create_atoms of all types", "create_atoms * single 1 1 1 units box", "\\*")
+line("comm_modify cutoff text", "comm_modify cutoff far", "far")
+line("comm_modify mode", "comm_modify mode sngle", "sngle")
+line("atom_modify sort negative", "atom_modify sort -1 0", "-1")
+line("fix name", "fix \u00e9 all nve", "\u00e9")
+line("set molecule fraction", "set atom 1 mol 1.5", "1.5")
+line("run every without commands", "run 4 every 2", "every")
+line("cylinder without radius", "region r cylinder z 0 0 0 0 1", "radius")
+line("endless loop variable", "variable a loop 1 99999999999999999999 pad", "large")
+line("long loop variable", "variable a loop 1000000000000", "", expect="fine", at=())
+in_script("dihedral n huge", "dihedral_coeff 1 1.0 1 3 => dihedral_coeff 1 1.0 1 99999999999", "large")
+in_script("sigma negative", "pair_coeff 1 1 1.0 1.0 => pair_coeff 1 1 1.0 -1.0", "sigma;negative;1 1", (), "warning")
+in_script("r0 negative", "bond_coeff 1 250.0 1.0 => bond_coeff 1 250.0 -1.0", "r0;negative", (), "warning")

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
 from asemd import units
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.lammps import log
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
@@ -42,7 +43,12 @@ def check(session) -> None:
         for kind in sorted({int(t) for t in np.unique(system.type)}):
             if not math.isfinite(system.mass[kind]):
                 raise InputError(f"no mass for atom type {kind}: use the mass command or a Masses section")
-    scene.interactions.check_complete(system)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", InputWarning)
+        scene.interactions.check_complete(system)
+    for warning in caught:
+        session.log.warn(str(warning.message))
+    check_lengths(session)
     neighbor = scene.neighbor
     if neighbor.delay % neighbor.every:
         raise InputError(f"neigh_modify delay {neighbor.delay} must be 0 or a multiple of every {neighbor.every}")
@@ -54,6 +60,18 @@ def check(session) -> None:
         lj, coul = tuple(scene.interactions.special_lj), tuple(scene.interactions.special_coul)
         if lj != (0.0, 1.0, 1.0) or (system.has_charge and coul != (0.0, 1.0, 1.0)):
             session.log.warn("bond_style fene should be used with special_bonds lj/coul 0 1 1 (special_bonds fene)")
+
+
+def check_lengths(session) -> None:
+    """Warn of coefficients that are lengths but negative: allowed by LAMMPS, hardly meant."""
+    for category, uses in session.scene.interactions.uses.items():
+        for use in uses:
+            lengths = [p.name for p in use.style.coeff if p.unit == "distance"]
+            wrong = [(key, n, c[n]) for key, c in use.coeff.items() for n in lengths if (c.get(n) or 0.0) < 0.0]
+            if wrong:
+                key, name, value = wrong[0]
+                types = " ".join(map(str, key)) if isinstance(key, tuple) else key
+                session.log.warn(f"{category}_coeff {types}: {name} of {category} style {use.style.name} is negative: {value:g}")
 
 
 def check_extent(session) -> None:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.errors import InputError
 from asemd.region.cone import Cone
 
 
@@ -21,4 +22,6 @@ class Cylinder(Cone):
     @classmethod
     def parse(cls, words, spacings, side, session):
         axis, center, (radius,), lo, hi = cls.read(words, spacings, session)
+        if radius == 0.0:
+            raise InputError("region cylinder: the radius must be positive")
         return cls(axis, center, radius, lo, hi, side=side)

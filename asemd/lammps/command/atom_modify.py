@@ -21,7 +21,7 @@ def run(session, args):
             if not yes_no(values[0], "atom_modify id"):
                 raise InputError("atom_modify id no is not supported: atoms always have ids")
         elif key == "sort":
-            whole(values[0], "atom_modify sort")
-            number(values[1], "atom_modify sort")
+            if whole(values[0], "atom_modify sort") < 0 or number(values[1], "atom_modify sort") < 0.0:
+                raise InputError(f"atom_modify sort: must not be negative, got {' '.join(values)}")
         elif session.scene.system is not None:
             session.scene.groups.mask(values[0], "atom_modify first")

@@ -1,8 +1,8 @@
 """``comm_style brick|tiled``: checked and without effect."""
 from __future__ import annotations
 
-from asemd.words import choice, take
+from asemd.words import choice, exactly
 
 
 def run(session, args):
-    choice(take(args, 1, "comm_style")[0], ("brick", "tiled"), "comm_style")
+    choice(exactly(args, 1, "comm_style")[0], ("brick", "tiled"), "comm_style")

@@ -11,7 +11,7 @@ from asemd.words import take
 def run(session, args):
     id, group, style = take(args, 3, "compute")[:3]
     scene = session.scene
-    if not re.fullmatch(r"\w+", id):
+    if not re.fullmatch(r"\w+", id, re.ASCII):
         raise InputError(f"compute: ID {id!r} must have only letters, numbers and underscores")
     if id in scene.computes:
         raise InputError(f"compute {id} exists already: uncompute it or choose another ID")

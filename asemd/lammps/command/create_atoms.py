@@ -47,9 +47,9 @@ def run(session, args):
 
 
 def _type(word: str, system) -> int:
-    first, last = bounds(word, 1, system.counts["ntypes"], "create_atoms: atom type", system.labels["atom"])
-    if first != last:
+    if "*" in word:
         raise InputError(f"create_atoms needs one atom type, got {word}")
+    first, _ = bounds(word, 1, system.counts["ntypes"], "create_atoms: atom type", system.labels["atom"])
     return first
 
 

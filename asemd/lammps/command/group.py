@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 from asemd.errors import InputError, nearest
-from asemd.words import bounds, take, whole
+from asemd.words import bounds, exactly, take, whole
 
 LOGICAL = {"<": np.less, ">": np.greater, "<=": np.less_equal, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal, "<>": None}
 STYLES = ("delete", "clear", "empty", "region", "id", "type", "molecule", "variable", "include", "subtract", "union", "intersect")
@@ -57,6 +57,7 @@ def _members(session, system, old: np.ndarray, style: str, words: list[str], wha
         return np.zeros(system.n, bool)
     take(words, 1, what)
     if style == "region":
+        exactly(words, 1, what)
         return scene.region(words[0], what).inside(system.x)
     if style == "variable":
         return session.variables.per_atom(words[0].removeprefix("v_"), system.n) != 0.0
@@ -67,6 +68,7 @@ def _members(session, system, old: np.ndarray, style: str, words: list[str], wha
         return np.isin(system.molecule, system.molecule[old & (system.molecule > 0)])
     if style in ("subtract", "union", "intersect"):
         masks = [scene.groups.mask(w, what) for w in words]
+        take(words, 2, what)
         if style == "subtract":
             return masks[0] & ~np.logical_or.reduce([np.zeros(system.n, bool), *masks[1:]])
         return (np.logical_or if style == "union" else np.logical_and).reduce(masks)

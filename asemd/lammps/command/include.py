@@ -1,8 +1,8 @@
 """``include file``"""
 from __future__ import annotations
 
-from asemd.words import take
+from asemd.words import exactly
 
 
 def run(session, args):
-    session.file(take(args, 1, "include")[0])
+    session.file(exactly(args, 1, "include")[0])

@@ -26,6 +26,8 @@ def run(session, args):
             every, commands, words = whole(value, "run every"), words, []
             if every <= 0:
                 raise InputError(f"run every: must be positive, got {value}")
+            if not commands:
+                raise InputError("run every needs commands after the number of steps, or NULL for none")
         else:
             options[key] = yes_no(value, f"run {key}") if key in ("pre", "post") else whole(value, f"run {key}")
     begin = scene.step

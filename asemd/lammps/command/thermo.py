@@ -2,11 +2,11 @@
 from __future__ import annotations
 
 from asemd.errors import InputError
-from asemd.words import take, whole
+from asemd.words import exactly, whole
 
 
 def run(session, args):
-    word = take(args, 1, "thermo")[0]
+    word = exactly(args, 1, "thermo")[0]
     if word.startswith("v_"):
         session.variables.find(word[2:])
         session.scene.thermo.every = word[2:]

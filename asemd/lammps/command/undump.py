@@ -2,11 +2,11 @@
 from __future__ import annotations
 
 from asemd.errors import InputError, nearest
-from asemd.words import take
+from asemd.words import exactly
 
 
 def run(session, args):
-    id = take(args, 1, "undump")[0]
+    id = exactly(args, 1, "undump")[0]
     dumps = session.scene.dumps
     if id not in dumps:
         raise InputError(f"undump: there is no dump {id}{nearest(id, dumps)}")

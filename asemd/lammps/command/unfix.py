@@ -2,11 +2,11 @@
 from __future__ import annotations
 
 from asemd.errors import InputError, nearest
-from asemd.words import take
+from asemd.words import exactly
 
 
 def run(session, args):
-    id = take(args, 1, "unfix")[0]
+    id = exactly(args, 1, "unfix")[0]
     fixes = session.scene.fixes
     if id not in fixes:
         raise InputError(f"unfix: there is no fix {id}{nearest(id, fixes)}")
