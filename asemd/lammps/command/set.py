@@ -77,7 +77,8 @@ class Setter:
         elif key == "mol":
             if not system.molecular:
                 raise InputError(f"{self.what}: atom_style {system.atom_style} has no molecules")
-            if ((new < 0) | (new > LARGEST) | (new != np.floor(new))).any():
+            given = not values[0].startswith("v_")      # a variable's values are cut to whole numbers, as LAMMPS does
+            if ((new < 0) | (new > LARGEST) | (given & (new != np.floor(new)))).any():
                 raise InputError(f"{self.what}: a molecule number must be whole and not negative, got {values[0]}")
             system.molecule[rows] = new.astype(np.int64)
         elif key == "charge":
