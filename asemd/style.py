@@ -9,8 +9,11 @@ A bonded style is a scalar function of internal coordinates and coefficients::
         dr = r - r0
         return K * dr * dr, 2 * K * dr
 
-It returns the energy and then the derivative by each internal coordinate it names. Coordinates by category: ``r`` (bond);
-``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi`` (dihedral, -pi..pi, trans = pi); ``phi chi omega`` (improper).
+It returns the energy and then the derivative by each internal coordinate it names, in the order of its arguments. Coordinates by category:
+``r`` (bond); ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
+trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); one of ``phi chi omega`` (improper). A style that has no such coordinate
+takes vectors instead, ``ax ay az bx by bz`` and for four atoms ``cx cy cz``: from the atom `centre` (1, 2, ...) to the others in their
+order; it returns the energy and the six or nine derivatives.
 An energy or derivative that is not finite means "outside the domain" (write ``return math.inf, math.inf``): the kernel reports the item,
 the user gets atom ids and ``domain``. Bodies are strict IEEE: write them so that no digits cancel (a product of sines for a difference of
 cosines, ``(R0 - r) * (R0 + r)`` for a difference of squares) and so that plain Python runs them too (test before dividing by zero).
@@ -23,6 +26,7 @@ Function bodies are compiled: only arithmetic, ``if``, and functions of ``math``
 """
 from __future__ import annotations
 
+import copy
 import importlib
 import importlib.util
 import inspect
@@ -38,11 +42,12 @@ import numpy as np
 
 from asemd.errors import InputError, nearest
 
+VECTORS = ("ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz")
 COORDINATES = {
     "bond": ("r",),
-    "angle": ("theta", "r12", "r32", "r13"),
-    "dihedral": ("phi",),
-    "improper": ("phi", "chi", "omega"),
+    "angle": ("theta", "r12", "r32", "r13", *VECTORS[:6]),
+    "dihedral": ("phi", "r12", "r23", "r34", "theta1", "theta2", *VECTORS),
+    "improper": ("phi", "chi", "omega", *VECTORS),
     "pair": ("r", "r2"),
 }
 ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
@@ -120,15 +125,21 @@ class Style:
         ``check(coeff, settings)`` raises `InputError` for coefficients that make no sense.
     weight_14 : str
         Name of the coefficient that scales the pair interaction of atoms 1 and 4 (dihedral charmm).
+    centre : int
+        The atom from which the vectors of a style of vectors start, counted from 1; by default 2 for angles and dihedrals, 1 for impropers.
+    lammps : callable, optional
+        LAMMPS's forces where they are not minus the gradient of its energy: a function like `function`, for ``compat="lammps"``.
     """
 
     def __init__(self, category: str, name: str, function: Callable | None, *, settings=(), coeff=None, example: str = "",
                  settings_example: str = "", domain: str = "", equilibrium: str = "", see: str = "",
-                 xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = ""):
+                 xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
+                 centre: int = 0, lammps: Callable | None = None):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.see, self.xfail = equilibrium, see, dict(xfail)
-        self.weight_14, self._check = weight_14, check
+        self.weight_14, self._check, self.lammps = weight_14, check, lammps
+        self.centre = centre or (1 if category == "improper" else 2)
         notes = units_of(function) if function else {}
         vocabulary = COORDINATES[category] + ("qq",)
         self.coordinates = tuple(n for n in notes if n in vocabulary)
@@ -144,6 +155,11 @@ class Style:
 
     def __reduce__(self):
         return find, (self.category, self.name)
+
+    def __copy__(self):
+        twin = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)
+        return twin
 
     # text -> values -> text
     def _read(self, words: list[str], parameters: tuple[Parameter, ...], command: str) -> dict[str, Any]:
@@ -193,6 +209,14 @@ class Style:
             for k, name in enumerate(names):
                 out[k, t] = math.radians(values[name]) if unit[name] == "angle" else values[name]
         return Packed(out)
+
+    def bind(self, settings: Mapping[str, Any], coeffs: Mapping[int, Mapping[str, Any]], compat: str = "") -> Style:
+        """The style whose kernel is made for these coefficients: this one, unless it depends on them or `compat` asks for LAMMPS's forces."""
+        if compat == "lammps" and self.lammps:
+            twin = copy.copy(self)
+            twin.function = self.lammps
+            return twin
+        return self
 
     def functions(self) -> tuple[Callable, ...]:
         """The functions a generated kernel needs, the scalar one last."""

@@ -33,11 +33,11 @@ class Term(Protocol):
 class BondedTerm:
     """All items of one bonded style."""
 
-    def __init__(self, category: str, use, items: np.ndarray, types: np.ndarray, ntypes: int, units):
-        self.category, self.use, self.style = category, use, use.style
+    def __init__(self, category: str, use, items: np.ndarray, types: np.ndarray, ntypes: int, units, compat: str = ""):
+        self.category, self.use, self.style = category, use, use.style.bind(use.settings, use.coeff, compat)
         order = np.argsort(items[:, 0], kind="stable")
         self.items, self.types = np.ascontiguousarray(items[order], np.int32), np.ascontiguousarray(types[order], np.int32)
-        self.packed = use.style.pack(use.settings, use.coeff, ntypes, units)
+        self.packed = self.style.pack(use.settings, use.coeff, ntypes, units)
         self.slots, self.slot_types, self.order = np.zeros_like(self.items), np.zeros_like(self.types), np.zeros_like(self.types)
         self.start = None
 
@@ -182,7 +182,8 @@ def bonded_terms(system, interactions, pair_terms, units) -> list:
         for use in interactions.uses.get(category, []):
             mine = np.isin(types, list(use.coeff))
             if use.style.function is not None and mine.any():
-                terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units))
+                terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units,
+                                        interactions.compat))
                 terms += one_four_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"], units)
     return terms
 

@@ -6,11 +6,12 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 
-from asemd.kernels import angle, bond, dihedral, image, improper
+from asemd.kernels import angle, bond, dihedral, image, improper, vectors
 from asemd.kernels.generate import Builder, plain_source
-from asemd.style import Style
+from asemd.style import VECTORS, Style
 
 ANGLE = ("theta", "r12", "r32", "r13")
+TORSION = ("phi", "r12", "r23", "r34", "theta1", "theta2")
 
 
 def report(bad, item, value):
@@ -47,9 +48,20 @@ def share(atom, part, energy, vxx, vyy, vzz, vxy, vxz, vyz, atom_energy, atom_vi
     atom_virial[5, atom] += part * vyz
 
 
+def chart(style: Style) -> tuple[str, ...]:
+    """The coordinates that the loop of a style hands to `evaluate`."""
+    if style.coordinates[0] == "ax":
+        return VECTORS[:6] if style.category == "angle" else VECTORS
+    if style.coordinates[0] in ("phi", "chi"):
+        return TORSION
+    return ANGLE if style.category == "angle" else style.coordinates
+
+
 def _loop(style: Style) -> Callable:
     if style.category == "bond":
         return bond.bond
+    if style.coordinates[0] == "ax":
+        return vectors.three if style.category == "angle" else vectors.four
     if style.category == "angle":
         return angle.angle
     return improper.out_of_plane if style.coordinates == ("omega",) else dihedral.torsion
@@ -83,14 +95,16 @@ def _adapter(style: Style) -> str:
         else:
             words.append(f"coeff[{notes[name]}, t]" if name in notes else name)
     call = f"potential({', '.join(words)})"
-    if style.category == "angle":
-        names = ["e"] + [f"d_{c}" for c in style.coordinates]
-        back = ["e"] + [f"d_{c}" if c in style.coordinates else "0.0" for c in ANGLE]
-        return f"def evaluate({', '.join(ANGLE)}, t, coeff, arrays):\n    {', '.join(names)} = {call}\n    return {', '.join(back)}"
+    handed = chart(style)
+    head = f"def evaluate({', '.join(handed)}, t, coeff, arrays):\n"
     if style.coordinates == ("chi",):      # chi = |phi|
-        return ("def evaluate(phi, t, coeff, arrays):\n    chi = abs(phi)\n"
-                f"    e, slope = {call}\n    return e, slope if phi >= 0.0 else -slope")
-    return f"def evaluate({style.coordinates[0]}, t, coeff, arrays):\n    return {call}"
+        return (f"{head}    chi = abs(phi)\n    e, slope = {call}\n"
+                f"    return e, slope if phi >= 0.0 else -slope{', 0.0' * (len(handed) - 1)}")
+    if handed == style.coordinates:
+        return f"{head}    return {call}"
+    names = ["e"] + [f"d_{c}" for c in style.coordinates]
+    back = ["e"] + [f"d_{c}" if c in style.coordinates else "0.0" for c in handed]
+    return f"{head}    {', '.join(names)} = {call}\n    return {', '.join(back)}"
 
 
 def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodic: bool = True, orthogonal: bool = True) -> Builder:
@@ -99,8 +113,14 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
     b.constant("ENERGY", bool(energy))
     b.constant("PER_ATOM", bool(per_atom))
     b.constant("PERIODIC", bool(periodic))
-    for name in ANGLE[1:] if style.category == "angle" else ():
-        b.constant(name.upper(), name in style.coordinates)
+    if style.coordinates[0] == "ax":
+        for name, atom in zip(("CENTRE", "A", "B", "C"), vectors.order(style)):
+            b.constant(name, atom)
+    else:
+        for name in chart(style)[1:]:
+            b.constant(name.upper(), name in style.coordinates)
+    if chart(style) == TORSION:
+        b.constant("ARMS", len(style.coordinates) > 1)
     *helpers, function = style.functions()
     for helper in helpers:
         b.text(plain_source(helper), cache=False)
@@ -156,9 +176,9 @@ def describe(style: Style, value: float, ids: Sequence[int], type_: int) -> str:
     type_ : int
         Its bond, angle, dihedral or improper type.
     """
-    name = style.coordinates[0]
+    name = chart(style)[0]
     what = f"{style.category} of type {type_} between atoms {' '.join(str(int(i)) for i in ids)}"
     if math.isnan(value):
         return f"{what}: two of its atoms are at the same place, or a position is not a number ({style.category}_style {style.name})"
-    shown = f"{name} = {value:.8g}" if name == "r" else f"{name} = {math.degrees(value):.8g} degrees"
-    return f"{what} is outside the domain of {style.category}_style {style.name}: {shown}; {style.domain or 'its energy is not finite'}"
+    shown = "" if name == "ax" else f"{name} = {value:.8g}; " if name == "r" else f"{name} = {math.degrees(value):.8g} degrees; "
+    return f"{what} is outside the domain of {style.category}_style {style.name}: {shown}{style.domain or 'its energy is not finite'}"

@@ -145,7 +145,7 @@ def check_slope(style: Style) -> None:
     """The returned derivatives are those of the returned energy."""
     s = sample(style)
     evaluate = twin(style, energy=True, per_atom=True, periodic=False)["evaluate"]
-    names = bonded.ANGLE if style.category == "angle" else style.coordinates
+    names = bonded.chart(style)
     rng = np.random.default_rng(3)
     length = float(np.linalg.norm(s.x[:, 0] - s.x[:, 1]))
     for _ in range(20):
