@@ -199,10 +199,11 @@ class Interactions:
             use, words = self.sub_style(category, name, words[1:])
         values = use.style.parse_coeff(words, use.settings)
         for key in keys:
+            joined = use.style.join(use.coeff.get(key, {}), values)
             if self.hybrid[category] != "hybrid/overlay":
                 self._forget(category, key)
             self.none[category].discard(key)
-            use.coeff[key] = dict(values)
+            use.coeff[key] = joined
 
     def sub_style(self, category: str, name: str, words: list[str]) -> tuple[Use, list[str]]:
         """The sub-style named in a coefficient line, and the words after its name (and number)."""
@@ -278,7 +279,7 @@ class Interactions:
         lines = [(key, -1, [*_words_of(key), "none"]) for key in self.none[category]]
         for k, use in enumerate(self.uses[category]):
             name = use.label.split() if self.hybrid[category] else []
-            lines += [(key, k, [*_words_of(key), *name, *use.style.format_coeff(c)]) for key, c in use.coeff.items()]
+            lines += [(key, k, [*_words_of(key), *name, *line]) for key, c in use.coeff.items() for line in use.style.coeff_lines(c)]
         return [line for _, _, line in sorted(lines, key=lambda entry: entry[:2])]
 
     def modify_lines(self) -> list[list[str]]:

@@ -69,7 +69,7 @@ def text(values, style=None) -> list[str]:
         if style and names != [p.name for p in style.coeff][:len(names)]:
             raise InputError(f"{style.category} style {style.name}: give the coefficients in order, without gaps: "
                              f"{' '.join(p.name for p in style.coeff)}")
-        values = [values[n] for n in names]
+        values = style.format_coeff(values) if style else list(values.values())
     if isinstance(values, str):
         return values.split()
     if not hasattr(values, "__iter__"):

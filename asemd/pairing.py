@@ -131,10 +131,15 @@ def check_complete(interactions: Interactions, system) -> None:
                                      f"{category}_coeff: leave it out")
         if category != "pair" and uses:
             known = interactions.none[category].union(*(use.coeff for use in uses))
-            missing = sorted({int(t) for t in np.unique(system.topology.items(category)[1])} - known)
+            missing = sorted({abs(int(t)) for t in np.unique(system.topology.items(category)[1])} - known - {0})
             if missing:
                 raise InputError(f"All {category} coeffs are not set: {category}_coeff for {category} type "
                                  f"{', '.join(map(str, missing))} is missing")
+            for use in uses:
+                for t, coeff in use.coeff.items():
+                    if marks := use.style.missing(coeff):
+                        raise InputError(f"All {category} coeffs are not set: {category}_coeff {t} of {category} style {use.style.name} "
+                                         f"lacks {' and '.join(marks)}")
     complete(interactions, system.counts["ntypes"])
     for use in interactions.uses["pair"]:
         if use.style.charged and system.q is None:

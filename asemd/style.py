@@ -35,6 +35,7 @@ import pkgutil
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
@@ -50,6 +51,7 @@ COORDINATES = {
     "improper": ("phi", "chi", "omega", *VECTORS),
     "pair": ("r", "r2"),
 }
+RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
 ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
 _registry: dict[tuple[str, str], Style] = {}
 
@@ -79,6 +81,11 @@ class Parameter:
 
     def write(self, value: Any) -> str:
         return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def radians(degrees: float) -> float:
+    """Degrees in radians, rounded once; `math.radians` rounds twice."""
+    return float(Fraction(degrees) * RADIAN)
 
 
 def units_of(function: Callable) -> dict[str, str]:
@@ -196,6 +203,19 @@ class Style:
     def format_coeff(self, coeff: Mapping[str, Any]) -> list[str]:
         return [p.write(coeff[p.name]) for p in self.coeff if p.name in coeff]
 
+    # styles with coefficients on several lines override these three, see `asemd.cross_terms`
+    def join(self, old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+        """Coefficients of a type that had `old` ones when a line with `new` ones comes."""
+        return dict(new)
+
+    def coeff_lines(self, coeff: Mapping[str, Any]) -> list[list[str]]:
+        """Words of all lines that make the coefficients of a type again."""
+        return [self.format_coeff(coeff)]
+
+    def missing(self, coeff: Mapping[str, Any]) -> list[str]:
+        """Marks of the lines that a type still needs."""
+        return []
+
     # values -> kernel
     def pack(self, settings: Mapping[str, Any], coeffs: Mapping[int, Mapping[str, Any]], ntypes: int, units) -> Packed:
         """Coefficients of all types as one array, a row for each non-array argument of the function, angles in radians.
@@ -207,7 +227,7 @@ class Style:
         out = np.zeros((len(names), ntypes + 1))
         for t, values in coeffs.items():
             for k, name in enumerate(names):
-                out[k, t] = math.radians(values[name]) if unit[name] == "angle" else values[name]
+                out[k, t] = radians(values[name]) if unit[name] == "angle" else values[name]
         return Packed(out)
 
     def bind(self, settings: Mapping[str, Any], coeffs: Mapping[int, Mapping[str, Any]], compat: str = "") -> Style:

@@ -1,0 +1,29 @@
+r"""$$E = \frac{2 C}{n^2} [1 - B (-1)^n \cos(n \theta)]$$
+
+Angle of the DREIDING force field for metal centres: n = 4 for octahedral ones, n = 3 for trigonal ones; B = 1 has a minimum at 180 degrees,
+B = -1 a maximum. Source: Mayo, Olafson and Goddard, J. Phys. Chem. 94, 8897 (1990); LAMMPS manual, angle_style cosine/periodic.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.errors import InputError
+from asemd.style import angle
+
+
+def check(coeff, settings):
+    if coeff["n"] < 1:
+        raise InputError(f"angle_coeff cosine/periodic: n must be 1 or more, got {coeff['n']}")
+
+
+@angle("cosine/periodic", example="75.0 -1 3", check=check)
+def cosine_periodic(theta, C: "energy", B: "integer", n: "integer"):
+    # from the straight angle, so that the slope vanishes there: (-1)^n cos(n theta) = cos(n (pi - theta))
+    a = n * (3.141592653589793 - theta) + n * 1.2246467991473532e-16 if theta > 1.5707963267948966 else n * theta
+    b = B if theta > 1.5707963267948966 or math.fmod(n, 2.0) == 0.0 else -B
+    front = 2.0 * C / (n * n)
+    s, c = math.sin(0.5 * a), math.cos(0.5 * a)
+    slope = front * b * n * math.sin(a)
+    # 1 - b cos(a) with the cosine as a square of what is small
+    e = 1.0 - b + 2.0 * b * s * s if b > 0.0 else 1.0 + b - 2.0 * b * c * c
+    return front * e, -slope if theta > 1.5707963267948966 else slope

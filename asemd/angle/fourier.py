@@ -1,0 +1,14 @@
+r"""$$E = K [C_0 + C_1 \cos\theta + C_2 \cos 2\theta]$$
+
+Angle of the universal force field (UFF). Source: Rappe et al., J. Am. Chem. Soc. 114, 10024 (1992); LAMMPS manual, angle_style fourier.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.style import angle
+
+
+@angle("fourier", example="75.0 1.0 0.5 0.3")
+def fourier(theta, K: "energy", C0, C1, C2):
+    return K * (C0 + C1 * math.cos(theta) + C2 * math.cos(2.0 * theta)), -K * (C1 * math.sin(theta) + 2.0 * C2 * math.sin(2.0 * theta))

@@ -1,0 +1,27 @@
+r"""$$E = K [1 + c \cos(n \theta)]$$
+
+Angle of the universal force field (UFF) for linear, trigonal and octahedral centres; n need not be whole.
+
+LAMMPS takes its expansion around a straight angle at every angle, so its force is not minus the gradient of its energy. Here it is the
+gradient; ``compat="lammps"`` gives LAMMPS's force. Source: LAMMPS manual, angle_style fourier/simple.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.style import angle
+
+
+def fourier_simple_lammps(theta, K: "energy", c, n):
+    cosine = math.cos(theta)
+    rest, sign = 1.0 - cosine, 1.0
+    if cosine < 0.0:
+        rest, sign = 1.0 + cosine, -1.0 if math.fmod(n, 2.0) == 0.0 else 1.0
+    ratio = sign * n * (1.0 + (1.0 - n * n) * rest / 3.0)       # stands for sin(n theta) / sin(theta)
+    return K * (1.0 + c * math.cos(n * theta)), -K * c * n * ratio * math.sin(theta)
+
+
+@angle("fourier/simple", example="100.0 -1.0 3.0", lammps=fourier_simple_lammps)
+def fourier_simple(theta, K: "energy", c, n):
+    a = n * theta
+    return K * (1.0 + c * math.cos(a)), -K * c * n * math.sin(a)
