@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from asemd import style as registry
+from asemd import units
 from asemd.kernels.state import cell_arrays
 from asemd.testing import styles
 
@@ -172,7 +173,7 @@ def reference(kind, energy, coeff, x):
 @pytest.mark.parametrize(("category", "name", "words"), list(ENERGY))
 def test_forces_keep_their_digits(category, name, words):
     style = registry.find(category, name)
-    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, None))
+    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, units.get("lj")))
     kind = "umbrella" if name == "umbrella" else category
     for title, x in geometries(category, name).items():
         want, bar = reference(kind, ENERGY[category, name, words], words.split(), x)
@@ -185,7 +186,7 @@ def test_forces_keep_their_digits(category, name, words):
 @pytest.mark.parametrize(("category", "name", "words"), [k for k in ENERGY if k[0] != "bond"])
 def test_direction_undefined_is_finite(category, name, words):
     style = registry.find(category, name)
-    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, None))
+    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, units.get("lj")))
     line = np.array([[-1.1, 0, 0], [0, 0, 0], [1.4, 0, 0], [1.85, 1.1, 0]]).T
     for x in (line, line[:, ::-1], line * np.array([[1], [0], [1]])):
         a = s.run(x[:, :3] if category == "angle" else x)
@@ -195,7 +196,7 @@ def test_direction_undefined_is_finite(category, name, words):
 
 def test_images_in_a_strongly_tilted_cell():
     style = registry.find("bond", "harmonic")
-    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(["250", "1.2"], {})}, 1, None))
+    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(["250", "1.2"], {})}, 1, units.get("lj")))
     vectors = np.array([[10.0, 0, 0], [34.0, 10.0, 0], [-27.0, 42.0, 10.0]])
     x = turned([[0, 0, 0], [1.03, 0, 0]]).T
     moved = x.copy()
@@ -211,7 +212,7 @@ def test_scaled_geometry_gives_scaled_forces(scale):
     for category, name, words in [k for k in ENERGY if k[0] != "bond"]:
         style = registry.find(category, name)
         s = styles.sample(style)
-        s.packed = style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, None)
+        s.packed = style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, units.get("lj"))
         x = s.x.reshape(3, styles.ITEMS, -1)
         x = (x - x[:, :, :1]).reshape(3, -1)
         a, b = s.run(x), s.run(scale * x)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from asemd import style as registry
+from asemd import units
 from asemd.bonded_table import periodic_spline, spline_slope
 from asemd.errors import InputError
 from asemd.kernels import bonded, image
@@ -137,13 +138,13 @@ def test_agrees_with_lammps(tmp_path):
         if (category, name) == ("dihedral", "charmm"):
             lines = lines[1:]                                        # its weight asks for a pair style that knows it
         tables = [""] if style.settings_example == "" else ["spline 100", "linear 100", "spline 12", "linear 11"]
-        if not style.example:
+        if "KEYWORD" in style.example:
             lines = [" ".join(styles.example_words(style, str(tmp_path)))]
         for settings in tables:
             for words in lines:
                 s = styles.sample(style, seed=len(todo))
                 values = style.parse_settings(settings.split())
-                s.packed = style.pack(values, {1: style.parse_coeff(words.split(), values)}, 1, None)
+                s.packed = style.pack(values, {1: style.parse_coeff(words.split(), values)}, 1, units.get("lj"))
                 todo.append((f"{category} {name} {settings} {words}", s))
                 jobs.append(scene(style, settings, words, s.x, tmp_path, len(jobs)))
     for (title, s), want in zip(todo, lammps_answers(jobs, tmp_path)):
@@ -208,7 +209,7 @@ def test_refused_tables(category, text, message, tmp_path):
 
 def test_outside_the_domain_is_reported_with_ids():
     style = registry.find("bond", "fene")
-    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff("30 1.5 1 1".split(), {})}, 1, None))
+    s = styles.Sample(style, style.pack({}, {1: style.parse_coeff("30 1.5 1 1".split(), {})}, 1, units.get("lj")))
     x = np.array([[0.0, 1.0, 5.0, 6.6], [0.0] * 4, [0.0] * 4])
     for energy in (False, True):
         a = s.run(x, energy=energy, per_atom=False)
@@ -223,7 +224,7 @@ def test_outside_the_domain_is_reported_with_ids():
 def test_types_outside_a_table(tmp_path):
     style = registry.find("bond", "table")
     settings = style.parse_settings(["spline", "50"])
-    s = styles.Sample(style, style.pack(settings, {1: style.parse_coeff(styles.example_words(style, str(tmp_path)), settings)}, 1, None))
+    s = styles.Sample(style, style.pack(settings, {1: style.parse_coeff(styles.example_words(style, str(tmp_path)), settings)}, 1, units.get("lj")))
     for r, bad in ((0.2, 0), (0.19999, 1), (3.0, 0), (3.00001, 1)):
         assert s.run(np.array([[0.0, r], [0.0, 0.0], [0.0, 0.0]])).bad[0] == bad
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from asemd import units
 from asemd.kernels import bonded
 from asemd.kernels.state import Cell, cell_arrays
 from asemd.result import COMPONENTS
@@ -71,7 +72,7 @@ def example_words(style: Style, folder: str) -> list[str]:
     rows = "".join(f"{i} {a!r} {b!r} {c!r}\n" for i, (a, b, c) in enumerate(zip(x.tolist(), e.tolist(), f.tolist()), 1))
     path = Path(folder) / f"{style.category}.table"
     path.write_text(f"# written by asemd\n\nEXAMPLE\nN {len(x)}\n\n{rows}")
-    return [str(path), "EXAMPLE"]
+    return [{"file": str(path), "KEYWORD": "EXAMPLE"}.get(word, word) for word in style.example.split()]
 
 
 def sample(style: Style, seed: int = 7) -> Sample:
@@ -79,7 +80,7 @@ def sample(style: Style, seed: int = 7) -> Sample:
     with tempfile.TemporaryDirectory() as folder:
         settings = style.parse_settings(style.settings_example.split())
         coeff = style.parse_coeff(example_words(style, folder), settings)
-        out = Sample(style, style.pack(settings, {1: coeff}, 1, None))
+        out = Sample(style, style.pack(settings, {1: coeff}, 1, units.get("lj")))
     length = float(coeff.get(style.equilibrium, 1.0)) if style.category == "bond" else 1.0
     rng = np.random.default_rng(seed)
     k, good = ATOMS[style.category], []

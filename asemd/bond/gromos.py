@@ -1,0 +1,14 @@
+r"""$$E = K (r^2 - r_0^2)^2$$
+
+Bond of the GROMOS force fields, which needs no square root; the usual factor 1/4 is included in K.
+Source: LAMMPS manual, bond_style gromos.
+"""
+from __future__ import annotations
+
+from asemd.style import bond
+
+
+@bond("gromos", example="80.0 1.2", equilibrium="r0")
+def gromos(r, K: "energy/distance^4", r0: "distance"):
+    d = (r - r0) * (r + r0)
+    return K * d * d, 4.0 * K * d * r
