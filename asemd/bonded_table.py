@@ -6,9 +6,11 @@ only as far as the file's force is.
 """
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, Where
 from asemd.style import Packed, Parameter, Style
 from asemd.tabulated import Section, clamped_spline, read_section, spline_value
 
@@ -98,9 +100,12 @@ class TableStyle(Style):
     ROWS = ("lo", "hi", "delta", "first", "rows", "mode")
     smallest = 2
 
-    def __init__(self, category, name, function, **options):
-        super().__init__(category, name, function, coeff=(Parameter("file", "path"), Parameter("keyword", "word")),
-                         settings=(Parameter("style", "word"), Parameter("N", "integer")), settings_example="spline 100", **options)
+    coeff_before: tuple[Parameter, ...] = ()      # further words before the file, each an argument of the function
+
+    def __init__(self, category, name, function, *, example="file KEYWORD", **options):
+        super().__init__(category, name, function, coeff=(*self.coeff_before, Parameter("file", "path"), Parameter("keyword", "word")),
+                         settings=(Parameter("style", "word"), Parameter("N", "integer")), settings_example="spline 100",
+                         example=example, **options)
 
     def functions(self):
         return interpolate, self.function
@@ -108,9 +113,10 @@ class TableStyle(Style):
     def parse_settings(self, words):
         values = super().parse_settings(words)
         if values["style"] not in ("linear", "spline"):
-            raise InputError(f"{self.category}_style table: unknown table style {values['style']}, must be linear or spline")
+            raise InputError(f"{self.category}_style {self.name}: unknown table style {values['style']}, must be linear or spline")
         if values["N"] < self.smallest:
-            raise InputError(f"{self.category}_style table: illegal number of table entries {values['N']}, must be {self.smallest} or more")
+            raise InputError(f"{self.category}_style {self.name}: illegal number of table entries {values['N']}, "
+                             f"must be {self.smallest} or more")
         return values
 
     def parse_coeff(self, words, settings):
@@ -119,20 +125,20 @@ class TableStyle(Style):
 
     def section(self, path: str, keyword: str, known: dict, columns: int, texts=()) -> Section:
         """One section of the file, in which the first values increase from line to line."""
-        section = read_section(path, keyword, {"N": 1, **known}, columns, f"{self.category}_coeff table", texts)
-        if not (np.diff(section.columns[:, 1]) > 0.0).all():
-            raise self.wrong(section, "the first values must increase from line to line")
+        section = read_section(path, keyword, {"N": 1, **known}, columns, f"{self.category}_coeff {self.name}", texts)
+        section.check_increasing(section.columns[:, 1], f"{self.category}_coeff {self.name}")
         return section
 
     def wrong(self, section: Section, message: str) -> InputError:
-        return InputError(f"{self.category}_coeff table: {message}: section {section.keyword} of {section.file}", section.where)
+        return InputError(f"{self.category}_coeff {self.name}: {message}: section {section.keyword} of {section.file}", section.where)
 
     def read(self, path: str, keyword: str, settings) -> dict:
-        """What a section of a table file says, as further coefficients: ``table`` and the rest length or angle."""
+        """What a section of a table file says, as further coefficients: ``table``, ``units`` it names, the rest length or angle."""
         section = self.section(path, keyword, {"FP": 2, "EQ": 1}, 4)
         x, e, f = section.columns[:, 1:].T
+        section.check_slopes(x, e, f, f"{self.category}_coeff {self.name}")
         ends = section.parameters.get("FP") or ((f[1] - f[0]) / (x[1] - x[0]), (f[-1] - f[-2]) / (x[-1] - x[-2]))
-        return self.finish(section, x, e, f, ends, section.parameters.get("EQ", (None,))[0])
+        return {"units": section.units, **self.finish(section, x, e, f, ends, section.parameters.get("EQ", (None,))[0])}
 
     def finish(self, section, x, e, f, ends, rest) -> dict:
         """The coefficients for values in the file's units; overridden for angles."""
@@ -153,11 +159,17 @@ class TableStyle(Style):
         return float(x[0]), float(x[-1]), float(delta), nodes
 
     def pack(self, settings, coeffs, ntypes, units):
-        coeff, parts, start = np.zeros((len(self.ROWS), ntypes + 1)), [], 0
+        own = [p for p in self.coeff_before if p.name in self.arguments]
+        coeff, parts, start = np.zeros((len(self.ROWS) + len(own), ntypes + 1)), [], 0
         for t, values in coeffs.items():
             values = values if "table" in values else {**values, **self.read(values["file"], values["keyword"], settings)}
+            named = values["units"]
+            if named and units is not None and named != units.name and (named, units.name) != ("metal", "ase"):
+                raise InputError(f"{self.category}_coeff {self.name}: {values['file']} requires {named} units but {units.name} units "
+                                 "are in use", Where(values["file"], 1))
             lo, hi, delta, nodes = self.inner(values["table"], settings)
-            coeff[:, t] = lo, hi, delta, start, len(nodes), self.mode(settings, values)
+            words = [math.radians(values[p.name]) if p.unit == "angle" else values[p.name] for p in own]
+            coeff[:, t] = lo, hi, delta, start, len(nodes), self.mode(settings, values), *words
             parts.append(nodes)
             start += len(nodes)
         return Packed(coeff, (np.concatenate(parts) if parts else np.zeros((1, 4)),))

@@ -3,13 +3,14 @@ from __future__ import annotations
 
 import os
 import re
+import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from asemd.errors import InputError, Where, nearest
+from asemd.errors import InputError, InputWarning, Where, nearest
 
 
 @dataclass(eq=False)
@@ -28,6 +29,8 @@ class Section:
         Unit style named in the first line of the file (``# ... UNITS: metal``), or empty.
     where : Where
         The line of the keyword.
+    places : tuple of Where
+        The line of each row of `columns`.
     """
 
     file: str
@@ -36,6 +39,23 @@ class Section:
     columns: np.ndarray
     units: str = ""
     where: Where = field(default_factory=lambda: Where("", 0))
+    places: tuple[Where, ...] = ()
+
+    def check_increasing(self, x: np.ndarray, what: str) -> None:
+        """Refuse values that do not increase from line to line."""
+        wrong = np.flatnonzero(~(np.diff(x) > 0.0))
+        if len(wrong):
+            raise InputError(f"{what}: the values of table {self.keyword} must increase from line to line: {x[wrong[0] + 1]:g} follows "
+                             f"{x[wrong[0]]:g}", self.places[wrong[0] + 1] if self.places else self.where)
+
+    def check_slopes(self, x: np.ndarray, e: np.ndarray, f: np.ndarray, what: str) -> None:
+        """Warn (`asemd.errors.InputWarning`) of forces that are not between the slopes of the energy on both sides."""
+        slope = -np.diff(e) / np.diff(x)
+        left, right, inner = slope[:-1], slope[1:], f[1:-1]
+        wrong = int(np.count_nonzero((inner < np.minimum(left, right)) | (inner > np.maximum(left, right))))
+        if wrong:
+            warnings.warn(f"{what}: {wrong} of {len(f)} force values in table {self.keyword} are inconsistent with -dE/dr; "
+                          f"should only be flagged at inflection points ({self.where})", InputWarning, stacklevel=3)
 
 
 def find_file(name: str, what: str) -> Path:
@@ -77,7 +97,7 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
     """
     path = find_file(name, what)
     lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    found = re.search(r"UNITS:\s*(\S+)", lines[0]) if lines and lines[0].lstrip().startswith("#") else None
+    found = re.search(r"UNITS:\s*(\S+)", lines[0]) if lines else None
     words = [(k, line.split("#")[0].split()) for k, line in enumerate(lines)]
     words = [(k, w) for k, w in words if w]
 
@@ -102,6 +122,8 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         if word not in known:
             raise wrong(f"unknown parameter {word!r} of table {keyword}{nearest(word, known)}", k)
         count = known[word]
+        if word == "N" and rest and not re.fullmatch(r"[+-]?\d+", rest[0]):
+            raise wrong(f"N of table {keyword} must be a whole number, got {rest[0]!r}", k)
         try:
             parameters[word] = tuple(float(w) for w in rest[:count])
         except ValueError:
@@ -112,9 +134,15 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
     if "N" not in parameters:
         raise wrong(f"table {keyword} does not say N", k)
     n = int(parameters["N"][0])
-    if n != parameters["N"][0] or n < 2:
+    if n < 2:
         raise wrong(f"N of table {keyword} must be a whole number of at least 2", k)
-    rows = words[start + 2:start + 2 + n]
+    # the line after the parameters is skipped whatever it says: a blank one, or titles of the columns
+    rows = words[start + 2:]
+    if rows and rows[0][0] == k + 1:
+        if re.fullmatch(r"\d+", rows[0][1][0]):
+            raise wrong(f"the line after the parameters of table {keyword} must be blank", k + 1)
+        rows = rows[1:]
+    rows = rows[:n]
     values = np.zeros((n, columns))
     for m, (k, row) in enumerate(rows):
         if not re.fullmatch(r"\d+", row[0]):
@@ -127,7 +155,8 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         raise wrong(f"table {keyword} has {len(rows)} of N = {n} lines: the file ends too early", rows[-1][0] if rows else k)
     if not np.isfinite(values).all():
         raise wrong(f"table {keyword} has a number that is not finite", rows[int(np.argwhere(~np.isfinite(values))[0, 0])][0])
-    return Section(name, keyword, parameters, values, found[1] if found else "", Where(name, at + 1, lines[at]))
+    return Section(name, keyword, parameters, values, found[1] if found else "", Where(name, at + 1, lines[at]),
+                   tuple(Where(name, k + 1, lines[k]) for k, _ in rows))
 
 
 def clamped_spline(x: np.ndarray, y: np.ndarray, first: float, last: float) -> np.ndarray:

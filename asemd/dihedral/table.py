@@ -39,7 +39,7 @@ class DihedralTable(TableStyle):
         x, e, f = x[order], e[order], f[order] if forces else None
         if forces:
             self.compare(section, x, e, f)
-        out = {"table": (x, e, f)}
+        out = {"units": section.units, "table": (x, e, f)}
         for word, column in (("CHECKU", 0), ("CHECKF", 1)):
             if word in section.parameters:
                 name = section.parameters[word][0]

@@ -3,10 +3,12 @@ from __future__ import annotations
 
 import importlib
 import os
+import warnings
 from collections.abc import Callable, Sequence
+from contextlib import contextmanager
 from typing import Any
 
-from asemd.errors import AsemdError, InputError, Where
+from asemd.errors import AsemdError, InputError, InputWarning, Where
 from asemd.lammps import catalog, lex, script
 from asemd.lammps.log import Log, to_stdout
 from asemd.lammps.providers import Providers
@@ -201,6 +203,15 @@ class Session:
         """Warn, naming the command that is being executed, or another place."""
         where = where or self._position
         self.log.warn(f"{message} ({where})" if where and where.file else message)
+
+    @contextmanager
+    def passing_warnings(self):
+        """Warnings of what is called inside become warnings of the command that is being executed."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", InputWarning)
+            yield
+        for warning in caught:
+            self.warn(str(warning.message))
 
     def remember(self, what: str) -> None:
         """Note that `what` was defined by the command that is being executed."""

@@ -9,11 +9,12 @@ error.
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 
 from asemd import tabulated, words
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.pairstyle import PairStyle, PairTables
 from asemd.style import register
 from asemd.tabulated import clamped_spline, cubic_coefficients, spline_value
@@ -53,7 +54,7 @@ class FileTable:
         self.e, self.f = section.columns[:, 2], section.columns[:, 3]
         n = len(self.e)
         given = [k for k in p if k in ("R", "RSQ", "BITMAP")]
-        self.kind = given[-1] if given else ""
+        self.kind, what = given[-1] if given else "", "pair_coeff table"
         self.slopes = p.get("FPRIME")
         self.lo, self.hi = p[self.kind] if given else (float(section.columns[0, 1]), float(section.columns[-1, 1]))
         if not 0.0 < self.lo < self.hi:
@@ -65,8 +66,13 @@ class FileTable:
             self.r = np.sqrt(self.lo**2 + (self.hi**2 - self.lo**2) * i)
         else:
             self.r = section.columns[:, 1]
-        if self.kind != "BITMAP" and not (np.diff(self.r) > 0.0).all():
-            raise InputError(f"pair table {section.keyword}: distances must increase from line to line", section.where)
+        if self.kind != "BITMAP":
+            section.check_increasing(self.r, what)
+            section.check_slopes(self.r, self.e, self.f, what)
+        far = int(np.count_nonzero(np.abs(self.r - section.columns[:, 1]) > 1e-6 * self.r))
+        if far:
+            warnings.warn(f"{what}: {far} of {n} distances in table {section.keyword} differ by more than 1e-6 from those that {self.kind} "
+                          f"says ({section.where})", InputWarning, stacklevel=2)
 
     def sample(self, r: np.ndarray, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Energy and force at distances, by the splines through the values of the file, times `unit`."""
@@ -212,6 +218,8 @@ class Table(PairStyle):
 def unit_factor(section: tabulated.Section, units) -> float:
     """Factor from the energies of a file that names its unit style to those of the scene."""
     if not section.units or units is None or section.units == units.name:
+        return 1.0
+    if (section.units, units.name) == ("metal", "ase"):
         return 1.0
     if (section.units, units.name) not in CONVERT:
         raise InputError(f"pair table {section.keyword} requires {section.units} units but {units.name} units are in use", section.where)

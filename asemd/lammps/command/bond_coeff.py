@@ -4,4 +4,5 @@ from __future__ import annotations
 
 def run(session, args):
     scene = session.scene
-    scene.interactions.set_coeff("bond", args, scene.need_system("bond_coeff"))
+    with session.passing_warnings():
+        scene.interactions.set_coeff("bond", args, scene.need_system("bond_coeff"))
