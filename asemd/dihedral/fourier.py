@@ -1,0 +1,32 @@
+r"""$$E = \sum_{i=1}^{m} K_i [1 + \cos(n_i \phi - d_i)]$$
+
+Sum of torsions with any multiplicities and phases. Source: LAMMPS manual, dihedral_style fourier.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.errors import InputError
+from asemd.series import SeriesStyle
+from asemd.style import Parameter, dihedral
+
+
+def check(coeff, settings):
+    for k in range(1, coeff["m"] + 1):
+        if coeff[f"n{k}"] < 0:
+            raise InputError(f"dihedral_coeff fourier: incorrect multiplicity, n{k} must be 0 or more, got {coeff[f'n{k}']}")
+
+
+TERM = (Parameter("K", "energy"), Parameter("n", "integer"), Parameter("d", "angle"))
+
+
+@dihedral("fourier", cls=SeriesStyle, count="m", term=TERM, check=check, example="3 -0.846200 3 0.0 7.578800 1 0 0.138000 2 -180.0")
+def fourier(phi, first, count, terms: "array"):
+    e = slope = 0.0
+    for k in range(int(first), int(first) + int(count)):
+        K, n = terms[k, 0], terms[k, 1]
+        a = n * phi - terms[k, 2]
+        c = math.cos(0.5 * a)         # 1 + cos(a) = 2 cos^2(a/2)
+        e += 2.0 * K * c * c
+        slope -= K * n * math.sin(a)
+    return e, slope

@@ -1,0 +1,20 @@
+r"""$$E = K (\phi - \phi_0)^2$$
+
+Keeps a torsion near a given angle; the difference is taken the short way round for phi0 from -180 to 180 degrees (otherwise it is wrapped
+once, as in LAMMPS). Opposite phi0 the force jumps. Source: LAMMPS manual, dihedral_style quadratic.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.style import dihedral
+
+
+@dihedral("quadratic", example="100.0 80.0")
+def quadratic(phi, K: "energy", phi0: "angle"):
+    d = phi - phi0
+    if d > math.pi:
+        d -= 2.0 * math.pi
+    elif d < -math.pi:
+        d += 2.0 * math.pi
+    return K * d * d, 2.0 * K * d
