@@ -91,8 +91,7 @@ class Atoms(ase.Atoms):
     def todict(self):
         out = super().todict()
         if not self.topology.is_empty:
-            out["topology"] = {f"{kind}s": atoms for kind, atoms, _ in self.topology} | {
-                f"{kind}_types": types for kind, _, types in self.topology}
+            out["topology"] = self.topology.as_dict()
         return out
 
     @classmethod

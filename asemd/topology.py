@@ -27,7 +27,10 @@ class Topology:
     bonds, angles, dihedrals, impropers : (m, 2), (m, 3), (m, 4), (m, 4) int
         Atom rows; in an angle the middle atom is the second one.
     bond_types, angle_types, dihedral_types, improper_types : (m,) int, optional
-        Types; 1 for all if not given.
+        Types; 1 for all if not given. The negative of a type: the item is turned off, its atoms still count as bonded; 0: a bond that
+        broke.
+    frozen : Topology, optional
+        The state from which the 1-2, 1-3 and 1-4 pairs follow instead of the present one.
 
     Raises
     ------
@@ -43,6 +46,7 @@ class Topology:
     dihedral_types: np.ndarray | None = None
     impropers: np.ndarray = ()
     improper_types: np.ndarray | None = None
+    frozen: Topology | None = None
 
     def __post_init__(self):
         for kind, width in ATOMS.items():
@@ -55,6 +59,13 @@ class Topology:
             types = np.ones(len(atoms), np.int32) if types is None else np.array(np.broadcast_to(types, len(atoms)), np.int32)
             setattr(self, kind + "s", atoms)
             setattr(self, kind + "_types", types)
+        if isinstance(self.frozen, dict):
+            self.frozen = Topology(**self.frozen)
+
+    def as_dict(self) -> dict:
+        """The arguments that make it again."""
+        out = {f"{kind}s": atoms for kind, atoms, _ in self} | {f"{kind}_types": types for kind, _, types in self}
+        return out | ({"frozen": self.frozen.as_dict()} if self.frozen is not None else {})
 
     def items(self, kind: str) -> tuple[np.ndarray, np.ndarray]:
         """Atoms (m, k) and types (m,) of ``bond``, ``angle``, ``dihedral`` or ``improper``."""
@@ -64,13 +75,18 @@ class Topology:
         return ((kind, *self.items(kind)) for kind in KINDS)
 
     @classmethod
-    def _made(cls, parts: dict[str, tuple[np.ndarray, np.ndarray]]) -> Topology:
+    def _made(cls, parts: dict[str, tuple[np.ndarray, np.ndarray]], frozen: Topology | None = None) -> Topology:
         return cls(**{f"{kind}s": atoms for kind, (atoms, _) in parts.items()},
-                   **{f"{kind}_types": types for kind, (_, types) in parts.items()})
+                   **{f"{kind}_types": types for kind, (_, types) in parts.items()}, frozen=frozen)
+
+    def replaced(self, parts: dict[str, tuple[np.ndarray, np.ndarray]], special: bool) -> Topology:
+        """The same with the items of some kinds replaced; the 1-2, 1-3 and 1-4 pairs follow only if `special`."""
+        frozen = None if special else self.frozen if self.frozen is not None else self
+        return Topology._made({kind: parts.get(kind, (atoms, types)) for kind, atoms, types in self}, frozen)
 
     @property
     def is_empty(self) -> bool:
-        return not any(len(types) for _, _, types in self)
+        return self.frozen is None and not any(len(types) for _, _, types in self)
 
     def counts(self) -> dict[str, int]:
         """Number of items by kind."""
@@ -78,7 +94,7 @@ class Topology:
 
     def __eq__(self, other) -> bool:
         return isinstance(other, Topology) and all(
-            np.array_equal(a, b) for kind in KINDS for a, b in zip(self.items(kind), other.items(kind)))
+            np.array_equal(a, b) for kind in KINDS for a, b in zip(self.items(kind), other.items(kind))) and self.frozen == other.frozen
 
     __hash__ = None
 
@@ -86,7 +102,7 @@ class Topology:
         return "Topology(" + ", ".join(f"{len(types)} {kind}s" for kind, _, types in self if len(types)) + ")"
 
     def copy(self) -> Topology:
-        return Topology._made({kind: (atoms, types) for kind, atoms, types in self})
+        return Topology._made({kind: (atoms, types) for kind, atoms, types in self}, self.frozen)
 
     def select(self, index, n: int) -> Topology:
         """The items among chosen atoms; an item that loses an atom goes.
@@ -106,17 +122,21 @@ class Topology:
             renamed = new[atoms]
             keep = (renamed >= 0).all(axis=1)
             parts[kind] = renamed[keep], types[keep]
-        return Topology._made(parts)
+        return Topology._made(parts, self.frozen and self.frozen.select(index, n))
 
     def shift(self, n: int) -> Topology:
         """All row numbers plus `n`."""
-        return Topology._made({kind: (atoms + n, types) for kind, atoms, types in self})
+        return Topology._made({kind: (atoms + n, types) for kind, atoms, types in self}, self.frozen and self.frozen.shift(n))
 
     def concatenate(self, *others: Topology) -> Topology:
         """Items of this and the others, one after the other; the rows stay as they are (see `shift`)."""
         tops = (self, *others)
+        frozen = None
+        if any(t.frozen is not None for t in tops):
+            first, *rest = (t if t.frozen is None else t.frozen for t in tops)
+            frozen = first.concatenate(*rest)
         return Topology._made({kind: (np.concatenate([t.items(kind)[0] for t in tops]), np.concatenate([t.items(kind)[1] for t in tops]))
-                               for kind in KINDS})
+                               for kind in KINDS}, frozen)
 
     def repeat(self, n: int, copies: int) -> Topology:
         """The items of `copies` copies of `n` atoms each; no item goes from one copy to another."""
@@ -124,7 +144,7 @@ class Topology:
         for kind, atoms, types in self:
             offset = np.repeat(np.arange(copies) * n, len(atoms))
             parts[kind] = np.tile(atoms, (copies, 1)) + offset[:, None], np.tile(types, copies)
-        return Topology._made(parts)
+        return Topology._made(parts, self.frozen and self.frozen.repeat(n, copies))
 
     def repeat_periodic(self, n: int, times, box, x: np.ndarray) -> Topology:
         """The items of a repeated periodic cell: what crosses a periodic face is connected with the neighbouring copy.
@@ -152,7 +172,7 @@ class Topology:
             copy = (grid[:, None, None] + at[None]) % times
             number = (copy[..., 0] * times[1] + copy[..., 1]) * times[2] + copy[..., 2]
             parts[kind] = (number * n + atoms).reshape(-1, atoms.shape[1]), np.tile(types, len(grid))
-        return Topology._made(parts)
+        return Topology._made(parts, self.frozen and self.frozen.repeat_periodic(n, times, box, x))
 
     def special(self, n: int, angle: bool = False, dihedral: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """The pairs one, two and three bonds apart.
@@ -173,6 +193,8 @@ class Topology:
         kind : (m,) int8
             1, 2, 3 for 1-2, 1-3, 1-4; the nearest counts.
         """
+        if self.frozen is not None:
+            return self.frozen.special(n, angle, dihedral)
         ends = self.bonds[self.bonds[:, 0] != self.bonds[:, 1]].astype(np.int64)
         both = np.unique(np.concatenate([ends, ends[:, ::-1]]), axis=0)
         first = np.searchsorted(both[:, 0], np.arange(n + 1))     # bonds of atom i: both[first[i]:first[i + 1]]

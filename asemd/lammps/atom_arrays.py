@@ -95,7 +95,7 @@ class AtomArrays:
         """Number of bonds and a ctypes int array of type, id, id."""
         system = self.scene.need_system("gather_bonds")
         topology = system.topology
-        table = np.column_stack([topology.bond_types, system.id[topology.bonds]]) if len(topology.bonds) else np.zeros((0, 3), int)
+        table = np.column_stack([np.abs(topology.bond_types), system.id[topology.bonds]]) if len(topology.bonds) else np.zeros((0, 3), int)
         return len(table), self._c_array(table, 0)
 
     @staticmethod

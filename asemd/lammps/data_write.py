@@ -77,7 +77,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
     yield f"{s.counts['ntypes']} atom types"
     for section, kind in TOPOLOGY.items():
         if kind in BONDED.get(s.atom_style, ()):
-            yield f"{len(s.topology.items(kind)[1])} {section.lower()}"
+            yield f"{np.count_nonzero(s.topology.items(kind)[1])} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
     yield ""
     for axis, lo, hi in zip("xyz", s.box.lo.tolist(), s.box.hi.tolist()):
@@ -100,6 +100,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         yield from _section("Velocities", (f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in zip(s.id.tolist(), s.v.tolist())))
     for section, kind in TOPOLOGY.items():
         atoms, item_types = s.topology.items(kind)
+        atoms, item_types = atoms[item_types != 0], np.abs(item_types[item_types != 0])     # turned off ones as if they were on
         if len(atoms):
             yield from _section(section, (f"{k} {names[kind][t]} {' '.join(map(str, ids))}" for k, (t, ids) in
                                           enumerate(zip(item_types.tolist(), s.id[atoms].tolist()), 1)))

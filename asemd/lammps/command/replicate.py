@@ -28,7 +28,9 @@ def run(session, args):
     for warning in caught:
         session.warn(f"replicate: {warning.message}")
     masks = {name: np.tile(mask, new.n // system.n if system.n else 1) for name, mask in scene.groups.items()}
-    new.box = new.box.shrink_wrapped(new.x)
+    new.box, new.topology.frozen = new.box.shrink_wrapped(new.x), None
+    for _, _, types in new.topology:      # LAMMPS replicates items that are turned off as if they were on
+        np.abs(types, out=types)
     scene.system = new
     scene.groups.resize(new.n)
     for name, mask in masks.items():

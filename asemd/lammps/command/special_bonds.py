@@ -3,4 +3,13 @@ from __future__ import annotations
 
 
 def run(session, args):
-    session.scene.interactions.set_special(args)
+    scene = session.scene
+    before = _of_lists(scene.interactions)
+    scene.interactions.set_special(args)
+    if scene.system is not None and _of_lists(scene.interactions) != before:
+        scene.system.topology.frozen = None     # lists of 1-3 and 1-4 pairs are made anew
+
+
+def _of_lists(interactions) -> tuple:
+    """What the lists of partners depend on."""
+    return interactions.special_lj[1:], interactions.special_coul[1:], interactions.special_angle, interactions.special_dihedral
