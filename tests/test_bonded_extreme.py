@@ -59,12 +59,46 @@ def fene(r, K, R0, eps, sig):
     return -K * R0**2 / 2 * mp.log(1 - (r / R0) ** 2) + rest
 
 
+def fene_nm(r, K, R0, E0, r0, n, m):
+    rest = E0 / (n - m) * (m * (r0 / r) ** n - n * (r0 / r) ** m) if r < r0 else 0
+    return -K * R0**2 / 2 * mp.log(1 - (r / R0) ** 2) + rest
+
+
+def gaussian(r, T, n, *terms):
+    def term(A, w, c):
+        return A / (w * mp.sqrt(mp.pi / 2)) * mp.exp(-2 * (r - c) ** 2 / w**2)
+    return -T * mp.log(sum(term(*terms[k:k + 3]) for k in range(0, len(terms), 3)))
+
+
+def mesocnt(t, K, K_B, B):
+    d = mp.pi - t
+    return K * d**2 if d < deg(B) else K * deg(B) ** 2 + K_B * (d - deg(B))
+
+
 ENERGY = {     # straight from the manual, nothing rearranged
     ("bond", "harmonic", "300 1.1"): lambda r, K, r0: K * (r - r0) ** 2,
     ("bond", "morse", "80 1.2 1.1"): lambda r, D, a, r0: D * (1 - mp.exp(-a * (r - r0))) ** 2,
     ("bond", "fene", "30 1.5 1 1"): fene,
+    ("bond", "fene/expand", "30 1.3 1 1 0.2"): lambda r, K, R0, eps, sig, shift: fene(r - shift, K, R0, eps, sig),
+    ("bond", "fene/expand", "30 1.7 1 1 -0.2"): lambda r, K, R0, eps, sig, shift: fene(r - shift, K, R0, eps, sig),
+    ("bond", "fene/nm", "30 1.5 1.3 1.1 12 6"): fene_nm,
+    ("bond", "fene/nm", "30 1.5 1.3 1.31 9.5 6.25"): fene_nm,
+    ("bond", "class2", "1.1 300 -500 700"): lambda r, r0, *k: sum(v * (r - r0) ** (i + 2) for i, v in enumerate(k)),
+    ("bond", "class2", "1.1 3e8 -5e8 7e8"): lambda r, r0, *k: sum(v * (r - r0) ** (i + 2) for i, v in enumerate(k)),
+    ("bond", "gaussian", "300 1 0.01 0.098 1.1"): gaussian,
+    ("bond", "gaussian", "300 3 0.0003 0.657 1.61 0.0050 0.360 1.07 0.0048 0.157 1.31"): gaussian,
+    ("bond", "gromos", "80 1.1"): lambda r, K, r0: K * (r**2 - r0**2) ** 2,
+    ("bond", "harmonic/shift", "10 1.1 1.4"): lambda r, U, r0, rc: U / (r0 - rc) ** 2 * ((r - r0) ** 2 - (rc - r0) ** 2),
+    ("bond", "harmonic/shift/cut", "10 1.1 1.5"):
+        lambda r, U, r0, rc: U / (r0 - rc) ** 2 * ((r - r0) ** 2 - (rc - r0) ** 2) if r <= rc else mp.mpf(0),
+    ("bond", "nonlinear", "100 1.1 38.9000001"): lambda r, e, r0, b: e * (r - r0) ** 2 / (b**2 - (r - r0) ** 2),
+    ("bond", "nonlinear", "100 1.1 50"): lambda r, e, r0, b: e * (r - r0) ** 2 / (b**2 - (r - r0) ** 2),
+    ("bond", "mm3", "100 1.1"): lambda r, K, r0: K * (r - r0) ** 2 * (
+        1 - mp.mpf("2.55") * (r - r0) + mp.mpf(7) / 12 * mp.mpf("2.55") ** 2 * (r - r0) ** 2),
     ("angle", "harmonic", "75 110.1"): lambda t, K, t0: K * (t - deg(t0)) ** 2,
     ("angle", "harmonic", "75 180"): lambda t, K, t0: K * (t - deg(t0)) ** 2,
+    ("angle", "mesocnt", "buckling custom 400 50 15"): mesocnt,
+    ("angle", "mesocnt", "harmonic custom 400"): lambda t, K: K * (mp.pi - t) ** 2,
     ("angle", "cosine", "75"): lambda t, K: K * (1 + mp.cos(t)),
     ("angle", "cosine/squared", "75 110.1"): lambda t, K, t0: K * (mp.cos(t) - mp.cos(deg(t0))) ** 2,
     ("angle", "cosine/shift", "10 45"): lambda t, U, t0: -U / 2 * (1 + mp.cos(t - deg(t0))),
@@ -94,7 +128,9 @@ def geometries(category, name):
     """Name -> positions: ordinary, and as near to singular as doubles allow."""
     if category == "bond":
         lengths = {"ordinary": 1.3, "equilibrium": 1.1 + 1e-7, "short": 0.7, "limit": 1.5 * (1 - 1e-8)}
-        if name != "fene":
+        if name in ("fene", "fene/nm"):
+            lengths |= {"close": 1e-6}
+        elif name != "fene/expand":
             lengths |= {"tiny": 1e-9, "long": 40.0}
         return {n: turned([[0, 0, 0], [r, 0, 0]]) for n, r in lengths.items()} | {"far": turned([[0, 0, 0], [1.2, 0, 0]], 1e7)}
     if category == "angle":
@@ -176,7 +212,7 @@ def test_forces_keep_their_digits(category, name, words):
     s = styles.Sample(style, style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, units.get("lj")))
     kind = "umbrella" if name == "umbrella" else category
     for title, x in geometries(category, name).items():
-        want, bar = reference(kind, ENERGY[category, name, words], words.split(), x)
+        want, bar = reference(kind, ENERGY[category, name, words], [w for w in words.split() if w[0] not in "bch"], x)
         got = s.run(x.T)
         assert not got.bad[0], title
         error = max(mp.sqrt(sum((mp.mpf(float(p)) - q) ** 2 for p, q in zip(u, v))) for u, v in zip(got.forces.T, want))
