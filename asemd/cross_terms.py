@@ -17,8 +17,8 @@ class CrossTermStyle(Style):
     Parameters
     ----------
     marks : mapping
-        Mark -> names of its coefficients, ``{"bb": "M bb_r1 bb_r2"}``; the other coefficients are the main ones. Several groups may stand on one
-        line, each after its mark: ``109.5 75 5 1 bb 10 1.5 1.5``.
+        Mark -> names of its coefficients, ``{"bb": "M bb_r1 bb_r2"}``; the other coefficients are the main ones. Several groups may stand
+        on one line, each after its mark: ``109.5 75 5 1 bb 10 1.5 1.5``.
     """
 
     def __init__(self, category: str, name: str, function, *, marks: Mapping[str, str], **options):

@@ -13,6 +13,8 @@ from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 if TYPE_CHECKING:
     from asemd.forcefield import Interactions, Use
 
+NO_REPULSION = "angle style {} takes the repulsion of its ends from a pair style such as lj/spica: use one, or give repulsion = 0"
+
 
 @dataclass
 class PairTerm:
@@ -151,6 +153,11 @@ def check_complete(interactions: Interactions, system) -> None:
                 raise InputError("pair_modify tail yes cannot be used in two dimensions")
             if use.style.tail is None and use.style.parts:
                 warnings.warn(f"pair_modify tail yes has no effect on pair style {use.style.name}", InputWarning, stacklevel=2)
+    for use in interactions.uses["angle"]:
+        switch = getattr(use.style, "repulsion", "")
+        if switch and any(c[switch] for c in use.coeff.values()):
+            if not any(hasattr(u.style, "repulsion") for u in interactions.uses["pair"]):
+                raise InputError(NO_REPULSION.format(use.style.name))
     for use in interactions.uses["dihedral"]:
         weight = use.style.weight_14
         if weight and any(c.get(weight, 0.0) for c in use.coeff.values()):

@@ -18,12 +18,11 @@ def check(coeff, settings):
 
 @angle("cosine/periodic", example="75.0 -1 3", check=check)
 def cosine_periodic(theta, C: "energy", B: "integer", n: "integer"):
-    # from the straight angle, so that the slope vanishes there: (-1)^n cos(n theta) = cos(n (pi - theta))
-    a = n * (3.141592653589793 - theta) + n * 1.2246467991473532e-16 if theta > 1.5707963267948966 else n * theta
-    b = B if theta > 1.5707963267948966 or math.fmod(n, 2.0) == 0.0 else -B
+    wide = theta > 0.5 * math.pi
+    a = n * (math.pi - theta) if wide else n * theta      # cos(n (pi - theta)) = (-1)^n cos(n theta): small near a straight angle
+    b = B if wide or n % 2.0 == 0.0 else -B
     front = 2.0 * C / (n * n)
     s, c = math.sin(0.5 * a), math.cos(0.5 * a)
     slope = front * b * n * math.sin(a)
-    # 1 - b cos(a) with the cosine as a square of what is small
-    e = 1.0 - b + 2.0 * b * s * s if b > 0.0 else 1.0 + b - 2.0 * b * c * c
-    return front * e, -slope if theta > 1.5707963267948966 else slope
+    e = 1.0 - b + 2.0 * b * s * s if b > 0.0 else 1.0 + b - 2.0 * b * c * c      # 1 - b cos(a), no digits cancel for B = 1 and -1
+    return front * e, -slope if wide else slope

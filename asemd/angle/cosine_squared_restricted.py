@@ -1,7 +1,7 @@
 r"""$$E = K \frac{(\cos\theta - \cos\theta_0)^2}{\sin^2\theta}$$
 
-Spring in the cosine that keeps the angle away from 0 and 180 degrees, where torsions become undefined; the usual factor 1/2 is included in K.
-Source: Bulacu et al., J. Chem. Theory Comput. 9, 3282 (2013); LAMMPS manual, angle_style cosine/squared/restricted.
+Spring in the cosine that keeps the angle away from 0 and 180 degrees, where torsions become undefined; the usual factor 1/2 is included
+in K. Source: Bulacu et al., J. Chem. Theory Comput. 9, 3282 (2013); LAMMPS manual, angle_style cosine/squared/restricted.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def cosine_squared_restricted(theta, K: "energy", theta0: "angle"):
     s = math.sin(theta)
     if m == 0.0:
         return 0.0, 0.0
-    if not 0.0 < theta < 3.141592653589793:       # the nearest double to pi stands for a straight angle
+    if not 0.0 < theta < math.pi:                 # the nearest double to pi stands for a straight angle
         return math.inf, math.inf
     d = -2.0 * p * m / s                          # (cos(theta) - cos(theta0)) / sin(theta)
     return K * d * d, -2.0 * K * d * (p * p + m * m) / (s * s)     # 1 - cos(theta) cos(theta0) = p^2 + m^2

@@ -16,7 +16,7 @@ def fourier_simple_lammps(theta, K: "energy", c, n):
     cosine = math.cos(theta)
     rest, sign = 1.0 - cosine, 1.0
     if cosine < 0.0:
-        rest, sign = 1.0 + cosine, -1.0 if math.fmod(n, 2.0) == 0.0 else 1.0
+        rest, sign = 1.0 + cosine, -1.0 if n % 2.0 == 0.0 else 1.0
     ratio = sign * n * (1.0 + (1.0 - n * n) * rest / 3.0)       # stands for sin(n theta) / sin(theta)
     return K * (1.0 + c * math.cos(n * theta)), -K * c * n * ratio * math.sin(theta)
 

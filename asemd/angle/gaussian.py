@@ -1,8 +1,8 @@
 r"""$$E = -k_B T \ln\left( \sum_i \frac{A_i}{w_i \sqrt{\pi/2}} \exp\left[ -\frac{2 (\theta - \theta_i)^2}{w_i^2} \right] \right)$$
 
-Boltzmann inverse of a distribution of angles that is a sum of n Gaussians: ``angle_coeff 1 T n A_1 w_1 theta_1 ... A_n w_n theta_n``, widths in
-radians and centres in degrees. Source: Milano, Goudeau and Mueller-Plathe, J. Polym. Sci. B 43, 871 (2005); LAMMPS manual, angle_style
-gaussian.
+Boltzmann inverse of a distribution of angles that is a sum of n Gaussians: ``angle_coeff 1 T n A_1 w_1 theta_1 ... A_n w_n theta_n``,
+widths in radians and centres in degrees.
+Source: Milano, Goudeau and Mueller-Plathe, J. Polym. Sci. B 43, 871 (2005); LAMMPS manual, angle_style gaussian.
 """
 from __future__ import annotations
 

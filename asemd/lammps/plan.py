@@ -165,7 +165,7 @@ def _term(e: Engine, t) -> Item:
         function = "minimum image" if e.periodic.any() else "no images: nothing is periodic"
         return Item(f"{t.category} {style.name}", f"{len(t.items)} {t.category}s of {len(np.unique(t.types))} types, {function}",
                     f"{t.category}_style and {t.category}_coeff")
-    charged = "with charges" if style.charged and getattr(t, "pairs", "") != "one_four" else "without charges"
+    charged = "with charges" if style.charged and getattr(t, "pairs", "") not in ("one_four", "ends") else "without charges"
     if isinstance(t, PairTerm):
         varying = sum(not u for u in t.uniform)
         rows = f"{varying} of {len(t.uniform)} coefficients by type pair" if varying else "coefficients the same for all pairs of types"
@@ -181,6 +181,8 @@ def _term(e: Engine, t) -> Item:
                     "special_bonds factors between 0 and 1, which the cluster kernel leaves out")
     if t.pairs == "one_four":
         return Item(f"pair {style.name} (1-4)", f"{len(t.one_four[0])} pairs, one by one", "dihedral style with weights of 1-4 pairs")
+    if t.pairs == "ends":
+        return Item(f"angle repulsion of {style.name}", f"{len(t.one_four[0])} pairs, one by one", "angle style with repulsion of its ends")
     why = e.why if e.mode == "plain" else "pairs of the expanded list"
     return Item(f"pair {style.name}", f"pair by pair, double precision, {charged}", why)
 
