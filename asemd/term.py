@@ -8,6 +8,7 @@ import numpy as np
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels.cluster import CLUSTER
+from asemd.pairing import NO_REPULSION
 
 BONDED_KEY = {"bond": "ebond", "angle": "eangle", "dihedral": "edihed", "improper": "eimp"}
 
@@ -135,14 +136,13 @@ class PairListTerm:
     Parameters
     ----------
     pairs : str
-        ``all``, ``special`` or ``one_four`` (pairs (m, 2) with weights given by `pairs_of`).
+        ``all``, ``special``, or pairs that bonded styles ask for, given by `one_four` as pairs (m, 2), kinds (m,) and the weights of the
+        kinds: ``one_four`` (dihedral charmm) and ``ends`` (angle spica, whose energy they are part of).
     """
-
-    category = "pair"
 
     def __init__(self, style, tables, parts, pairs: str, one_four=None):
         self.style, self.tables, self.parts, self.pairs = style, tables, parts, pairs
-        self.one_four = one_four
+        self.one_four, self.category = one_four, "angle" if pairs == "ends" else "pair"
 
     def kernel(self, energy, per_atom):
         return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom)[0]
@@ -185,7 +185,28 @@ def bonded_terms(system, interactions, pair_terms, units) -> list:
                 terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units,
                                         interactions.compat))
                 terms += one_four_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"], units)
+                terms += end_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"])
     return terms
+
+
+def end_terms(use, items: np.ndarray, types: np.ndarray, pair_terms, ntypes: int) -> list[PairListTerm]:
+    """Repulsion of the first and the third atom of angles of style spica, with the pair style's coefficients.
+
+    Raises
+    ------
+    InputError
+        No pair style in use has such coefficients.
+    """
+    switch = getattr(use.style, "repulsion", "")
+    on = {t for t, c in use.coeff.items() if switch and c[switch] > 0.0}
+    pairs = np.ascontiguousarray(items[np.isin(types, list(on))][:, [0, -1]], np.int32)
+    if not len(pairs):
+        return []
+    owner = next((t for t in pair_terms if hasattr(t.style, "repulsion")), None)
+    if owner is None:
+        raise InputError(NO_REPULSION.format(use.style.name))
+    return [PairListTerm(owner.style, owner.style.repulsion(owner.filled, ntypes), owner.style.repulsion_parts, "ends",
+                         (pairs, np.full(len(pairs), 1, np.int32), np.ones(4)))]
 
 
 def one_four_terms(use, items: np.ndarray, types: np.ndarray, pair_terms, ntypes: int, units) -> list[PairListTerm]:
