@@ -53,6 +53,11 @@ COORDINATES = {
 }
 RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
 ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
+_FINITE = "acts on particles of finite size with an orientation and torques, which asemd does not have yet: run this script with LAMMPS"
+# (category, name) -> why a style of LAMMPS is refused
+REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
+    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of their bonds, which asemd does not have yet: run this script "
+                            "with LAMMPS"}
 _registry: dict[tuple[str, str], Style] = {}
 
 
@@ -342,8 +347,15 @@ def find(category: str, name: str) -> Style:
             if e.name != module:
                 raise
         if (category, name) not in _registry:
-            raise InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
+            raise unknown(category, name)
     return _registry[category, name]
+
+
+def unknown(category: str, name: str) -> InputError:
+    """The error for a style that is not there: why it is refused, or the nearest match."""
+    if (category, plain_name(name)) in REFUSED:
+        return InputError(f"{category}_style {name} {REFUSED[category, plain_name(name)]}")
+    return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
 
 
 def class_of(category: str, name: str, base: type) -> type:

@@ -178,11 +178,29 @@ def test_agrees_with_lammps(tmp_path):
     ("improper", "cvff", "1.0 1 7", "0 to 6"), ("improper", "cvff", "1.0 0 2", "d must be"),
     ("bond", "fene", "30 -1.5 1 1", "R0 must be > 0"),
     ("bond", "fene", "30 1.5 1", "needs K R0 epsilon sigma"), ("bond", "harmonic", "30 nan", "not a finite number"),
+    ("bond", "gaussian", "300", "T n"), ("bond", "gaussian", "300 0", "n must be 1"), ("bond", "gaussian", "300 1.0 1 1 1", "whole number"),
+    ("bond", "gaussian", "300 2 1 0.2 1", "8 values"), ("bond", "gaussian", "300 1 0 0.2 1", "A_1 must be > 0"),
+    ("bond", "gaussian", "300 2 1 0.2 1 1 -0.2 1", "w_2 must be > 0"), ("bond", "gaussian", "300 1 1 0.2 -1", "r_1 must be 0 or more"),
+    ("bond", "harmonic/shift", "10 1.5 1.5", "different"), ("bond", "harmonic/shift/cut", "10 1.5 1.5", "different"),
+    ("bond", "fene/nm", "30 1.5 1 1 9 9", "n and m"), ("bond", "fene/nm", "30 1.5 1 1 9", "needs K R0 E0 r0 n m"),
+    ("bond", "class2", "1.1 300 -500", "needs r0 K2 K3 K4"),
+    ("bond", "mesocnt", "", "preset"), ("bond", "mesocnt", "c 1 1 1", "did you mean C"), ("bond", "mesocnt", "C 1.5 1 1", "whole number"),
+    ("bond", "mesocnt", "C 10 10 0", "r0 must be > 0"), ("bond", "mesocnt", "custom 10", "needs K r0"),
+    ("angle", "mesocnt", "", "mode"), ("angle", "mesocnt", "bend C", "mode"), ("angle", "mesocnt", "harmonic D", "preset"),
+    ("angle", "mesocnt", "harmonic custom 3 4", "needs K_H, got"), ("angle", "mesocnt", "buckling custom 3 4", "needs K_H K_B theta_B"),
     ("bond", "zero", "1.0 2.0", "needs"), ("improper", "zero", "1.0", "needs no values"),
 ])
 def test_refused_coefficients(category, name, words, text):
     with pytest.raises(InputError, match=text):
         registry.find(category, name).parse_coeff(words.split(), {})
+
+
+@pytest.mark.parametrize("words", ["bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene", "rheo/shell t/form 10",
+                                   "hybrid harmonic oxdna/fene", "oxdna/fene/kk"])
+def test_styles_of_other_particles_say_why(words):
+    from asemd.forcefield import Interactions
+    with pytest.raises(InputError, match="particles .*which asemd does not have yet"):
+        Interactions().set_style("bond", words.split())
 
 
 def test_zero_nocoeff_takes_anything():
@@ -218,6 +236,13 @@ def test_refused_tables(category, text, message, tmp_path):
     with pytest.raises(InputError, match=message) as error:
         style.parse_coeff([str(path), "KEY"], settings)
     assert "t.txt" in str(error.value)
+
+
+def test_presets_of_nanotubes_need_real_units():
+    for category, words in (("bond", "C 10 10 20"), ("angle", "buckling C 10 10 20")):
+        style = registry.find(category, "mesocnt")
+        with pytest.raises(InputError, match="units lj, use preset custom"):
+            style.pack({}, {1: style.parse_coeff(words.split(), {})}, 1, units.get("lj"))
 
 
 def test_outside_the_domain_is_reported_with_ids():

@@ -111,4 +111,7 @@ def unknown(category: str, name: str) -> InputError:
         if name in COMMANDS:
             return InputError(f"command {name} of LAMMPS is not supported yet: remove it, or run this script with LAMMPS")
         return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
+    if category in FORCE_FIELD:
+        from asemd import style
+        return style.unknown(category, name)
     return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import asemd
+from asemd import style
 from asemd.errors import InputError, nearest
 from asemd.lammps import catalog
 from asemd.text_table import Table
@@ -36,7 +37,7 @@ PARTIAL = {
     ("fix", "langevin"): "no gjf, omega, angmom",
 }
 # names that are read but do nothing useful yet
-REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify"}
+REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify", **style.REFUSED}
 
 
 @dataclass(frozen=True)
