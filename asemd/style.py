@@ -56,8 +56,8 @@ ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
 _FINITE = "acts on particles of finite size with an orientation and torques, which asemd does not have yet: run this script with LAMMPS"
 # (category, name) -> why a style of LAMMPS is refused
 REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
-    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of their bonds, which asemd does not have yet: run this script "
-                            "with LAMMPS"}
+    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script with "
+                            "LAMMPS"}
 _registry: dict[tuple[str, str], Style] = {}
 
 
@@ -236,7 +236,7 @@ class Style:
         return Packed(out)
 
     def bind(self, settings: Mapping[str, Any], coeffs: Mapping[int, Mapping[str, Any]], compat: str = "") -> Style:
-        """The style whose kernel is made for these coefficients: this one, unless it depends on them or `compat` asks for LAMMPS's forces."""
+        """The style whose kernel is made for these coefficients; another one if it depends on them or `compat` asks for LAMMPS's forces."""
         if compat == "lammps" and self.lammps:
             twin = copy.copy(self)
             twin.function = self.lammps

@@ -15,6 +15,7 @@ import pytest
 from asemd import style as registry
 from asemd import units
 from asemd.bonded_table import periodic_spline, spline_slope
+from asemd.cross_terms import CrossTermStyle
 from asemd.errors import InputError
 from asemd.kernels import bonded, image
 from asemd.kernels.state import cell_arrays
@@ -27,6 +28,10 @@ STYLES = [(c, n) for c in ATOMS for n in registry.names(c)]
 FORCES = [(c, n) for c, n in STYLES if registry.find(c, n).function]
 LINES = {        # more coefficients than the example, for the comparison with LAMMPS
     ("bond", "fene"): ["30 2.5 1.0 1.0"],
+    ("angle", "spica"): ["75 100 0"], ("angle", "sdk"): ["75 100 lj9_6 0.0 3.0"],
+    ("angle", "cosine/periodic"): ["75 1 1", "75 -1 2", "75 1 4", "75 -1 5", "75 1 6", "75 2 3"],
+    ("angle", "cosine/shift/exp"): ["10 45 -3", "10 45 0", "10 45 30"], ("angle", "cosine/squared/restricted"): ["75 0", "75 180"],
+    ("angle", "fourier/simple"): ["100 1 1", "100 0.5 2.5", "100 -1 4"], ("angle", "gaussian"): ["300 1 0.1 0.4 110"],
     ("dihedral", "harmonic"): ["80 -1 2", "80 1 0", "80 -1 0", "2.5 1 5"],
     ("dihedral", "charmm"): ["1.2 3 37 0", "0.7 1 180 0", "3.0 6 0 0"],
     ("improper", "cvff"): ["80 1 3", "80 1 0", "80 -1 5", "7 1 6"],
@@ -137,8 +142,11 @@ def scene(style, settings: str, words: str, x: np.ndarray, folder: Path, number:
     lines += ["", f"{c.capitalize()}s", ""] + [f"{m + 1} 1 " + " ".join(str(m * k + a + 1) for a in range(k)) for m in range(n // k)]
     path = folder / f"data.{number}"
     path.write_text("\n".join(lines) + "\n")
+    coeffs = [f"{c}_coeff 1 {words}"]
+    if isinstance(style, CrossTermStyle):
+        coeffs = [f"{c}_coeff 1 {' '.join(line)}" for line in style.coeff_lines(style.parse_coeff(words.split(), {}))]
     return [f"units {units_of(style).name}", "atom_style full", "pair_style zero 8.0", "special_bonds lj/coul 0 1 1",
-            f"{c}_style {style.name} {settings}", f"read_data {path}", "pair_coeff * *", f"{c}_coeff 1 {words}", "compute w all pressure NULL virial",
+            f"{c}_style {style.name} {settings}", f"read_data {path}", "pair_coeff * *", *coeffs, "compute w all pressure NULL virial",
             "thermo_style custom step pe vol c_w[1]", "thermo_modify norm no", "run 0 post no"]
 
 
@@ -148,8 +156,8 @@ def test_agrees_with_lammps(tmp_path):
     for category, name in FORCES:
         style = registry.find(category, name)
         lines = [style.example, *LINES.get((category, name), [])]
-        if (category, name) == ("dihedral", "charmm"):
-            lines = lines[1:]                                        # its weight asks for a pair style that knows it
+        if (category, name) == ("dihedral", "charmm") or getattr(style, "repulsion", ""):
+            lines = lines[1:]                                        # these ask for a pair style that knows them
         tables = [""] if style.settings_example == "" else ["spline 100", "linear 100", "spline 12", "linear 11"]
         if "KEYWORD" in style.example:
             lines = [" ".join(styles.example_words(style, str(tmp_path)))]
@@ -158,6 +166,7 @@ def test_agrees_with_lammps(tmp_path):
                 s = styles.sample(style, seed=len(todo))
                 values = style.parse_settings(settings.split())
                 s.packed = style.pack(values, {1: style.parse_coeff(words.split(), values)}, 1, units_of(style))
+                s.style = style.bind(values, {1: style.parse_coeff(words.split(), values)}, "lammps")
                 todo.append((f"{category} {name} {settings} {words}", s))
                 jobs.append(scene(style, settings, words, s.x, tmp_path, len(jobs)))
     for (title, s), want in zip(todo, lammps_answers(jobs, tmp_path)):
@@ -184,7 +193,7 @@ def test_agrees_with_lammps(tmp_path):
     ("bond", "harmonic/shift", "10 1.5 1.5", "different"), ("bond", "harmonic/shift/cut", "10 1.5 1.5", "different"),
     ("bond", "fene/nm", "30 1.5 1 1 9 9", "n and m"), ("bond", "fene/nm", "30 1.5 1 1 9", "needs K R0 E0 r0 n m"),
     ("bond", "class2", "1.1 300 -500", "needs r0 K2 K3 K4"),
-    ("bond", "mesocnt", "", "preset"), ("bond", "mesocnt", "c 1 1 1", "did you mean C"), ("bond", "mesocnt", "C 1.5 1 1", "whole number"),
+    ("bond", "mesocnt", "", "preset"), ("bond", "mesocnt", "c 1 1 1", "got 'c'"), ("bond", "mesocnt", "C 1.5 1 1", "whole number"),
     ("bond", "mesocnt", "C 10 10 0", "r0 must be > 0"), ("bond", "mesocnt", "custom 10", "needs K r0"),
     ("angle", "mesocnt", "", "mode"), ("angle", "mesocnt", "bend C", "mode"), ("angle", "mesocnt", "harmonic D", "preset"),
     ("angle", "mesocnt", "harmonic custom 3 4", "needs K_H, got"), ("angle", "mesocnt", "buckling custom 3 4", "needs K_H K_B theta_B"),
@@ -262,7 +271,8 @@ def test_outside_the_domain_is_reported_with_ids():
 def test_types_outside_a_table(tmp_path):
     style = registry.find("bond", "table")
     settings = style.parse_settings(["spline", "50"])
-    s = styles.Sample(style, style.pack(settings, {1: style.parse_coeff(styles.example_words(style, str(tmp_path)), settings)}, 1, units.get("lj")))
+    coeff = style.parse_coeff(styles.example_words(style, str(tmp_path)), settings)
+    s = styles.Sample(style, style.pack(settings, {1: coeff}, 1, units.get("lj")))
     for r, bad in ((0.2, 0), (0.19999, 1), (3.0, 0), (3.00001, 1)):
         assert s.run(np.array([[0.0, r], [0.0, 0.0], [0.0, 0.0]])).bad[0] == bad
 
