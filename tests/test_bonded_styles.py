@@ -30,7 +30,7 @@ LINES = {        # more coefficients than the example, for the comparison with L
     ("bond", "fene"): ["30 2.5 1.0 1.0"],
     ("angle", "spica"): ["75 100 0"], ("angle", "sdk"): ["75 100 lj9_6 0.0 3.0"],
     ("angle", "cosine/periodic"): ["75 1 1", "75 -1 2", "75 1 4", "75 -1 5", "75 1 6", "75 2 3"],
-    ("angle", "cosine/shift/exp"): ["10 45 -3", "10 45 0", "10 45 30"], ("angle", "cosine/squared/restricted"): ["75 0", "75 180"],
+    ("angle", "cosine/shift/exp"): ["10 45 -3", "10 45 0", "10 45 30", "10 45 9e-4", "10 45 -9e-4", "10 45 1e-3"], ("angle", "cosine/squared/restricted"): ["75 0", "75 180"],
     ("angle", "fourier/simple"): ["100 1 1", "100 0.5 2.5", "100 -1 4"], ("angle", "gaussian"): ["300 1 0.1 0.4 110"],
     ("dihedral", "harmonic"): ["80 -1 2", "80 1 0", "80 -1 0", "2.5 1 5"],
     ("dihedral", "charmm"): ["1.2 3 37 0", "0.7 1 180 0", "3.0 6 0 0"],

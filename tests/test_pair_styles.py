@@ -60,6 +60,10 @@ def exact(name: str, r):
         return QQ / r
     if name == "lj/cut/coul/cut":
         return (4 * m.mpf(0.1) * ((3 / r)**12 - (3 / r)**6) if r < 7 else 0) + (QQ / r if r < 9 else 0)
+    if name == "buck":
+        return 100 * m.exp(-r / m.mpf(0.3)) - 20 / r**6
+    if name in ("lj/spica", "lj/sdk"):
+        return m.mpf(27) / 4 * m.mpf(0.1) * ((3 / r)**9 - (3 / r)**6)
     if name == "morse":
         return m.exp(-4 * (r - m.mpf(1.2))) - 2 * m.exp(-2 * (r - m.mpf(1.2)))
     if name == "soft":
@@ -100,7 +104,8 @@ def test_zero_beyond_cutoff_and_text(name):
             s.parse_coeff(wrong, settings)
     with pytest.raises(InputError, match="pair_style"):
         s.parse_settings([])
-    assert module_of("pair", name).rpartition(".")[2] in s.parts[0].function.__module__ + s.functions()[0].__module__ or len(s.parts) > 1
+    home = s.parts[0].function.__module__ + s.functions()[0].__module__
+    assert module_of("pair", name).rpartition(".")[2] in home or len(s.parts) > 1 or name == "lj/sdk"
 
 
 def test_huge_and_tiny_distances():
@@ -163,6 +168,29 @@ def test_mixing_rules():
         setup("morse", "2.5", {(1, 1): "1 1 1", (2, 2): "1 1 1"})
 
 
+def test_tail_of_buck():
+    c, cut = {"A": 170.0, "rho": 0.31, "C": 29.0}, 2.9
+    with mpmath.workdps(25):
+        a, rho, big = (mpmath.mpf(c[n]) for n in ("A", "rho", "C"))
+        ends = [mpmath.mpf(cut), 10, 30, mpmath.inf]
+        e = 2 * mpmath.pi * mpmath.quad(lambda r: r**2 * (a * mpmath.exp(-r / rho) - big / r**6), ends)
+        p = -2 * mpmath.pi / 3 * mpmath.quad(lambda r: r**3 * (-a / rho * mpmath.exp(-r / rho) + 6 * big / r**7), ends)
+    assert style.find("pair", "buck").tail(c, cut) == pytest.approx((float(e), float(p)), rel=1e-12)
+
+
+@pytest.mark.parametrize("word, n, m", [("lj9_6", 9, 6), ("lj12_4", 12, 4), ("lj12_5", 12, 5), ("lj12_6", 12, 6)])
+def test_spica_minimum_and_repulsion(word, n, m):
+    s, tables, filled = setup("lj/spica", "9", {(1, 1): f"{word} 0.2 3.0"}, ntypes=1)
+    lowest = 3.0 * (n / m) ** (1 / (n - m))
+    assert energy_force(s, tables, lowest) == pytest.approx((-0.2, 0.0), abs=1e-14)
+    rows = s.repulsion(filled, 1).rows[:, 1, 1]
+    assert rows[0] == pytest.approx(lowest**2, rel=1e-15) and rows[1] == pytest.approx(-0.2, rel=1e-14)
+    e, slope = s.repulsion_parts[0].function(2.5**2, *rows[2:])
+    assert (e, slope * -5.0) == pytest.approx(energy_force(s, tables, 2.5), rel=1e-15)
+    with pytest.raises(InputError, match="unknown type 'lj9_7'"):
+        s.parse_coeff(["lj9_7", "1", "1"], {})
+
+
 @pytest.mark.parametrize("name", ["lj/cut", "lj96/cut", "lj/cut/coul/cut"])
 def test_tail_is_the_integral_beyond_the_cutoff(name):
     s = style.find("pair", name)
@@ -210,7 +238,9 @@ CASES = [  # style, settings, coefficients of 1-1 and 2-2 (morse: of 1-2), farth
     ("lj/cut", "10.0", "0.1 3.0", "0.25 2.1 8.0", 9.9), ("lj96/cut", "10.0", "0.1 3.0", "0.25 2.1 8.0", 9.9),
     ("lj/cut/coul/cut", "8.0 10.0", "0.1 3.0 7.0", "0.25 2.1 6.0 9.0", 9.9), ("coul/cut", "10.0", "", "9.0", 9.9),
     ("soft", "10.0", "10.0", "30.0 9.0", 9.5), ("lj/charmm/coul/charmm", "8.0 10.0 7.0 9.0", "0.1 3.0 0.2 2.0", "0.25 2.1", 9.9),
-    ("morse", "10.0", "10.0 0.9 2.5 8.0", None, 7.9),
+    ("morse", "10.0", "10.0 0.9 2.5 8.0", None, 7.9), ("buck", "10.0", "17000.0 0.25 30.0 8.0", None, 7.9),
+    ("lj/spica", "10.0", "lj9_6 0.1 3.0", None, 9.9), ("lj/spica", "10.0", "lj12_4 0.1 3.0 8.0", None, 7.9),
+    ("lj/sdk", "10.0", "lj12_5 0.1 3.0", None, 9.9), ("lj/sdk", "10.0", "lj12_6 0.1 -3.0", None, 9.9),
 ]
 RULES = ("geometric", "arithmetic", "sixthpower")
 

@@ -1,6 +1,7 @@
 r"""$$E = -U_{min} \frac{e^{-a U} - 1}{e^a - 1}, \quad U = -\tfrac{1}{2} [1 + \cos(\theta - \theta_0)]$$
 
 Bounded between -Umin, at theta0, and zero; a sets the stiffness at theta0, and a = 0 is cosine/shift.
+As in LAMMPS the formula is expanded to first order in a where |a| < 0.001.
 Source: LAMMPS manual, angle_style cosine/shift/exp.
 """
 from __future__ import annotations
@@ -15,8 +16,8 @@ def cosine_shift_exp(theta, Umin: "energy", theta0: "angle", a):
     d = theta - theta0
     c, s = math.cos(0.5 * d), math.sin(0.5 * d)
     half = 0.5 * Umin * math.sin(d)
-    if a == 0.0:
-        return -Umin * c * c, half
+    if abs(a) < 0.001:       # LAMMPS's expansion, to first order in a
+        return -Umin * c * c * (1.0 - 0.5 * a * s * s), half * (1.0 + a * (c * c - 0.5))
     if a > 0.0:        # numerator and denominator times exp(-a): no overflow
         x = math.exp(-a * s * s)
         return -Umin * x * math.expm1(-a * c * c) / math.expm1(-a), -half * a * x / math.expm1(-a)
