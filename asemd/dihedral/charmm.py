@@ -9,20 +9,26 @@ from __future__ import annotations
 import math
 
 from asemd.errors import InputError
-from asemd.style import Parameter, dihedral
+from asemd.style import Parameter, Style, dihedral
 
 
-def check(coeff, settings):
-    if coeff["n"] < 0:
-        raise InputError(f"dihedral_coeff charmm: incorrect multiplicity, n must be 0 or more, got {coeff['n']}")
-    if not 0.0 <= coeff["w"] <= 1.0:
-        raise InputError(f"dihedral_coeff charmm: incorrect weight, w must be between 0 and 1, got {coeff['w']:g}")
+class Charmm(Style):
+    """Refuses multiplicities and weights out of range; `one_four` is the method of the pair style that makes the tables of 1-4 pairs."""
+
+    one_four = "one_four"
+
+    def check(self, coeff, settings):
+        command = f"dihedral_coeff {self.name}"
+        if coeff["n"] < 0:
+            raise InputError(f"{command}: incorrect multiplicity, n must be 0 or more, got {coeff['n']}")
+        if not 0.0 <= coeff["w"] <= 1.0:
+            raise InputError(f"{command}: incorrect weight, w must be between 0 and 1, got {coeff['w']:g}")
 
 
 COEFF = (Parameter("K", "energy"), Parameter("n", "integer"), Parameter("d", "integer"), Parameter("w"))
 
 
-@dihedral("charmm", example="1.2 3 180 0.5", coeff=COEFF, check=check, weight_14="w")
+@dihedral("charmm", example="1.2 3 180 0.5", cls=Charmm, coeff=COEFF, weight_14="w")
 def charmm(phi, K: "energy", n: "integer", d: "integer"):
     a = n * phi - math.radians(d)
     c = math.cos(0.5 * a)

@@ -30,11 +30,16 @@ def class2(phi, r12, r23, r34, theta1, theta2, K1: "energy", phi1: "angle", K2: 
            C1: "energy/distance", C2: "energy/distance", C3: "energy/distance", ebt_r1: "distance", ebt_r3: "distance",
            D1: "energy", D2: "energy", D3: "energy", E1: "energy", E2: "energy", E3: "energy", at_theta1: "angle", at_theta2: "angle",
            M: "energy", aat_theta1: "angle", aat_theta2: "angle", N: "energy/distance^2", bb13_r1: "distance", bb13_r3: "distance"):
-    c1, c2, c3 = math.cos(phi), math.cos(2.0 * phi), math.cos(3.0 * phi)
-    s1, s2, s3 = math.sin(phi), 2.0 * math.sin(2.0 * phi), 3.0 * math.sin(3.0 * phi)
+    # beyond 90 degrees the angle counts from trans, so that terms whose forces cancel in a planar molecule do so to the last digit
+    x, sign = phi, 1.0
+    if abs(phi) > 0.5 * math.pi:
+        x, sign = phi - math.copysign(math.pi, phi), -1.0
+    c1, s1 = sign * math.cos(x), sign * math.sin(x)
+    c2, c3 = (c1 - s1) * (c1 + s1), c1 * (1.0 - 4.0 * s1 * s1)
+    s2, s3 = 4.0 * s1 * c1, 3.0 * s1 * (2.0 * c1 - 1.0) * (2.0 * c1 + 1.0)        # minus the derivatives of c2 and c3
     h1, h2, h3 = math.sin(0.5 * (phi - phi1)), math.sin(phi - 0.5 * phi2), math.sin(0.5 * (3.0 * phi - phi3))
     e = 2.0 * (K1 * h1 * h1 + K2 * h2 * h2 + K3 * h3 * h3)
-    slope = K1 * math.sin(phi - phi1) + 2.0 * K2 * math.sin(2.0 * phi - phi2) + 3.0 * K3 * math.sin(3.0 * phi - phi3)
+    slope = sign * K1 * math.sin(x - phi1) + 2.0 * K2 * math.sin(2.0 * x - phi2) + sign * 3.0 * K3 * math.sin(3.0 * x - phi3)
     # of each cosine series its value is the slope by the length or angle it multiplies
     middle, end1, end3 = A1 * c1 + A2 * c2 + A3 * c3, B1 * c1 + B2 * c2 + B3 * c3, C1 * c1 + C2 * c2 + C3 * c3
     bend1, bend2 = D1 * c1 + D2 * c2 + D3 * c3, E1 * c1 + E2 * c2 + E3 * c3

@@ -22,11 +22,20 @@ TERM = (Parameter("K", "energy"), Parameter("n", "integer"), Parameter("d", "ang
 
 @dihedral("fourier", cls=SeriesStyle, count="m", term=TERM, check=check, example="3 -0.846200 3 0.0 7.578800 1 0 0.138000 2 -180.0")
 def fourier(phi, first, count, terms: "array"):
+    # beyond 90 degrees the angle counts from trans, so that terms whose forces cancel in a planar molecule do so to the last digit
+    x, flipped = phi, 0.0
+    if abs(phi) > 0.5 * math.pi:
+        x, flipped = phi - math.copysign(math.pi, phi), 1.0
     e = slope = 0.0
     for k in range(int(first), int(first) + int(count)):
         K, n = terms[k, 0], terms[k, 1]
-        a = n * phi - terms[k, 2]
-        c = math.cos(0.5 * a)         # 1 + cos(a) = 2 cos^2(a/2)
-        e += 2.0 * K * c * c
-        slope -= K * n * math.sin(a)
+        a = n * x - terms[k, 2]
+        if flipped * n % 2.0 == 1.0:  # 1 - cos(a) = 2 sin^2(a/2)
+            s = math.sin(0.5 * a)
+            e += 2.0 * K * s * s
+            slope += K * n * math.sin(a)
+        else:                         # 1 + cos(a) = 2 cos^2(a/2)
+            c = math.cos(0.5 * a)
+            e += 2.0 * K * c * c
+            slope -= K * n * math.sin(a)
     return e, slope

@@ -15,5 +15,6 @@ def helix(phi, A: "energy", B: "energy", C: "energy"):
     s = math.sin(0.5 * phi)           # 1 - cos(x) = 2 sin^2(x/2), 1 + cos(x) = 2 cos^2(x/2)
     c3 = math.cos(1.5 * phi)
     c = math.cos(0.5 * phi + 0.125 * math.pi)
-    slope = A * math.sin(phi) - 3.0 * B * math.sin(3.0 * phi) - C * math.sin(phi + 0.25 * math.pi)
+    t = 2.0 * math.cos(phi)
+    slope = math.sin(phi) * (A - 3.0 * B * (t - 1.0) * (t + 1.0)) - C * math.sin(phi + 0.25 * math.pi)
     return 2.0 * (A * s * s + B * c3 * c3 + C * c * c), slope

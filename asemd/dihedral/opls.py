@@ -12,9 +12,9 @@ from asemd.style import dihedral
 
 @dihedral("opls", example="1.740 -0.157 0.279 0.900")
 def opls(phi, K1: "energy", K2: "energy", K3: "energy", K4: "energy"):
-    c1 = math.cos(0.5 * phi)          # (1 + cos(x)) / 2 = cos^2(x/2), (1 - cos(x)) / 2 = sin^2(x/2)
-    s2 = math.sin(phi)
-    c3 = math.cos(1.5 * phi)
-    s4 = math.sin(2.0 * phi)
-    slope = -0.5 * K1 * s2 + K2 * s4 - 1.5 * K3 * math.sin(3.0 * phi) + 2.0 * K4 * math.sin(4.0 * phi)
-    return K1 * c1 * c1 + K2 * s2 * s2 + K3 * c3 * c3 + K4 * s4 * s4, slope
+    # (1 + cos(x)) / 2 = cos^2(x/2), (1 - cos(x)) / 2 = sin^2(x/2); the forces of all terms have the factor sin(phi)
+    h, c, s = math.cos(0.5 * phi), math.cos(phi), math.sin(phi)
+    h3 = h * (2.0 * c - 1.0)
+    s4 = 2.0 * s * c
+    slope = s * (-0.5 * K1 + 2.0 * K2 * c - 1.5 * K3 * (2.0 * c - 1.0) * (2.0 * c + 1.0) + 8.0 * K4 * c * (c - s) * (c + s))
+    return K1 * h * h + K2 * s * s + K3 * h3 * h3 + K4 * s4 * s4, slope
