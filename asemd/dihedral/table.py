@@ -73,11 +73,12 @@ class DihedralTable(TableStyle):
         if settings["style"] == "spline":
             second = periodic_spline(x, e, TURN)
             nodes[:n, 0] = spline_value(ring, e[wide], second[wide], at)
+            nodes[:n, 2] = periodic_spline(at, nodes[:n, 0], TURN)
             if f is None:
-                nodes[:n, 1] = -spline_slope(ring, e[wide], second[wide], at)
+                whole = np.append(at, TURN)
+                nodes[:n, 1] = -spline_slope(whole, np.append(nodes[:n, 0], nodes[0, 0]), np.append(nodes[:n, 2], nodes[0, 2]), at)
             else:
                 nodes[:n, 1] = spline_value(ring, f[wide], periodic_spline(x, f, TURN)[wide], at)
-            nodes[:n, 2] = periodic_spline(at, nodes[:n, 0], TURN)
             nodes[:n, 3] = periodic_spline(at, nodes[:n, 1], TURN)
         else:
             nodes[:n, 0] = np.interp(at, ring, e[wide])

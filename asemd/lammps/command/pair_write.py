@@ -1,0 +1,75 @@
+"""``pair_write itype jtype N r|rsq|bitmap inner outer file keyword [qi qj]``: a pair potential as a section of a table file."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd import units as unit_styles
+from asemd.errors import InputError
+from asemd.lammps.table_write import append, one_type
+from asemd.pair.table import Grid
+from asemd.words import choice, number, whole
+
+
+def squares(style: str, n: int, inner: float, outer: float) -> np.ndarray:
+    """Squared distances in the order of the file."""
+    i = np.arange(n)
+    if style == "r":
+        return np.square(inner + (outer - inner) * i / (n - 1))
+    if style == "rsq":
+        return inner * inner + (outer * outer - inner * inner) * i / (n - 1)
+    grid = Grid(inner, outer, n, "pair_write")
+    out = np.empty(len(grid.r2))
+    out[grid.line] = grid.r2
+    return out
+
+
+def pair_value(terms, i: int, j: int, r2: float, qq: float) -> tuple[float, float]:
+    """Energy and force of two atoms of types i and j, without special factors."""
+    energy = force = 0.0
+    r = math.sqrt(r2)
+    for term in terms:
+        row = constant = array = 0
+        for part in term.style.parts:
+            cut2, offset, *values = term.tables.rows[row:row + 2 + len(part.rows), i, j].tolist()
+            values += term.tables.constants[constant:constant + len(part.constants)].tolist()
+            values += term.tables.arrays[array:array + len(part.arrays)]
+            row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
+            if r2 < cut2:
+                e, slope = part.function(r2 if part.coordinate == "r2" else r, *[qq] * part.charged, *values)
+                energy += e - offset
+                force -= 2.0 * r * slope if part.coordinate == "r2" else slope
+    return energy, force
+
+
+def run(session, args):
+    what = "pair_write"
+    if len(args) not in (8, 10):
+        raise InputError(f"{what} needs itype jtype N style inner outer file keyword, and two charges or none, got {len(args)} values")
+    scene, system = session.scene, session.scene.need_system(what)
+    i, j = (one_type(session, "pair", w, what) for w in args[:2])
+    n = whole(args[2], f"{what}: N")
+    style = choice(args[3], ("r", "rsq", "bitmap"), f"{what}: style")
+    inner, outer = (number(w, f"{what}: inner and outer") for w in args[4:6])
+    path, keyword = args[6:8]
+    qi, qj = (number(w, f"{what}: charge") for w in args[8:]) if len(args) > 8 else (1.0, 1.0)
+    if n < 2:
+        raise InputError(f"{what}: there must be at least 2 table values, got {n}")
+    if not 0.0 < inner < outer:
+        raise InputError(f"{what}: inner must be above 0 and outer above inner, got {inner:g} {outer:g}")
+    if not scene.interactions.uses["pair"]:
+        raise InputError(f"{what} command before pair_style is defined")
+    units = unit_styles.get(system.units)
+    terms = scene.interactions.pair_terms(system.counts["ntypes"], units)
+    qq = units.qqr2e / scene.interactions.dielectric * qi * qj
+    r2 = squares(style, n, inner, outer)
+    values = np.array([pair_value(terms, i, j, s, qq) for s in r2.tolist()])
+    r = np.sqrt(r2)
+    bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
+    if len(bad):
+        raise InputError(f"{what}: energy or force at {r[bad[0]]:g} is not finite")
+    head = {"r": f"N {n} R", "rsq": f"N {n} RSQ", "bitmap": f"N {len(r)} BITMAP"}[style] + f" {inner:.15g} {outer:.15g}"
+    name = scene.interactions.style_name("pair")
+    append(session, what, path, f"Pair potential {name} for atom types {i} {j}: i,r,energy,force", keyword, head,
+           (r, values[:, 0], values[:, 1]))
