@@ -79,6 +79,9 @@ class Moment:
     def per_atom(self, id: str) -> np.ndarray:
         return self._get("per_atom", id)
 
+    def local(self, id: str) -> np.ndarray:
+        return self._get("local", id)
+
     def forget(self) -> None:
         """Computes are evaluated again when they are asked for next."""
         self._cache.clear()

@@ -54,6 +54,14 @@ class Compute:
         """(n,) or (n, k), by atom row; zero outside the group."""
         raise InputError(f"compute {self.id} (style {self.style}) has no per-atom values")
 
+    def local(self, state) -> np.ndarray:
+        """(m,) or (m, k): a row for each bond, angle, pair ..."""
+        raise InputError(f"compute {self.id} (style {self.style}) has no local values")
+
+    def local_columns(self) -> int | None:
+        """How many columns `local` has, 0 if it is a vector; None if there are no local values."""
+        return None
+
     def modify(self, words: list[str], session) -> None:
         """``compute_modify`` words."""
         raise InputError(f"compute_modify: compute {self.id} (style {self.style}) does not take {words[0]!r}")

@@ -44,6 +44,7 @@ class Dump:
 
     style: ClassVar[str] = ""
     id: str = ""
+    label: str = "ATOMS"        # what the header calls the lines
 
     def __init__(self, group: str, every: int, path: str, columns: list[str], *, variables=None, regions=None):
         if every <= 0:
@@ -86,9 +87,13 @@ class Dump:
         return {**self.__dict__, "_file": None, "variables": None}
 
     # ---- what is written
+    def kind(self, name: str) -> str:
+        """Whether a column is ``integer``, ``float`` or ``string``."""
+        return kind_of(name)
+
     def _check(self, name: str) -> None:
         """Refuse columns that do not exist."""
-        kind_of(name)
+        self.kind(name)
         if name[:2] in ("c_", "f_", "v_"):
             if self.variables is None:
                 raise InputError(f"dump {self.style}: column {name} needs a session")
@@ -137,7 +142,7 @@ class Dump:
         """The format of one line, with its newline."""
         if self.line and not self.formats:
             return self.line + "\n"
-        kinds, words = [kind_of(c) for c in self.columns], self.line.split()
+        kinds, words = [self.kind(c) for c in self.columns], self.line.split()
         base = words if len(words) == len(kinds) else [DEFAULT[k] for k in kinds]
         return " ".join(self.formats.get(n, self.formats.get(k, b)) for n, (k, b) in enumerate(zip(kinds, base), 1)) + "\n"
 
@@ -162,8 +167,9 @@ class Dump:
         if self.time:
             text += f"ITEM: TIME\n{step * snapshot.dt:.16g}\n"
         names = " ".join(self.names.get(k, c) for k, c in enumerate(self.columns, 1))
-        return (f"{text}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS {word}{' '.join(box.boundary)}\n"
-                + "".join(" ".join(f"{v:.16e}" for v in row) + "\n" for row in bounds) + f"ITEM: ATOMS {names}\n")
+        label = self.label
+        return (f"{text}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF {label}\n{n}\nITEM: BOX BOUNDS {word}{' '.join(box.boundary)}\n"
+                + "".join(" ".join(f"{v:.16e}" for v in row) + "\n" for row in bounds) + f"ITEM: {label} {names}\n")
 
     def write(self, snapshot, step: int) -> None:
         """Write one snapshot.
@@ -236,8 +242,9 @@ class Dump:
                 count = 1
             values = take(words[1:], count, what)
             words = words[1 + count:]
-            if key in _SPECIAL:
-                getattr(self, "_modify_" + key)(values, what, session)
+            special = getattr(self, "_modify_" + key, None)
+            if special is not None:
+                special(values, what, session)
             else:
                 self._modify_flag(values, what, key)
 
@@ -283,7 +290,7 @@ class Dump:
         if "%" in CONVERSION.sub("", text):
             raise InputError(f"{what}: {text!r} is not a C format of numbers and strings")
         if which == "line":
-            kinds = [kind_of(c) for c in self.columns]
+            kinds = [self.kind(c) for c in self.columns]
             if len(found) < len(kinds):
                 raise InputError(f"{what} line: {len(found)} formats for {len(kinds)} columns: {text!r}")
             if len(found) > len(kinds) or any(not _fits(c, k) for c, k in zip(found, kinds)):
@@ -294,7 +301,7 @@ class Dump:
             kind = key = {"int": "integer", "float": "float"}[which]
         else:
             key = self.columns.index(which) + 1 if which in self.columns else self._column(whole(which, what), what)
-            kind = kind_of(self.columns[key - 1])
+            kind = self.kind(self.columns[key - 1])
         if len(found) != 1 or not _fits(found[0], kind):
             raise InputError(f"{what} {which}: {text!r} is not a format for one {kind} value")
         self.formats[key] = text
@@ -311,7 +318,7 @@ class Dump:
     def _modify_sort(self, values, what, session):
         if values[0] not in ("off", "id"):
             column = self._column(whole(values[0], what), what)
-            if kind_of(self.columns[abs(column) - 1]) == "string":
+            if self.kind(self.columns[abs(column) - 1]) == "string":
                 raise InputError(f"{what}: column {abs(column)} ({self.columns[abs(column) - 1]}) is not a number")
         self.sort = values[0]
 
@@ -321,7 +328,7 @@ class Dump:
             return
         name, relation, limit = values
         self._check(name)
-        if kind_of(name) == "string" or relation not in OPERATORS:
+        if self.kind(name) == "string" or relation not in OPERATORS:
             raise InputError(f"{what}: expected attribute, one of {' '.join(OPERATORS)} and a number, got {' '.join(values)}")
         self.thresholds.append((name, relation, number(limit, what)))
 
@@ -330,9 +337,6 @@ class Dump:
             raise InputError(f"{what}: expected labels or numeric, got {values[0]!r}")
         swap = {"type": "typelabel"} if values[0] == "labels" else {"typelabel": "type"}
         self.columns = [swap.get(c, c) for c in self.columns]
-
-
-_SPECIAL = {n.removeprefix("_modify_") for n in vars(Dump) if n.startswith("_modify_")} - {"flag"}
 
 
 def _fits(conversion: str, kind: str) -> bool:

@@ -205,12 +205,10 @@ class Lammps(AtomArrays):
     # ------------------------------------------------- computes, fixes, variables ---
 
     def extract_compute(self, cid: str, cstyle: int, ctype: int):
-        """Value of a compute: float, or array; per-atom values in the session's order."""
+        """Value of a compute: float, or array; per-atom values in the session's order, local ones by their first atom."""
         moment = self.session.moment
         kinds = {LMP_TYPE_SCALAR: "scalar", LMP_TYPE_VECTOR: "vector", LMP_SIZE_VECTOR: "vector"}
-        kind = "per_atom" if cstyle == LMP_STYLE_ATOM else kinds.get(ctype, "array")
-        if cstyle == LMP_STYLE_LOCAL:
-            raise InputError(f"extract_compute: compute {cid} has no local values")
+        kind = {LMP_STYLE_ATOM: "per_atom", LMP_STYLE_LOCAL: "local"}.get(cstyle, kinds.get(ctype, "array"))
         value = getattr(moment, kind)(cid)
         if ctype == LMP_SIZE_VECTOR:
             return len(value)

@@ -62,6 +62,24 @@ class Providers:
         shown, width = f"{kind}_{id}{f'[{column}]' if column else ''}", values.shape[1] if values.ndim == 2 else "no"
         raise InputError(f"{shown}: the values per atom have {width} columns")
 
+    def local(self, kind: str, id: str, column: int | None) -> np.ndarray:
+        """Local values of a compute; `column` counts from 1, None for a vector."""
+        width = self.local_columns(kind, id)
+        if column is None and width:
+            raise InputError(f"{kind}_{id}: the local values have {width} columns, say which one: {kind}_{id}[1]")
+        if column is not None and not 1 <= column <= width:
+            raise InputError(f"{kind}_{id}[{column}]: the local values have {width or 'no'} columns")
+        values = np.asarray(self.session.moment.local(id))
+        return values if column is None else values[:, column - 1]
+
+    def local_columns(self, kind: str, id: str) -> int:
+        """See `asemd.compute.Compute.local_columns`."""
+        source = self.source(kind, id)
+        width = source.local_columns() if kind == "c" else None
+        if width is None:
+            raise InputError(f"{kind}_{id}: {'compute' if kind == 'c' else 'fix'} {id} (style {source.style}) has no local values")
+        return width
+
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray:
         source = self.source(kind, id)
         if kind == "f":

@@ -1,0 +1,71 @@
+"""Lengths, energies, forces and kinetic energies of single bonds, as local values.
+
+Keywords: dist dx dy dz (vector from atom 2 to atom 1), engpot force fx fy fz (force on atom 1; ``force`` is positive if they repel each
+other), engvib engrot engtrans (kinetic energy of vibration, rotation and translation of the two atoms), omega (angular velocity), velvib
+(velocity along the bond, positive if it grows), v_name with ``set dist variable``. Turned off bonds have energy and force 0.
+
+Source: LAMMPS manual, compute bond/local.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.compute._local import Geometry, Local
+from asemd.errors import InputError
+
+XYZ = {"x": 0, "y": 1, "z": 2}
+
+
+class Bonds:
+    """Columns from a `Geometry` of bonds."""
+
+    def __init__(self, geometry: Geometry):
+        self.g = geometry
+        self.d = geometry.between(0, 1)
+        self.dist = np.sqrt((self.d**2).sum(axis=1))
+        self.along = self.d / np.where(self.dist > 0.0, self.dist, 1.0)[:, None]
+
+    def force(self) -> np.ndarray:
+        """Force on atom 1, (m, 3)."""
+        return self.g.evaluated()[1][:, 0]
+
+    def motion(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Masses of the atoms (m, 2), velocity of their centre and of atom 1 against atom 2 (m, 3), its part along the bond (m,)."""
+        system = self.g.state.system
+        m, v = system.atom_masses()[self.g.atoms], system.v[self.g.atoms]
+        relative = v[:, 0] - v[:, 1]
+        centre = (m[:, :, None] * v).sum(axis=1) / m.sum(axis=1)[:, None]
+        return m, centre, relative, (relative * self.along).sum(axis=1)
+
+    def kinetic(self, which: str) -> np.ndarray:
+        m, centre, relative, along = self.motion()
+        half = 0.5 * self.g.state.units.mvv2e
+        if which == "engtrans":
+            return half * m.sum(axis=1) * (centre**2).sum(axis=1)
+        across = (np.cross(self.along, relative) ** 2).sum(axis=1)
+        return half * m.prod(axis=1) / m.sum(axis=1) * (along**2 if which == "engvib" else across)
+
+    def omega(self) -> np.ndarray:
+        across = np.sqrt((np.cross(self.along, self.motion()[2]) ** 2).sum(axis=1))
+        return across / np.where(self.dist > 0.0, self.dist, np.inf)
+
+
+class BondLocal(Local):
+    """Local values of bonds; arguments as in `asemd.compute._local.Local`."""
+
+    style, kind, given = "bond/local", "bond", "dist"
+    columns = {
+        "dist": lambda g: Bonds(g).dist,
+        **{f"d{a}": lambda g, k=k: Bonds(g).d[:, k] for a, k in XYZ.items()},
+        "engpot": Geometry.energy,
+        "force": lambda g: (Bonds(g).force() * Bonds(g).along).sum(axis=1),
+        **{f"f{a}": lambda g, k=k: Bonds(g).force()[:, k] for a, k in XYZ.items()},
+        **{name: lambda g, name=name: Bonds(g).kinetic(name) for name in ("engvib", "engrot", "engtrans")},
+        "omega": lambda g: Bonds(g).omega(),
+        "velvib": lambda g: Bonds(g).motion()[3],
+    }
+
+    def unknown(self, word):
+        if word[:1] == "b" and word[1:].isdigit():
+            return InputError(f"compute bond/local: no bond style here has extra quantities such as {word}")
+        return super().unknown(word)
