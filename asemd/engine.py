@@ -8,6 +8,7 @@ from numba import config
 
 from asemd import units as unit_styles
 from asemd.errors import LostAtoms, SimulationError
+from asemd.bond_term import HistoryTerm, bond_terms
 from asemd.exclusions import Exclusions
 from asemd.kernels.state import cell_arrays, empty_state
 from asemd.kernels.team import Team
@@ -63,6 +64,8 @@ class Engine:
         self.exclusions = Exclusions(system, inter, s.exclude, bool(self.pair_terms))
         self._choose_list()
         self.terms = self._make_terms()
+        self.bonds = [t for t in self.terms if isinstance(t, HistoryTerm)]
+        self._broken: list[np.ndarray] = []      # pairs of rows that the next list must not leave out any more
         self.changed = True      # loops look whether their kernels are still the right ones
         for k, t in enumerate(self.terms):
             t.index = k
@@ -105,7 +108,8 @@ class Engine:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special"))
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all"))
-        return terms + bonded_terms(self.system, self.interactions, self.pair_terms, self.units)
+        arguments = (self.system, self.interactions, self.pair_terms, self.units)
+        return terms + bonded_terms(*arguments) + bond_terms(*arguments)
 
     def _set_box(self) -> None:
         box = self.system.box
@@ -177,6 +181,10 @@ class Engine:
     def rebuild(self) -> None:
         """Wrap, sort, list: the slots keep their atoms' data but change order."""
         began = time.perf_counter()
+        self._carry_back()
+        if self._broken:
+            self.exclusions.release(np.concatenate(self._broken))
+            self._broken = []
         k, s = self.k, self.state
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
@@ -299,7 +307,7 @@ class Engine:
                 energy["evdwl"] += float(a[0])
                 energy["ecoul"] += float(a[1])
             else:
-                energy[BONDED_KEY[t.category]] += float(a[0])
+                energy[BONDED_KEY[t.category]] += float(a[0] + a[1])
             virial_of[t.category] = virial_of.get(t.category, 0.0) + a[2:8]
         virial = sum(virial_of.values(), np.zeros(6))
         if self.interactions.tail and self.pair_terms:
@@ -331,6 +339,19 @@ class Engine:
         """Slots back into the system: positions, velocities, forces."""
         s, y = self.state, self.system
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
+        self._carry_back()
+
+    def _carry_back(self) -> None:
+        """Bonds that broke are told to the topology."""
+        for t in self.bonds:
+            pairs = t.carry_back(self)
+            if len(pairs):
+                self._broken.append(pairs)
+
+    def hold(self, on: bool) -> None:
+        """See `asemd.bond_term.HistoryTerm.hold`."""
+        for t in self.bonds:
+            t.hold(on)
 
     def per_atom(self, result: Result) -> Result:
         """Add each atom's share of energy and virial to `result`; runs the per-atom kernels, once."""
@@ -338,6 +359,7 @@ class Engine:
         if self.mode == "cluster" and not self.expanded:
             self._mark(*self.list.expand(self.k, self.state, self.cutoff), self.list.shifts)
         keep = (self.acc.copy(), self.buffers.copy())
+        self.hold(True)
         self.atom_energy, self.atom_virial = np.zeros((self.threads, capacity)), np.zeros((self.threads, 6, capacity))
         rows, slots = self.state.row[:self.ns], np.flatnonzero(self.state.row[:self.ns] >= 0)
         for t in self.terms:
@@ -357,6 +379,7 @@ class Engine:
             v[rows[slots]] = self.atom_virial.sum(0)[:, slots].T
             result.energies_of[t.category] = result.energies_of.get(t.category, 0.0) + e
             result.virials_of[t.category] = result.virials_of.get(t.category, 0.0) + v
+        self.hold(False)
         self.acc[:], self.buffers[:] = keep
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
         self._arguments = None

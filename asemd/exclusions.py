@@ -22,11 +22,11 @@ class Exclusions:
 
     Attributes
     ----------
-    weight_lj, weight_coul : (4,) arrays
-        Factors of ordinary pairs (1) and of 1-2, 1-3, 1-4 partners.
+    weight_lj, weight_coul : (5,) arrays
+        Factors of ordinary pairs (1), of 1-2, 1-3, 1-4 partners, and of pairs whose interaction a bond replaces (0).
     partners : (start, partner, kind) or None
         For each atom row the rows whose factor is not 1, see `asemd.neighbor.partner_table`.
-    keep : (4,) bool
+    keep : (5,) bool
         Kinds that interact with a weight, not 0.
     weighted, weighted_kinds : (m, 2), (m,) int32 arrays
         The pairs of such kinds.
@@ -35,22 +35,36 @@ class Exclusions:
     """
 
     def __init__(self, system, interactions, exclude: list, pairs: bool):
-        self.weight_lj = np.array([1.0, *interactions.special_lj])
-        self.weight_coul = np.array([1.0, *interactions.special_coul])
+        self.weight_lj = np.array([1.0, *interactions.special_lj, 0.0])
+        self.weight_coul = np.array([1.0, *interactions.special_coul, 0.0])
         self.keep = np.array([True, *((self.weight_lj[1:] != 0.0) | (self.weight_coul[1:] != 0.0))])
         self.partners = None
         self.weighted, self.weighted_kinds = np.zeros((0, 2), np.int32), np.zeros(0, np.int32)
         if pairs and not system.topology.is_empty:
-            self._find_partners(system.n, *interactions.special_pairs(system))
+            special, kinds = interactions.special_pairs(system)
+            replaced = replaced_pairs(system, interactions)
+            if len(replaced):
+                other = ~np.isin(_keys(special), _keys(replaced))
+                special, kinds = np.concatenate([special[other], replaced]), np.append(kinds[other], np.full(len(replaced), 4))
+            self._find_partners(system.n, special, kinds)
         self._set_rules(system, [rule for rule in exclude if rule[0] != "type"])
 
     def _find_partners(self, n: int, pairs: np.ndarray, kinds: np.ndarray) -> None:
         changed = (self.weight_lj[kinds] != 1.0) | (self.weight_coul[kinds] != 1.0)
-        pairs, kinds = pairs[changed], kinds[changed].astype(np.int32)
-        if len(pairs):
+        self._set_partners(n, pairs[changed], kinds[changed].astype(np.int32))
+
+    def _set_partners(self, n: int, pairs: np.ndarray, kinds: np.ndarray) -> None:
+        self.n, self.pairs, self.kinds = n, pairs, kinds
+        if len(pairs) or self.partners is not None:
             self.partners = partner_table(n, pairs, kinds)
             kept = self.keep[kinds]
             self.weighted, self.weighted_kinds = np.ascontiguousarray(pairs[kept], np.int32), np.ascontiguousarray(kinds[kept])
+
+    def release(self, pairs: np.ndarray) -> None:
+        """Pairs of rows (m, 2) that interact like any other pair from the next list on: their bond broke."""
+        if self.partners is not None:
+            stay = ~np.isin(_keys(self.pairs), _keys(pairs))
+            self._set_partners(self.n, self.pairs[stay], self.kinds[stay])
 
     def _set_rules(self, system, rules: list) -> None:
         self.rules = np.zeros((len(rules), 3), np.int64)
@@ -76,3 +90,16 @@ class Exclusions:
             n = k.mark_special(x, row, i, j, code, n, shifts, *self.partners, self.keep, cell.reduced * periodic[:, None],
                                cell.reduced_inverse)
         return [i[:n], j[:n], code[:n]]
+
+
+def replaced_pairs(system, interactions) -> np.ndarray:
+    """Pairs of rows (m, 2) whose pair interaction a bond replaces until it breaks."""
+    bonds, types = system.topology.items("bond")
+    on = [t for use in interactions.uses["bond"] if use.style.breaks == "off" for t in use.coeff]
+    return bonds[np.isin(types, on)]
+
+
+def _keys(pairs: np.ndarray) -> np.ndarray:
+    """One number for each pair of rows, whatever their order."""
+    p = np.sort(np.asarray(pairs, np.int64), axis=1)
+    return (p[:, 0] << 31) + p[:, 1]

@@ -33,6 +33,8 @@ class Use:
         The style's name; in a hybrid with the same style twice with a number, ``lj/cut 1``.
     modify : dict
         What ``pair_modify pair LABEL ...`` set for this sub-style alone.
+    memory : dict
+        What a bond style remembers from run to run: reference lengths, broken bonds.
     """
 
     style: Style
@@ -40,6 +42,7 @@ class Use:
     coeff: dict[Any, dict[str, Any]] = field(default_factory=dict)
     label: str = ""
     modify: dict[str, Any] = field(default_factory=dict)
+    memory: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
 
 def _property(category: str) -> property:

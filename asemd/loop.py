@@ -105,7 +105,9 @@ class Loop:
         self._fix_data = ()
         self._with_lost(e.load)
         self.gone = {}
+        e.hold(True)
         e.forces(True)
+        e.hold(False)
         self._ago = 0
         self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
         self._make_module()

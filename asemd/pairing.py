@@ -142,6 +142,8 @@ def check_complete(interactions: Interactions, system) -> None:
                     if marks := use.style.missing(coeff):
                         raise InputError(f"All {category} coeffs are not set: {category}_coeff {t} of {category} style {use.style.name} "
                                          f"lacks {' and '.join(marks)}")
+        for use in uses:
+            use.style.check_scene(interactions, system)
     complete(interactions, system.counts["ntypes"])
     for use in interactions.uses["pair"]:
         if use.style.charged and system.q is None:

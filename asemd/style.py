@@ -10,7 +10,8 @@ A bonded style is a scalar function of internal coordinates and coefficients::
         return K * dr * dr, 2 * K * dr
 
 It returns the energy and then the derivative by each internal coordinate it names, in the order of its arguments. Coordinates by category:
-``r`` (bond); ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
+``r`` (bond; a style
+with a past also names ``rate``, dr/dt, and ``reference``, a length that each bond has for itself: they have no derivatives); ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
 trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); one of ``phi chi omega`` (improper). A style that has no such coordinate
 takes vectors instead, ``ax ay az bx by bz`` and for four atoms ``cx cy cz``: from the atom `centre` (1, 2, ...) to the others in their
 order; it returns the energy and the six or nine derivatives.
@@ -45,7 +46,7 @@ from asemd.errors import InputError, nearest
 
 VECTORS = ("ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz")
 COORDINATES = {
-    "bond": ("r",),
+    "bond": ("r", "rate", "reference"),
     "angle": ("theta", "r12", "r32", "r13", *VECTORS[:6]),
     "dihedral": ("phi", "r12", "r23", "r34", "theta1", "theta2", *VECTORS),
     "improper": ("phi", "chi", "omega", *VECTORS),
@@ -139,6 +140,13 @@ class Style:
         Name of the coefficient that scales the pair interaction of atoms 1 and 4 (dihedral charmm).
     centre : int
         The atom from which the vectors of a style of vectors start, counted from 1; by default 2 for angles and dihedrals, 1 for impropers.
+    breaks : str
+        What becomes of a bond for which the function returns ``math.nan``: ``off`` gives it type 0, and its pair interaction, which the bond
+        replaces, comes back at once; ``removed`` takes it out, and the pair is no longer a special one from the next step on.
+    remembers : str
+        Where ``reference`` comes from: ``atoms`` (positions at the start of the first run) or ``bonds`` (length at their first force).
+    pair_weights : (str, str)
+        Coefficients that weigh the Lennard-Jones and Coulomb part of the pair interaction, which is all the energy of the bond.
     lammps : callable, optional
         LAMMPS's forces where they are not minus the gradient of its energy: a function like `function`, for ``compat="lammps"``.
     """
@@ -146,11 +154,13 @@ class Style:
     def __init__(self, category: str, name: str, function: Callable | None, *, settings=(), coeff=None, example: str = "",
                  settings_example: str = "", domain: str = "", equilibrium: str = "", see: str = "",
                  xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
-                 centre: int = 0, lammps: Callable | None = None):
+                 centre: int = 0, lammps: Callable | None = None, breaks: str = "",
+                 remembers: str = "", pair_weights: tuple[str, str] | tuple[()] = ()):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.see, self.xfail = equilibrium, see, dict(xfail)
         self.weight_14, self._check, self.lammps = weight_14, check, lammps
+        self.breaks, self.remembers, self.pair_weights = breaks, remembers, pair_weights
         self.centre = centre or (1 if category == "improper" else 2)
         notes = units_of(function) if function else {}
         vocabulary = COORDINATES[category] + ("qq",)
@@ -172,6 +182,11 @@ class Style:
         twin = object.__new__(type(self))
         twin.__dict__.update(self.__dict__)
         return twin
+
+    @property
+    def history(self) -> bool:
+        """Whether bonds of this style have a past: they break, or remember a length."""
+        return bool(self.breaks or self.remembers)
 
     # text -> values -> text
     def _read(self, words: list[str], parameters: tuple[Parameter, ...], command: str) -> dict[str, Any]:
@@ -201,6 +216,15 @@ class Style:
         """
         if self._check:
             self._check(coeff, settings)
+
+    def check_scene(self, interactions, system) -> None:
+        """Refuse a scene in which the style does not work; called before a run.
+
+        Raises
+        ------
+        InputError
+            The message says what the style needs.
+        """
 
     def format_settings(self, settings: Mapping[str, Any]) -> list[str]:
         return [p.write(settings[p.name]) for p in self.settings if p.name in settings]

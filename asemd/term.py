@@ -181,7 +181,7 @@ def bonded_terms(system, interactions, pair_terms, units) -> list:
     for category, items, types in system.topology:
         for use in interactions.uses.get(category, []):
             mine = np.isin(types, list(use.coeff))
-            if use.style.function is not None and mine.any():
+            if use.style.function is not None and not use.style.history and mine.any():
                 terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units,
                                         interactions.compat))
                 terms += one_four_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"], units)

@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 
-from asemd.kernels import angle, bond, dihedral, image, improper, vectors
+from asemd.kernels import angle, bond, bond_history, dihedral, image, improper, vectors
 from asemd.kernels.generate import Builder, plain_source
 from asemd.style import VECTORS, Style
 
@@ -54,12 +54,12 @@ def chart(style: Style) -> tuple[str, ...]:
         return VECTORS[:6] if style.category == "angle" else VECTORS
     if style.coordinates[0] in ("phi", "chi"):
         return TORSION
-    return ANGLE if style.category == "angle" else style.coordinates
+    return ANGLE if style.category == "angle" else style.coordinates[:1]
 
 
 def _loop(style: Style) -> Callable:
     if style.category == "bond":
-        return bond.bond
+        return bond_history.bond if style.history else bond.bond
     if style.coordinates[0] == "ax":
         return vectors.three if style.category == "angle" else vectors.four
     if style.category == "angle":
@@ -96,6 +96,9 @@ def _adapter(style: Style) -> str:
             words.append(f"coeff[{notes[name]}, t]" if name in notes else name)
     call = f"potential({', '.join(words)})"
     handed = chart(style)
+    if style.category == "bond":
+        past = ", rate=0.0, reference=1.0" if style.history else ""
+        return f"def evaluate(r, t, coeff, arrays{past}):\n    return {call}"
     head = f"def evaluate({', '.join(handed)}, t, coeff, arrays):\n"
     if style.coordinates == ("chi",):      # chi = |phi|
         return (f"{head}    chi = abs(phi)\n    e, slope = {call}\n"
@@ -119,6 +122,9 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
     else:
         for name in chart(style)[1:]:
             b.constant(name.upper(), name in style.coordinates)
+    if style.history:
+        for name, value in dict(BREAKS=style.breaks != "", REFERENCE=style.remembers != "", RATE="rate" in style.coordinates).items():
+            b.constant(name, value)
     if chart(style) == TORSION:
         b.constant("ARMS", len(style.coordinates) > 1)
     *helpers, function = style.functions()

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import pair_cluster, pair_list
+from asemd.kernels import bond_history, pair_cluster, pair_list
 from asemd.kernels.generate import Builder
 from asemd.pairstyle import PairStyle
 
@@ -116,8 +116,8 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
 
 
 @cache
-def list_kernel(style, parts, *, energy: bool, per_atom: bool):
-    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts."""
+def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False):
+    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`."""
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
     charged = any(p.charged for p in parts)
@@ -145,8 +145,10 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool):
     lines.append("    return fp, ev, ec")
     b.text("\n".join(lines))
     b.function(pair_list.list_forces)
+    if broken:
+        b.function(bond_history.broken_pairs)
     module = b.build()
-    return module.list_forces, module
+    return (module.broken_pairs if broken else module.list_forces), module
 
 
 @cache

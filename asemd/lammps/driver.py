@@ -48,6 +48,11 @@ def check(session) -> None:
         scene.interactions.check_complete(system)
     for warning in caught:
         session.log.warn(str(warning.message))
+    if scene.newton[1]:
+        for use in scene.interactions.uses["bond"]:
+            settings = use.settings
+            if not getattr(use.style, "newton_bond", True) and settings["break"] and not settings["overlay/pair"]:
+                raise InputError(f"bond_style {use.style.name} with overlay/pair no and break yes needs newton on off, before the box is defined")
     check_lengths(session)
     neighbor = scene.neighbor
     if neighbor.delay % neighbor.every:
