@@ -19,7 +19,8 @@ def check(coeff, settings):
 @angle("cosine/periodic", example="75.0 -1 3", check=check)
 def cosine_periodic(theta, C: "energy", B: "integer", n: "integer"):
     wide = theta > 0.5 * math.pi
-    a = n * (math.pi - theta) if wide else n * theta      # cos(n (pi - theta)) = (-1)^n cos(n theta): small near a straight angle
+    # cos(n (pi - theta)) = (-1)^n cos(n theta), and n (pi - theta) keeps its digits near a straight angle
+    a = n * (math.pi - theta + 1.2246467991473532e-16) if wide else n * theta
     b = B if wide or n % 2.0 == 0.0 else -B
     front = 2.0 * C / (n * n)
     s, c = math.sin(0.5 * a), math.cos(0.5 * a)
