@@ -73,7 +73,7 @@ class Engine:
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
         width = 16 if s.precision == "mixed" else 8
-        self.list = ClusterList(self.threads, self.reach, width) if self.mode == "cluster" else PlainList(self.reach)
+        self.list = ClusterList(self.threads, self.reach, width, s.outdated) if self.mode == "cluster" else PlainList(self.reach)
         self.state = None
         self._offset = None
         self.ns = 0

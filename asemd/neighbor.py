@@ -74,10 +74,13 @@ class ClusterList:
     ----------
     first (nth, ncluster+1), entries (nth, m), unshifted (ncluster,), shifts (27, 3), bounds (nth+1,)
         See `asemd.kernels.cluster`.
+    hide (nth, m), known (ncluster,)
+        For lists that may be outdated, see `asemd.kernels.pair_cluster`.
     """
 
-    def __init__(self, threads: int, reach: float, width: int = 8):
-        self.threads, self.reach, self.width = threads, reach, width
+    def __init__(self, threads: int, reach: float, width: int = 8, outdated: bool = False):
+        self.threads, self.reach, self.width, self.outdated = threads, reach, width, outdated
+        self.hide, self.known = np.zeros((threads, 1), np.uint8), np.zeros(1, np.bool_)
         self.capacity = 0
         self.nx = self.ny = self.nz = 0
         self.entries = np.zeros((threads, 0), np.int32)
@@ -117,6 +120,7 @@ class ClusterList:
         self.first = np.zeros((self.threads, ncl), np.int32)
         self.excluded_first = np.zeros((self.threads, ncl), np.int32)
         self.unshifted = np.zeros(ncl, np.bool_)
+        self.known = np.zeros(ncl, np.bool_)
         self.own, self.span = np.zeros(ncl, np.int32), np.zeros((ncl, CLUSTER), np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
         self._room()
@@ -169,6 +173,10 @@ class ClusterList:
             else:
                 self._balance(results)
                 if not again:
+                    if self.outdated:
+                        self.known[:] = False
+                        if self.hide.shape[1] < self.entries.shape[1]:
+                            self.hide = np.zeros(self.entries.shape, np.uint8)
                     return
                 again = False
 

@@ -40,6 +40,11 @@ class Settings:
     lost: str = "error"
     lost_bond: str = "error"
 
+    @property
+    def outdated(self) -> bool:
+        """Whether atoms may move by more than the skin before the list is rebuilt."""
+        return not self.check or self.every > 1 or self.delay > 1
+
 
 @dataclass
 class Result:

@@ -78,9 +78,11 @@ class PairTerm:
         self.row = 0
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single)[0]
+        return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single,
+                                           outdated=self.outdated)[0]
 
     def rebuild(self, engine):
+        self.outdated = engine.list.outdated
         self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(engine.list.longest())
         if row > self.row:
@@ -91,6 +93,7 @@ class PairTerm:
             self.buffer = np.zeros((engine.threads, size), real)
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
+            self.packed = np.zeros((engine.threads, 3, self.row if self.outdated else 1))
             self.rows = self.tables.rows.astype(real)
             self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, self.single)
 
@@ -98,7 +101,8 @@ class PairTerm:
         s, c = engine.state, engine.list
         return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts,
                 c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
-                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index])
+                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index], engine.held, c.hide[tid],
+                c.known, c.reach, engine.settings.skin, engine.ns, self.packed[tid])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
@@ -224,14 +228,14 @@ def one_four_terms(use, items: np.ndarray, types: np.ndarray, pair_terms, ntypes
     values = np.unique(w[w != 0.0])
     if not len(values):
         return []
-    owner = next((t for t in pair_terms if hasattr(t.style, "one_four")), None)
+    name = use.style.one_four
+    owner = next((t for t in pair_terms if hasattr(t.style, name)), None)
     if owner is None:
-        raise InputError("dihedral style charmm with a nonzero weight needs a pair style with 1-4 coefficients, "
-                         "such as lj/charmm/coul/charmm")
-    tables = owner.style.one_four(owner.use.settings, owner.filled, ntypes, units)
+        raise InputError(use.style.needs_pairs())
+    tables, parts = getattr(owner.style, name)(owner.use.settings, owner.filled, ntypes, units), getattr(owner.style, f"{name}_parts")
     terms = []
     for value in values:
         pairs = np.ascontiguousarray(items[w == value][:, [0, 3]], np.int32)
-        terms.append(PairListTerm(owner.style, tables, owner.style.one_four_parts, "one_four",
+        terms.append(PairListTerm(owner.style, tables, parts, "one_four",
                                   (pairs, np.full(len(pairs), 1, np.int32), np.array([1.0, value, value, value]))))
     return terms

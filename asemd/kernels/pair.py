@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from asemd.kernels import bond_history, pair_cluster, pair_list
-from asemd.kernels.generate import Builder
+from asemd.kernels.generate import Builder, plain_source
 from asemd.pairstyle import PairStyle
 
 ROWS = (536, 1048, 2072, 4120, 8216, 16408, 32792)
@@ -38,7 +38,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
     for u in uniform:
         where.append(f"p[{sum(1 for w in where if w[0] == 'p')}]" if u else f"b[place(o + {sum(1 for w in where if w[0] == 'b')} * ROW)]")
     at_constant = sum(uniform)
-    lines = ["def pair_energy(r2, ir2, qq, p, b, o):" if energy else "def pair_force(r2, ir2, qq, p, b, o):"]
+    lines = [f"def pair_{'energy' if energy else 'force'}(r2, ir2, qq, p, b, o, meet):"]
     if any(part.coordinate == "r" for part in parts):
         lines.append("    r = math.sqrt(r2)")
     row, total, vdwl, coul = 0, [], [], []
@@ -49,7 +49,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
         at_constant += len(part.constants)
         row += 2 + len(part.rows)
         lines.append(f"    e{k}, d{k} = {name}({', '.join(args)})")
-        lines.append(f"    m{k} = r2 < {cut2}")
+        lines.append(f"    m{k} = (r2 < {cut2}) & meet")
         lines.append(f"    f{k} = " + (f"real(-2) * d{k}" if part.coordinate == "r2" else f"-d{k} / r"))
         lines.append(f"    f{k} = f{k} if m{k} else real(0)")
         total.append(f"f{k}")
@@ -65,7 +65,8 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
 
 
 @cache
-def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool):
+def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool,
+                   outdated: bool = False):
     """The kernel over cluster lists.
 
     Parameters
@@ -76,6 +77,8 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         Buffer row length, from `row_length`.
     single : bool
         Pair arithmetic in single precision (sums stay in double).
+    outdated : bool
+        The list may be older than the skin allows; pairs beyond its reach when it was built do not interact.
     """
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
@@ -84,7 +87,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
                             CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
-                            SLOT_BITS=pair_cluster.SLOT_BITS).items():
+                            OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
     if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(inspect.getsource, style.functions())):
         from asemd.kernels import vector_math
@@ -98,6 +101,11 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         b.text("\n".join(lines))
     b.function(pair_cluster.inner_two, fast=True)
     b.function(pair_cluster.one_pair, fast=True)
+    if outdated:
+        b.text(plain_source(pair_cluster.moved_most), "fastmath=True")
+        b.function(pair_cluster.hide_row, fast=True)
+        b.constants["HIDE"] = True
+        b.function(pair_cluster.inner_two, "inner_hidden", fast=True)
     b.function(pair_cluster.cluster_forces, fast=True)
     module = b.build()
     return module.cluster_forces, module

@@ -5,11 +5,17 @@ constant, so that the compiler sees no aliasing): x y z, force x y z, charge, th
 atoms i at a time run over the buffer in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and
 excluded partners are moved far away instead of being masked.
 
+A list that may be outdated (``neigh_modify check no``, or a delay) still has LAMMPS's meaning: pairs that were beyond the reach when it was
+built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
+then on they look at a mask of the row (`hide`, bit a for atom a of the cluster), made when needed from the positions `held` since the build.
+
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient
-differs between type pairs), EXCLUDE, SHARE (one division for two pairs); `real` is the working precision; `pair_force`, `pair_energy` and
+differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working precision; `pair_force`, `pair_energy` and
 `fill_rows` are made from the style.
 """
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -20,18 +26,23 @@ ROW = 1048
 WIDTH = 8
 NROWS = 0
 ENERGY = CHARGED = VARYING = SHARE = False
-EXCLUDE = True
+EXCLUDE = OUTDATED = HIDE = True
 SLOT_BITS = 0x3FFFFFF
 real = np.float64
 place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
-pair_force = pair_energy = fill_rows = None
+pair_force = pair_energy = fill_rows = inner_hidden = None
 
 
-def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
+def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
     """Two atoms a, b against `n` packed ones from place `o` on, whose forces in the buffer it adds to.
 
-    Returns the forces on a and b, energies and virial.
+    With HIDE the bits `a0` and `a0 + 1` of ``hide[h + k]`` say which of the two must not meet place k. Returns the forces on a and b,
+    energies and virial.
     """
+    if HIDE:
+        bit_a = np.uint8(1 << a0)
+        bit_b = np.uint8(2 << a0)
+    meet_a = meet_b = True
     zero = real(0)
     fxa, fya, fza, fxb, fyb, fzb = zero, zero, zero, zero, zero, zero
     ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
@@ -48,6 +59,10 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
         dzb = zb - zk
         ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
         rb = madd(dxb, dxb, madd(dyb, dyb, dzb * dzb))
+        if HIDE:
+            hidden = hide[place(h + k)]
+            meet_a = (hidden & bit_a) == 0
+            meet_b = (hidden & bit_b) == 0
         if SHARE:
             inverse = real(1) / (ra * rb)     # one division for two pairs
             ia = inverse * rb
@@ -63,8 +78,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
             qka = zero
             qkb = zero
         if ENERGY:
-            pa, eva, eca = pair_energy(ra, ia, qka, p, b, k + 7 * ROW)
-            pb, evb, ecb = pair_energy(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW)
+            pa, eva, eca = pair_energy(ra, ia, qka, p, b, k + 7 * ROW, meet_a)
+            pb, evb, ecb = pair_energy(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
             ev += eva + evb
             ec += eca + ecb
             v0 = madd(dxa * dxa, pa, madd(dxb * dxb, pb, v0))
@@ -74,8 +89,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p):
             v4 = madd(dxa * dza, pa, madd(dxb * dzb, pb, v4))
             v5 = madd(dya * dza, pa, madd(dyb * dzb, pb, v5))
         else:
-            pa = pair_force(ra, ia, qka, p, b, k + 7 * ROW)
-            pb = pair_force(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW)
+            pa = pair_force(ra, ia, qka, p, b, k + 7 * ROW, meet_a)
+            pb = pair_force(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
         fxa = madd(dxa, pa, fxa)
         fya = madd(dya, pa, fya)
         fza = madd(dza, pa, fza)
@@ -96,9 +111,9 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     r2 = dx * dx + dy * dy + dz * dz
     qq = qi * b[place(k + 6 * ROW)] if CHARGED else real(0)
     if ENERGY:
-        fp, ev, ec = pair_energy(r2, real(1) / r2, qq, p, b, k + rows)
+        fp, ev, ec = pair_energy(r2, real(1) / r2, qq, p, b, k + rows, True)
     else:
-        fp, ev, ec = pair_force(r2, real(1) / r2, qq, p, b, k + rows), real(0), real(0)
+        fp, ev, ec = pair_force(r2, real(1) / r2, qq, p, b, k + rows, True), real(0), real(0)
     fx = dx * fp
     fy = dy * fp
     fz = dz * fp
@@ -108,10 +123,48 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     return fx, fy, fz, ev, ec, dx * fx, dy * fy, dz * fz, dx * fy, dx * fz, dy * fz
 
 
+def moved_most(x, held, lo, hi):
+    """Largest squared displacement of slots lo..hi-1 since the list was built (compiled without regard to NaN, so that it vectorises)."""
+    m = 0.0
+    for k in range(hi - lo):
+        i = place(lo + k)
+        a = x[0, i] - held[0, i]
+        b = x[1, i] - held[1, i]
+        c = x[2, i] - held[2, i]
+        m = max(m, a * a + b * b + c * c)
+    return m
+
+
+def hide_row(held, entries, f0, full, s, shifts, reach2, hide, packed):
+    """Mark in `hide` which atoms of the cluster at slot `s` were beyond reach of each entry of its row when the list was built."""
+    for k in range(full):
+        e = entries[place(f0 + k)]
+        j = np.uint32(e & np.int32(SLOT_BITS))
+        c = np.uint32(e >> 26)
+        packed[0, k] = held[0, j] + shifts[c, 0]
+        packed[1, k] = held[1, j] + shifts[c, 1]
+        packed[2, k] = held[2, j] + shifts[c, 2]
+        hide[place(f0 + k)] = np.uint8(0)
+    for a in range(CLUSTER):
+        xa, ya, za = held[0, s + a], held[1, s + a], held[2, s + a]
+        bit = np.uint8(1 << a)
+        for k in range(full):
+            dx = xa - packed[0, k]
+            dy = ya - packed[1, k]
+            dz = za - packed[2, k]
+            hide[place(f0 + k)] |= bit if dx * dx + dy * dy + dz * dz > reach2 else np.uint8(0)
+
+
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
-                   qqr2e, b, types, saved, acc):
-    """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz)."""
+                   qqr2e, b, types, saved, acc, held, hide, known, reach, skin, slots, packed):
+    """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz).
+
+    The last seven arguments are for OUTDATED: `known (ncluster,)` says whose part of `hide` is made, `slots` is the number of slots.
+    """
     far = real(far_)
+    late = False
+    if OUTDATED:
+        rest = 0.999999 * skin - math.sqrt(moved_most(x, held, 0, slots))
     done = real(2) * far      # atoms of the cluster that have had their turn
     for ci in range(c0, c1):
         s = ci * CLUSTER
@@ -155,6 +208,11 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             count = np.int64(span[ci, a0 + 1]) - base
             xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
             xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
+            if OUTDATED:
+                late = rest <= 0.0 or moved_most(x, held, s + a0, s + a0 + 2) > rest * rest
+                if late and not known[ci]:
+                    hide_row(held, entries, f0, full, s, shifts, reach * reach, hide, packed)
+                    known[ci] = True
             qa = real(0)
             qb = real(0)
             if CHARGED:
@@ -180,7 +238,12 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                     saved[xp - x0] = b[k]
                     b[k] = far
                     xp += 1
-            fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p)
+            if OUTDATED and late:
+                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_hidden(
+                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0)
+            else:
+                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(
+                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0)
             if EXCLUDE:
                 for y in range(xp - 1, x0 - 1, -1):
                     b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
@@ -194,6 +257,9 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         twin = twin or (z != y and (excluded[z] & np.int32(0xFFFF)) == k)
                     if twin:
                         continue
+                    if OUTDATED and late:
+                        if (hide[place(f0 + k)] >> (a0 + ((excluded[y] >> 16) == a0))) & 1:
+                            continue
                     if (excluded[y] >> 16) == a0:
                         gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, k, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
                         fxb += gx
@@ -213,6 +279,8 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         v3 += w3
                         v4 += w4
                         v5 += w5
+            if OUTDATED and late:
+                together = together and ((hide[place(f0 + mine + a0 + 1)] >> a0) & 1) == 0
             if together:
                 # b was hidden from a, too, lest they met twice
                 b[place(mine + a0 + 1)] = xb
