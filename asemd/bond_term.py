@@ -46,7 +46,7 @@ class HistoryTerm(BondedTerm):
 
     def carry_back(self, engine) -> np.ndarray:
         """Tell the topology which bonds broke since the last time; returns the pairs of rows that are to interact from now on."""
-        if not self.listed:
+        if not self.listed or not self.style.breaks:
             return NOBODY
         dead = np.flatnonzero(self.slot_types == 0)
         dead = dead[self.types[self.order[dead]] != 0]
@@ -63,7 +63,7 @@ class HistoryTerm(BondedTerm):
         keep = np.ones(len(topology.bonds), bool)
         keep[self.at[items]] = False
         topology.bonds, topology.bond_types = topology.bonds[keep], topology.bond_types[keep]
-        for term in engine.bonds:
+        for term in engine.bonds.terms:
             term.at = (np.cumsum(keep) - 1)[term.at]
         if topology.frozen is not None:
             old = topology.frozen
@@ -81,6 +81,30 @@ class HistoryTerm(BondedTerm):
         old = memory.get("broken", np.zeros((0, 9)))
         old = old[old[:, 0] > where[:, 3].max() - 2 * self.use.settings["store/local"][1]]
         memory["broken"] = np.concatenate([old, rows[np.lexsort((ids[:, 0], where[:, 3]))]])
+
+
+class Bonds:
+    """The bonds of an engine that can break: what the topology and the neighbour list must know of them."""
+
+    def __init__(self, engine):
+        self.engine, self.terms = engine, [t for t in engine.terms if isinstance(t, HistoryTerm)]
+        self._broken: list[np.ndarray] = []      # pairs of rows that the next list must not leave out any more
+
+    def hold(self, on: bool) -> None:
+        """See `HistoryTerm.hold`."""
+        for t in self.terms:
+            t.hold(on)
+
+    def carry_back(self) -> None:
+        """Tell the topology which bonds broke."""
+        self._broken += [pairs for t in self.terms if len(pairs := t.carry_back(self.engine))]
+
+    def release(self) -> None:
+        """Before a list build: the pairs of broken bonds are like any others from now on."""
+        self.carry_back()
+        if self._broken:
+            self.engine.exclusions.release(np.concatenate(self._broken))
+        self._broken = []
 
 
 class ReleasedPairTerm(PairListTerm):

@@ -7,8 +7,8 @@ import numpy as np
 from numba import config
 
 from asemd import units as unit_styles
+from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
-from asemd.bond_term import HistoryTerm, bond_terms
 from asemd.exclusions import Exclusions
 from asemd.kernels.state import cell_arrays, empty_state
 from asemd.kernels.team import Team
@@ -64,8 +64,7 @@ class Engine:
         self.exclusions = Exclusions(system, inter, s.exclude, bool(self.pair_terms))
         self._choose_list()
         self.terms = self._make_terms()
-        self.bonds = [t for t in self.terms if isinstance(t, HistoryTerm)]
-        self._broken: list[np.ndarray] = []      # pairs of rows that the next list must not leave out any more
+        self.bonds = Bonds(self)
         self.changed = True      # loops look whether their kernels are still the right ones
         for k, t in enumerate(self.terms):
             t.index = k
@@ -108,8 +107,7 @@ class Engine:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special"))
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all"))
-        arguments = (self.system, self.interactions, self.pair_terms, self.units)
-        return terms + bonded_terms(*arguments) + bond_terms(*arguments)
+        return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]
 
     def _set_box(self) -> None:
         box = self.system.box
@@ -181,10 +179,7 @@ class Engine:
     def rebuild(self) -> None:
         """Wrap, sort, list: the slots keep their atoms' data but change order."""
         began = time.perf_counter()
-        self._carry_back()
-        if self._broken:
-            self.exclusions.release(np.concatenate(self._broken))
-            self._broken = []
+        self.bonds.release()
         k, s = self.k, self.state
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
@@ -339,19 +334,7 @@ class Engine:
         """Slots back into the system: positions, velocities, forces."""
         s, y = self.state, self.system
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
-        self._carry_back()
-
-    def _carry_back(self) -> None:
-        """Bonds that broke are told to the topology."""
-        for t in self.bonds:
-            pairs = t.carry_back(self)
-            if len(pairs):
-                self._broken.append(pairs)
-
-    def hold(self, on: bool) -> None:
-        """See `asemd.bond_term.HistoryTerm.hold`."""
-        for t in self.bonds:
-            t.hold(on)
+        self.bonds.carry_back()
 
     def per_atom(self, result: Result) -> Result:
         """Add each atom's share of energy and virial to `result`; runs the per-atom kernels, once."""
@@ -359,7 +342,6 @@ class Engine:
         if self.mode == "cluster" and not self.expanded:
             self._mark(*self.list.expand(self.k, self.state, self.cutoff), self.list.shifts)
         keep = (self.acc.copy(), self.buffers.copy())
-        self.hold(True)
         self.atom_energy, self.atom_virial = np.zeros((self.threads, capacity)), np.zeros((self.threads, 6, capacity))
         rows, slots = self.state.row[:self.ns], np.flatnonzero(self.state.row[:self.ns] >= 0)
         for t in self.terms:
@@ -379,7 +361,6 @@ class Engine:
             v[rows[slots]] = self.atom_virial.sum(0)[:, slots].T
             result.energies_of[t.category] = result.energies_of.get(t.category, 0.0) + e
             result.virials_of[t.category] = result.virials_of.get(t.category, 0.0) + v
-        self.hold(False)
         self.acc[:], self.buffers[:] = keep
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
         self._arguments = None

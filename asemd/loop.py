@@ -105,9 +105,8 @@ class Loop:
         self._fix_data = ()
         self._with_lost(e.load)
         self.gone = {}
-        e.hold(True)
+        e.bonds.hold(True)
         e.forces(True)
-        e.hold(False)
         self._ago = 0
         self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
         self._make_module()
@@ -161,6 +160,7 @@ class Loop:
         """
         want = virial or energies or virials
         last = self.step + int(steps)
+        self.engine.bonds.hold(False)
         with Interrupt() as interrupt:
             while self.step < last and not interrupt.asked:
                 if self._compiled:
@@ -351,6 +351,7 @@ class Loop:
     def evaluate(self) -> Result:
         """Energy, forces and virial at the system's positions, with what the fixes do to forces; the list stays while it serves."""
         e = self.engine
+        e.bonds.hold(False)
         self.sync_in()
         if not e.k.moved(e.state.x, e.held, e.ns) <= (0.5 * self.settings.skin) ** 2:
             e.rebuild()

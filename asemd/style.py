@@ -10,9 +10,9 @@ A bonded style is a scalar function of internal coordinates and coefficients::
         return K * dr * dr, 2 * K * dr
 
 It returns the energy and then the derivative by each internal coordinate it names, in the order of its arguments. Coordinates by category:
-``r`` (bond; a style
-with a past also names ``rate``, dr/dt, and ``reference``, a length that each bond has for itself: they have no derivatives); ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
-trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); one of ``phi chi omega`` (improper). A style that has no such coordinate
+``r`` (bond); ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
+trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); one of ``phi chi omega`` (improper). Bonds with a past also take ``rate``,
+dr/dt, and ``reference``, a length that each bond has for itself; they have no derivatives. A style that has no such coordinate
 takes vectors instead, ``ax ay az bx by bz`` and for four atoms ``cx cy cz``: from the atom `centre` (1, 2, ...) to the others in their
 order; it returns the energy and the six or nine derivatives.
 An energy or derivative that is not finite means "outside the domain" (write ``return math.inf, math.inf``): the kernel reports the item,
@@ -141,8 +141,8 @@ class Style:
     centre : int
         The atom from which the vectors of a style of vectors start, counted from 1; by default 2 for angles and dihedrals, 1 for impropers.
     breaks : str
-        What becomes of a bond for which the function returns ``math.nan``: ``off`` gives it type 0, and its pair interaction, which the bond
-        replaces, comes back at once; ``removed`` takes it out, and the pair is no longer a special one from the next step on.
+        What becomes of a bond for which the function returns ``math.nan``: ``off`` gives it type 0, and its pair interaction, which the
+        bond replaces, comes back at once; ``removed`` takes it out, and the pair is no longer a special one from the next step on.
     remembers : str
         Where ``reference`` comes from: ``atoms`` (positions at the start of the first run) or ``bonds`` (length at their first force).
     pair_weights : (str, str)

@@ -1,9 +1,9 @@
 """Loop over bonds with a past: a reference length of their own, forces that depend on the relative velocity, breaking.
 
-`asemd.kernels.bonded` pastes `bond` behind the constants ENERGY, PER_ATOM, PERIODIC, BREAKS, REFERENCE, RATE and the functions `evaluate` (the
-style) and `closest`; its arguments are those of `asemd.kernels.bond.bond`. The type of a bond that breaks becomes 0. Where the style asks for
-a reference, `arrays` ends with `history (m, 6)` (reference length, last rate, middle and step of the break), the velocities (3, cap) and
-`clock (2,)`, whose second number is the step. `asemd.kernels.pair` pastes `broken_pairs` behind `list_forces`.
+`asemd.kernels.bonded` pastes `bond` behind the constants ENERGY, PER_ATOM, PERIODIC, BREAKS, REFERENCE, RATE and the functions `evaluate`
+(the style) and `closest`; its arguments are those of `asemd.kernels.bond.bond`. The type of a bond that breaks becomes 0. Where the style
+asks for a reference, `arrays` ends with `history (m, 6)` (reference length, last rate, middle and step of the break), the velocities
+(3, cap) and `clock (2,)`, whose second number is the step. `asemd.kernels.pair` pastes `broken_pairs` behind `list_forces`.
 """
 from __future__ import annotations
 

@@ -52,7 +52,8 @@ def check(session) -> None:
         for use in scene.interactions.uses["bond"]:
             settings = use.settings
             if not getattr(use.style, "newton_bond", True) and settings["break"] and not settings["overlay/pair"]:
-                raise InputError(f"bond_style {use.style.name} with overlay/pair no and break yes needs newton on off, before the box is defined")
+                raise InputError(f"bond_style {use.style.name} without overlay/pair yes or break no needs newton on off, which stands "
+                                 "before the box is defined")
     check_lengths(session)
     neighbor = scene.neighbor
     if neighbor.delay % neighbor.every:
