@@ -8,9 +8,10 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from asemd import atom_style as atom_styles
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
-from asemd.lammps.data_format import ATOM_STYLES, BONDED, COEFFS, LABELS, TOPOLOGY
+from asemd.lammps.data_format import COEFFS, LABELS, TOPOLOGY
 from asemd.system import LABELLED, System
 
 MARKS = {category: {mark: name for name, (c, mark) in COEFFS.items() if c == category and mark}
@@ -44,9 +45,9 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     InputWarning
         Coefficients that a data file cannot hold (hybrid pair styles with several lines for one type).
     """
-    if system.atom_style not in ATOM_STYLES:
+    if not atom_styles.known(system.atom_style):
         raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
-    if system.rmass is not None:
+    if system.rmass is not None and not atom_styles.has(system.atom_style, "density"):
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
     if types == "labels" and not labels:
         raise InputError("write_data: types labels needs the sections of type labels")
@@ -64,6 +65,7 @@ def _lammps_frame(system: System) -> System:
     if not system.box.is_lammps_frame:
         out.box, rotation = system.box.to_lammps()
         out.x, out.v = (system.x - system.box.origin) @ rotation, system.v @ rotation
+        out.extra |= {name: system.extra[name] @ rotation for name in ("mu", "omega") if name in system.extra}
     out.box.wrap(out.x, out.image)
     out.box = out.box.shrink_wrapped(out.x)
     return out
@@ -76,7 +78,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
     yield f"{s.n} atoms"
     yield f"{s.counts['ntypes']} atom types"
     for section, kind in TOPOLOGY.items():
-        if kind in BONDED.get(s.atom_style, ()):
+        if kind in atom_styles.bonded(s.atom_style):
             yield f"{np.count_nonzero(s.topology.items(kind)[1])} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
     yield ""
@@ -96,8 +98,9 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
     if interactions is not None:
         yield from _coefficients(interactions, s, pair)
     if s.n:
-        yield from _section(f"Atoms # {s.atom_style}", _atoms(s, names["atom"]))
-        yield from _section("Velocities", (f"{i} {x!r} {y!r} {z!r}" for i, (x, y, z) in zip(s.id.tolist(), s.v.tolist())))
+        yield from _section(f"Atoms # {s.atom_style.split()[0]}", _atoms(s, names["atom"]))
+        v = np.hstack([s.v, s.extra["omega"]]) if atom_styles.has(s.atom_style, "diameter") else s.v
+        yield from _section("Velocities", (f"{i} {' '.join(map(repr, values))}" for i, values in zip(s.id.tolist(), v.tolist())))
     for section, kind in TOPOLOGY.items():
         atoms, item_types = s.topology.items(kind)
         atoms, item_types = atoms[item_types != 0], np.abs(item_types[item_types != 0])     # turned off ones as if they were on
@@ -118,8 +121,13 @@ def _section(heading: str, lines: Iterable[str]) -> Iterator[str]:
 
 
 def _atoms(s: System, names: dict[int, str]) -> Iterator[str]:
-    known = {"id": s.id, "molecule": s.molecule, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T)), **s.extra}
-    columns = [[names[t] for t in s.type.tolist()] if c == "type" else map(repr, known[c].tolist()) for c in ATOM_STYLES[s.atom_style]]
+    known = {"id": s.id, "molecule": s.molecule, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T))}
+    if "mu" in s.extra:
+        known |= dict(zip(atom_styles.DIPOLE, s.extra["mu"].T))
+    if "radius" in s.extra:
+        known |= {"diameter": 2.0 * s.extra["radius"], "density": s.atom_masses() / atom_styles.volume(s.extra["radius"])}
+    columns = [[names[t] for t in s.type.tolist()] if c == "type" else map(repr, known[c].tolist())
+               for c in atom_styles.columns(s.atom_style)]
     return map(" ".join, zip(*columns, *(map(str, flags) for flags in s.image.T.tolist())))
 
 
@@ -152,6 +160,11 @@ def _bonded_sections(interactions: Interactions, category: str) -> dict[str, lis
         mark = line[at] if len(line) > at else ""
         name = MARKS.get(category, {}).get(mark, main)
         out.setdefault(name, []).append(line if name == main else [*line[:at], *line[at + 1:]])
+    for name, lines in out.items():
+        if name != main and interactions.hybrid[category]:      # types of sub-styles without this cross term
+            there = {line[0] for line in lines}
+            lines += [[line[0], "skip"] for line in out[main] if line[0] not in there]
+            lines.sort(key=lambda line: int(line[0]))
     return out
 
 
