@@ -125,6 +125,11 @@ class _Plain(ast.NodeTransformer):
         return node
 
 
+def text_of(function: Callable) -> str:
+    """Source of a function: of its file, or the attribute ``source`` of one that was written by a program."""
+    return getattr(function, "source", None) or textwrap.dedent(inspect.getsource(inspect.unwrap(function)))
+
+
 def plain_source(function: Callable, name: str | None = None, real: bool = False, vector: bool = False,
                  constants: Mapping[str, bool] = MappingProxyType({})) -> str:
     """Source of a function without decorators, annotations and docstring, under another name if asked for.
@@ -139,7 +144,7 @@ def plain_source(function: Callable, name: str | None = None, real: bool = False
     constants : mapping
         Names whose truth is known: ``if NAME:`` keeps one branch only, so that a variant holds nothing it does not need.
     """
-    tree = ast.parse(textwrap.dedent(inspect.getsource(inspect.unwrap(function))))
+    tree = ast.parse(text_of(function))
     tree = ast.fix_missing_locations(_Plain(real, vector, constants).visit(tree))
     node = tree.body[0]
     if name:

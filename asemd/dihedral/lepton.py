@@ -1,0 +1,11 @@
+r"""$$E = U(\phi)$$
+
+Any formula U of the torsion angle, given as an expression in ``phi`` (radians from $-\pi$ to $\pi$, $\pi$ is trans), with its derivative
+as the force. Source: LAMMPS manual, dihedral_style lepton.
+"""
+from __future__ import annotations
+
+from asemd.expression_style import ExpressionStyle
+from asemd.style import register
+
+register(ExpressionStyle("dihedral", "lepton", "phi", "", example="k*(1+d*cos(n*phi))+h*sin(phi);k=4.5;d=-1;n=3;h=0.3", doc=__doc__))

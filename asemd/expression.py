@@ -1,0 +1,241 @@
+"""Formulas of the lepton styles: parsed, differentiated by one variable and written as source that compiles.
+
+The language is that of LAMMPS's lepton styles: ``+ - * / ^`` (``^`` groups to the right and binds tighter than the minus sign, which
+binds tighter than ``*``), functions, and definitions of intermediate values after semicolons. A formula keeps its shape, so the digits
+that its author saved stay saved (see `asemd.calculus`); whole powers become products. Constants become arguments of the function, so
+that formulas which differ only in numbers share one piece of code. Source: manual pages of bond_style lepton and pair_style lepton.
+"""
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from asemd.calculus import FUNCTIONS, OPERATIONS, Graph, Node
+from asemd.errors import InputError, nearest
+
+TOKEN = re.compile(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])")
+ARGUMENT = "x"      # the variable in the written source
+
+
+class Parser:
+    """Recursive descent over one formula without blanks; `start` is where it begins in `text`."""
+
+    def __init__(self, graph: Graph, text: str, start: int, names: Mapping[str, Node], late: set[str]):
+        self.graph, self.text, self.start, self.names, self.late = graph, text, start, names, late
+        self.at, self.end = start, text.find(";", start) % (len(text) + 1)
+        self.kind = self.token = ""
+        self.advance()
+
+    def wrong(self, problem: str, at: int | None = None) -> InputError:
+        at = self.begin if at is None else at
+        return InputError(f"expression {self.text!r}: {problem} at character {at + 1}")
+
+    def advance(self) -> None:
+        self.begin = self.at
+        if self.at >= self.end:
+            self.kind = self.token = ""
+            return
+        match = TOKEN.match(self.text, self.at, self.end)
+        if not match:
+            raise self.wrong(f"{self.text[self.at]!r} has no meaning")
+        self.kind, self.token, self.at = match.lastgroup, match[0], match.end()
+
+    def formula(self) -> Node:
+        node = self.sum()
+        if self.token == ")":
+            raise self.wrong("')' without a '('")
+        if self.token:
+            raise self.wrong(f"an operator is missing before {self.token!r}" if self.token != "," else "',' outside a function")
+        return node
+
+    def sum(self) -> Node:
+        node = self.product()
+        while self.token and self.token in "+-":
+            operation = self.graph.add if self.token == "+" else self.graph.sub
+            self.advance()
+            node = operation(node, self.product())
+        return node
+
+    def product(self) -> Node:
+        node = self.signed()
+        while self.token and self.token in "*/":
+            operation = self.graph.mul if self.token == "*" else self.graph.div
+            self.advance()
+            node = operation(node, self.signed())
+        return node
+
+    def signed(self) -> Node:
+        if self.token == "-":
+            self.advance()
+            return self.graph.neg(self.signed())
+        base = self.primary()
+        if self.token == "^":
+            self.advance()
+            return self.graph.power(base, self.signed())
+        return base
+
+    def primary(self) -> Node:
+        token, begin = self.token, self.begin
+        if self.kind == "number":
+            self.advance()
+            if math.isinf(float(token)):
+                raise self.wrong(f"the number {token} is too large", begin)
+            return self.graph.number(float(token), begin)
+        if self.kind == "name":
+            self.advance()
+            return self.call(token, begin) if self.token == "(" else self.name(token, begin)
+        if token == "(":
+            self.advance()
+            node = self.sum()
+            self.close(begin)
+            return node
+        raise self.wrong(f"a value is missing before {token!r}" if token else "a value is missing")
+
+    def close(self, begin: int) -> None:
+        if self.token != ")":
+            if self.token:
+                raise self.wrong(f"an operator is missing before {self.token!r}" if self.token != "," else "unexpected ','")
+            raise self.wrong("'(' without a ')'", begin)
+        self.advance()
+
+    def name(self, name: str, begin: int) -> Node:
+        if name in self.names:
+            return self.names[name]
+        if name in self.late:
+            raise self.wrong(f"{name} is used after its definition; definitions follow all uses", begin)
+        if name in FUNCTIONS:
+            raise self.wrong(f"the function {name} needs its argument in parentheses", begin)
+        known = [*self.names, *FUNCTIONS]
+        raise self.wrong(f"unknown name {name}{nearest(name, known)}", begin)
+
+    def call(self, name: str, begin: int) -> Node:
+        if name not in FUNCTIONS:
+            raise self.wrong(f"unknown function {name}{nearest(name, FUNCTIONS)}", begin)
+        bracket, args = self.begin, []
+        while not args or self.token == ",":
+            self.advance()
+            args.append(self.sum())
+        self.close(bracket)
+        count, make = FUNCTIONS[name]
+        if len(args) != count:
+            raise self.wrong(f"{name} needs {count} argument{'s' * (count != 1)}, got {len(args)}", begin)
+        return make(self.graph, *args)
+
+
+def condense(text: str) -> str:
+    """The expression without blanks and quotation marks, which mean nothing in it."""
+    return re.sub(r"[\s'\"]", "", text)
+
+
+def parse(text: str, variable: str) -> tuple[Graph, Node]:
+    """The graph of a condensed expression and the node that is its value."""
+    graph = Graph()
+    names: dict[str, Node] = {variable: graph.make("variable")}
+    starts = [m.end() for m in re.finditer(";", text)]
+    late = {text[s:].split("=")[0] for s in starts}
+    try:
+        for start in reversed(starts):
+            definition = text[start:].split(";")[0]
+            if not definition:
+                continue
+            name, equals, _ = definition.partition("=")
+            if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name):
+                raise InputError(f"expression {text!r}: after a semicolon comes a definition such as k=2, got {definition!r}")
+            names[name] = Parser(graph, text, start + len(name) + 1, names, late).formula()
+            late.discard(name)
+        return graph, Parser(graph, text, 0, names, late).formula()
+    except RecursionError:
+        raise InputError(f"expression {text!r} is nested too deeply") from None
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """An expression as source.
+
+    Attributes
+    ----------
+    lines : tuple of str
+        Statements that set names from ``x`` and the constants ``p0``, ``p1``, ...
+    energy, slope : str
+        What the value and its derivative are then.
+    constants : tuple of float
+        ``p0``, ``p1``, ...
+    """
+
+    lines: tuple[str, ...]
+    energy: str
+    slope: str
+    constants: tuple[float, ...]
+
+    @property
+    def code(self) -> tuple[tuple[str, ...], str, str]:
+        """What expressions have in common that differ in numbers only."""
+        return self.lines, self.energy, self.slope
+
+    def value(self, x: float) -> float:
+        """The value at one place; not finite where it is not defined."""
+        names = [ARGUMENT, *(f"p{k}" for k in range(len(self.constants)))]
+        source = f"def value({', '.join(names)}):\n" + "".join(f"    {line}\n" for line in (*self.lines, f"return {self.energy}"))
+        with np.errstate(all="ignore"):
+            return float(compiled_function("value", source)(*map(np.float64, (x, *self.constants))))
+
+
+def compiled_function(name: str, source: str) -> Callable:
+    """A function from written source, with the text as its attribute ``source``."""
+    names: dict = {"math": math, "np": np}
+    exec(compile(source, f"<{name}>", "exec"), names)
+    names[name].source = source
+    return names[name]
+
+
+@lru_cache(4096)
+def differentiate(text: str, variable: str) -> Compiled:
+    """Value and derivative of an expression by one variable.
+
+    Parameters
+    ----------
+    text : str
+        Condensed expression.
+    variable : str
+        Its one free name.
+
+    Raises
+    ------
+    InputError
+        The expression cannot be read; the message says what is wrong where.
+    """
+    graph, energy = parse(text, variable)
+    slope = graph.slope(energy)
+    words: dict[Node, str] = {}
+    temporaries: dict[str, str] = {}
+    constants: list[float] = []
+
+    def keep(expression: str) -> str:
+        return temporaries.setdefault(expression, f"t{len(temporaries)}")
+
+    def whole_power(base: str, n: int) -> str:
+        if n == 1:
+            return base
+        half = whole_power(base, n // 2)
+        even = keep(f"{half} * {half}")
+        return keep(f"{even} * {base}") if n % 2 else even
+
+    for n in graph.under(energy, slope):
+        if n.op == "variable":
+            words[n] = ARGUMENT
+        elif n.op == "number":
+            if n.origin is None or n.value in (0.0, 1.0, -1.0):
+                words[n] = repr(n.value)
+            else:
+                words[n] = f"p{len(constants)}"
+                constants.append(n.value)
+        elif n.op == "ipow":
+            words[n] = whole_power(words[n.args[0]], int(n.args[1].value))
+        else:
+            words[n] = keep(OPERATIONS[n.op].text.format(*(words[a] for a in n.args)))
+    return Compiled(tuple(f"{name} = {text}" for text, name in temporaries.items()), words[energy], words[slope], tuple(constants))

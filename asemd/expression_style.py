@@ -1,0 +1,119 @@
+"""Bonded styles whose energy is a formula of the user: ``*_coeff`` gives the rest value (bonds and angles) and the expression."""
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.expression import ARGUMENT, Compiled, compiled_function, condense, differentiate
+from asemd.style import Packed, Parameter, Style, radians
+
+DOMAIN = "the value of its expression or of the derivative is not finite there"
+
+
+class Plan(NamedTuple):
+    """The function for some expressions: its source, its arguments and their values by type."""
+
+    source: str
+    arguments: tuple[str, ...]
+    rows: dict[int, list[float]]
+
+
+class ExpressionStyle(Style):
+    """``*_style lepton``: expressions of one kind (equal up to numbers) share a piece of code, others are told apart by their type.
+
+    Parameters
+    ----------
+    variable : str
+        The free name of the expressions: ``r``, ``theta`` or ``phi``.
+    rest : str
+        Name of the coefficient that is taken off the coordinate, "" for none; a style with one shifts the energy so that it is 0 there,
+        unless the setting is ``no_offset``.
+    """
+
+    def __init__(self, category: str, name: str, variable: str, rest: str, **options):
+        self.variable = variable
+        coeff = (Parameter(rest, "angle" if category == "angle" else "distance"),) if rest else ()
+        settings = (Parameter("offset", "word", True),) if rest else ()
+        super().__init__(category, name, None, coeff=(*coeff, Parameter("expression", "word")), settings=settings, equilibrium=rest,
+                         domain=DOMAIN, **options)
+        self.coordinates = (variable,)
+        example = self.bind({}, {1: self.parse_coeff(self.example.split(), {})})
+        self.function, self.arguments = example.function, example.arguments
+
+    def parse_settings(self, words):
+        command = f"{self.category}_style {self.name}"
+        if not self.equilibrium and words:
+            raise InputError(f"{command} takes no words, got {' '.join(words)!r}")
+        for word in words:
+            if word not in ("auto_offset", "no_offset"):
+                raise InputError(f"{command}: unknown word {word!r}: must be auto_offset or no_offset")
+        return {"offset": words[-1]} if words else {}
+
+    def parse_coeff(self, words, settings):
+        values = super().parse_coeff(words, settings)
+        values["expression"] = condense(values["expression"])
+        self.compiled(values, settings)
+        return values
+
+    def compiled(self, values: Mapping[str, Any], settings: Mapping[str, Any]) -> tuple[Compiled, float]:
+        """The expression as source, and its value at rest, which the energy is shifted by."""
+        command = f"{self.category}_coeff {self.name}"
+        try:
+            compiled = differentiate(values["expression"], self.variable)
+        except InputError as e:
+            raise InputError(f"{command}: {e.message}") from None
+        if not self.equilibrium or settings.get("offset") == "no_offset":
+            return compiled, 0.0
+        offset = compiled.value(0.0)
+        if not math.isfinite(offset):
+            raise InputError(f"{command}: expression {values['expression']!r} is not finite at {self.variable} = 0, so its energy "
+                             f"cannot be shifted to 0 there: use {self.category}_style {self.name} no_offset")
+        return compiled, offset
+
+    def plan(self, settings: Mapping[str, Any], coeffs: Mapping[int, Mapping[str, Any]]) -> Plan:
+        """The function for these coefficients."""
+        each = {t: self.compiled(values, settings) for t, values in sorted(coeffs.items())}
+        kinds = list(dict.fromkeys(c.code for c, _ in each.values()))
+        rest, shifted = self.equilibrium, any(offset for _, offset in each.values())
+        names = [rest] * bool(rest) + ["offset"] * shifted + ["kind"] * (len(kinds) > 1)
+        names += [f"p{k}" for k in range(max((len(c.constants) for c, _ in each.values()), default=0))]
+        lines = [f"def {self.name}({', '.join((self.variable, *names))}):",
+                 f"    {ARGUMENT} = np.float64({self.variable}{f' - {rest}' if rest else ''})"]
+        for k, (statements, energy, slope) in enumerate(kinds):
+            body = [*statements, f"return {energy}{' - offset' if shifted else ''}, {slope}"]
+            if k < len(kinds) - 1:
+                lines += [f"    if kind == {k}.0:", *("        " + line for line in body)]
+            else:
+                lines += ["    " + line for line in body]
+        rows = {}
+        for t, (c, offset) in each.items():
+            given = {rest: radians(coeffs[t][rest]) if self.category == "angle" else coeffs[t][rest]} if rest else {}
+            given |= {"offset": offset, "kind": float(kinds.index(c.code))}
+            given |= {f"p{k}": value for k, value in enumerate(c.constants)}
+            rows[t] = [given.get(name, 0.0) for name in names]
+        return Plan("\n".join(lines) + "\n", tuple(names), rows)
+
+    def bind(self, settings, coeffs, compat=""):
+        plan = self.plan(settings, coeffs)
+        return bound(self, plan.source, plan.arguments)
+
+    def pack(self, settings, coeffs, ntypes, units):
+        plan = self.plan(settings, coeffs)
+        out = np.zeros((len(plan.arguments), ntypes + 1))
+        for t, row in plan.rows.items():
+            out[:, t] = row
+        return Packed(out)
+
+
+@cache
+def bound(style: ExpressionStyle, source: str, arguments: tuple[str, ...]) -> ExpressionStyle:
+    """The style with a written function; one object for each source, so that its kernels are found again."""
+    twin = copy.copy(style)
+    twin.function, twin.arguments = compiled_function(style.name, source), arguments
+    return twin
