@@ -14,7 +14,7 @@ from asemd.kernels.state import cell_arrays, empty_state
 from asemd.kernels.team import Team
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, kernels
 from asemd.result import Result, Settings, Snapshot
-from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms
+from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
@@ -306,8 +306,7 @@ class Engine:
             virial_of[t.category] = virial_of.get(t.category, 0.0) + a[2:8]
         virial = sum(virial_of.values(), np.zeros(6))
         if self.interactions.tail and self.pair_terms:
-            e, p = self.interactions.tail_correction(self.system, self.units)
-            energy["etail"] = e
+            energy["etail"], p = self.interactions.tail_correction(self.system, self.units)
             p *= abs(np.linalg.det(self.vectors)) / self.units.nktv2p
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])
         self.store()
@@ -334,6 +333,7 @@ class Engine:
         """Slots back into the system: positions, velocities, forces."""
         s, y = self.state, self.system
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
+        store_torques(self.terms, y)
         self.bonds.carry_back()
 
     def per_atom(self, result: Result) -> Result:

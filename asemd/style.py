@@ -10,7 +10,8 @@ A bonded style is a scalar function of internal coordinates and coefficients::
         return K * dr * dr, 2 * K * dr
 
 It returns the energy and then the derivative by each internal coordinate it names, in the order of its arguments. Coordinates by category:
-``r`` (bond); ``theta r12 r32 r13`` (angle, atom 2 in the middle); ``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
+``r`` (bond); ``theta r12 r32 r13`` (angle, atom 2 in the middle) or ``gamma`` (between the dipole of atom 1 and the vector to atom 2);
+``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
 trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); one of ``phi chi omega`` (improper). Bonds with a past also take ``rate``,
 dr/dt, and ``reference``, a length that each bond has for itself; they have no derivatives. A style that has no such coordinate
 takes vectors instead, ``ax ay az bx by bz`` and for four atoms ``cx cy cz``: from the atom `centre` (1, 2, ...) to the others in their
@@ -47,7 +48,7 @@ from asemd.errors import InputError, nearest
 VECTORS = ("ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz")
 COORDINATES = {
     "bond": ("r", "rate", "reference"),
-    "angle": ("theta", "r12", "r32", "r13", *VECTORS[:6]),
+    "angle": ("theta", "r12", "r32", "r13", "gamma", *VECTORS[:6]),
     "dihedral": ("phi", "r12", "r23", "r34", "theta1", "theta2", *VECTORS),
     "improper": ("phi", "chi", "omega", *VECTORS),
     "pair": ("r", "r2"),
@@ -57,8 +58,8 @@ ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
 _FINITE = "acts on particles of finite size with an orientation and torques, which asemd does not have yet: run this script with LAMMPS"
 # (category, name) -> why a style of LAMMPS is refused
 REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
-    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script with "
-                            "LAMMPS"}
+    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script "
+                            "with LAMMPS"}
 _registry: dict[tuple[str, str], Style] = {}
 
 
@@ -149,17 +150,20 @@ class Style:
         Coefficients that weigh the Lennard-Jones and Coulomb part of the pair interaction, which is all the energy of the bond.
     lammps : callable, optional
         LAMMPS's forces where they are not minus the gradient of its energy: a function like `function`, for ``compat="lammps"``.
+    d2 : callable, optional
+        Second derivatives of the energy by the coordinates: a function with the arguments of `function` that returns one number for one
+        coordinate, a tuple of rows for several (for `asemd.hessian`).
     """
 
     def __init__(self, category: str, name: str, function: Callable | None, *, settings=(), coeff=None, example: str = "",
                  settings_example: str = "", domain: str = "", equilibrium: str = "", see: str = "",
                  xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
-                 centre: int = 0, lammps: Callable | None = None, breaks: str = "",
+                 centre: int = 0, lammps: Callable | None = None, d2: Callable | None = None, breaks: str = "",
                  remembers: str = "", pair_weights: tuple[str, str] | tuple[()] = ()):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.see, self.xfail = equilibrium, see, dict(xfail)
-        self.weight_14, self._check, self.lammps = weight_14, check, lammps
+        self.weight_14, self._check, self.lammps, self.d2 = weight_14, check, lammps, d2
         self.breaks, self.remembers, self.pair_weights = breaks, remembers, pair_weights
         self.centre = centre or (1 if category == "improper" else 2)
         notes = units_of(function) if function else {}

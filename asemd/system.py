@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd.atom_style import UNITS, bonded
 from asemd.box import Box
 from asemd.errors import InputError, InputWarning
 from asemd.topology import KINDS, Topology, rows_of
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 COUNTS = ("ntypes", *(f"n{kind}types" for kind in KINDS), *(f"extra_{kind}_per_atom" for kind in (*KINDS, "special")))
 LABELLED = ("atom", *KINDS)
-MOLECULAR_STYLES = {"bond", "angle", "molecular", "full", "template"}
 
 
 def __getattr__(name: str):
@@ -123,7 +123,7 @@ class System:
     @property
     def molecular(self) -> bool:
         """True if the atom style has molecule ids and bonds."""
-        return self.atom_style in MOLECULAR_STYLES or not self.topology.is_empty
+        return bool(bonded(self.atom_style)) or not self.topology.is_empty
 
     def copy(self) -> System:
         return copy.deepcopy(self)
@@ -298,7 +298,8 @@ class System:
         Parameters
         ----------
         atoms : ase.Atoms
-            Its arrays ``id``, ``type``, ``mol-id``, ``image``, ``initial_charges``, ``masses``, ``momenta`` and its ``topology`` (see
+            Its arrays ``id``, ``type``, ``mol-id``, ``image``, ``initial_charges``, ``masses``, ``momenta``, ``mu`` (dipoles) and its
+            ``topology`` (see
             `asemd.atoms.Atoms`) are used where they exist.
         types : sequence of str, optional
             Chemical symbols in the order of type numbers. By default the array ``type`` gives the numbers, or else the sorted symbols.
@@ -344,6 +345,7 @@ class System:
                      v=None if momenta is None else atoms.get_velocities() / u["velocity"], molecule=arrays.get("mol-id"),
                      q=arrays["initial_charges"] / u["charge"] if "initial_charges" in arrays else None,
                      rmass=None if np.array_equal(mass[number], atom_mass) else atom_mass,
+                     extra={name: arrays[name] / unit_styles.factor(d, units) for name, d in UNITS.items() if name in arrays},
                      topology=Topology() if top is None else top.copy(), labels=like.labels if like is not None else {"atom": labels},
                      dimension=like.dimension if like is not None else 3)
         bonded = not system.topology.is_empty
@@ -356,17 +358,19 @@ class System:
         """`asemd.atoms.Atoms` in ASE's units, rows in the same order.
 
         Positions are those of `x`, with the image flags in the array ``image``; further arrays are ``id``, ``type``, ``mol-id``, charges,
-        masses and momenta. The origin of the box becomes celldisp. Elements come from type labels, else from masses, else X.
+        masses and momenta; where atoms have them also ``mu``, ``torque``, ``radius`` and ``omega``. The origin of the box becomes celldisp.
+        Elements come from type labels, else from masses, else X.
         """
         from asemd.atoms import Atoms, elements
         u = {d: unit_styles.factor(d, self.units) for d in ("distance", "mass", "velocity", "charge")}
         masses = self.atom_masses() * u["mass"]
         numbers = elements(self.type, masses, self.labels["atom"], guess=self.units != "lj")
+        extra = {name: a * unit_styles.factor(UNITS.get(name, ""), self.units) for name, a in self.extra.items()}
         atoms = Atoms(numbers=numbers, positions=self.x * u["distance"], cell=self.box.cell * u["distance"], pbc=self.box.periodic,
                       celldisp=self.box.origin * u["distance"], topology=self.topology.copy())
         if np.isfinite(masses).all():
             atoms.set_masses(masses)
-        for name, array in (("id", self.id), ("type", self.type), ("mol-id", self.molecule), ("image", self.image), *self.extra.items()):
+        for name, array in (("id", self.id), ("type", self.type), ("mol-id", self.molecule), ("image", self.image), *extra.items()):
             atoms.set_array(name, array)
         if self.q is not None:
             atoms.set_initial_charges(self.q * u["charge"])

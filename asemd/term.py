@@ -67,6 +67,49 @@ class BondedTerm:
         return SimulationError(bonded.describe(self.style, value, ids, int(self.types[item])))
 
 
+class DipoleTerm(BondedTerm):
+    """Angles that hold dipoles: the dipoles of the slots are gathered at each list build, torques are collected by thread.
+
+    Raises
+    ------
+    InputError
+        The atoms have no dipoles.
+    """
+
+    def __init__(self, category, use, *arguments):
+        super().__init__(category, use, *arguments)
+        self.mu = self.torque = None
+
+    def rebuild(self, engine):
+        super().rebuild(engine)
+        extra, slots = engine.system.extra, engine.state.x.shape[1]
+        if "mu" not in extra:
+            raise InputError(f"angle_style {self.style.name} needs atoms with dipoles: use atom_style dipole, or hybrid with it")
+        self.row = engine.state.row.copy()
+        self.mu, self.torque = np.zeros((3, slots)), np.zeros((engine.threads, 3, slots))
+        self.mu[:, self.row >= 0] = extra["mu"][self.row[self.row >= 0]].T
+
+    def arguments(self, engine, tid):
+        x, out, slots, types, cell, coeff, _, *rest = super().arguments(engine, tid)
+        return (x, out, slots, types, cell, coeff, (self.mu, self.torque[tid]), *rest)
+
+    def describe(self, engine, item, value):
+        row = self.items[self.order[item]][0]
+        if not engine.system.extra["mu"][row].any():
+            return SimulationError(f"angle_style {self.style.name}: atom {engine.system.id[row]} has no dipole, set its length first")
+        return super().describe(engine, item, value)
+
+
+def store_torques(terms: list, system) -> None:
+    """The torques of the last evaluation, as ``system.extra["torque"]`` (n, 3)."""
+    turning = [t for t in terms if isinstance(t, DipoleTerm)]
+    if turning or "torque" in system.extra:
+        torque = system.extra.setdefault("torque", np.zeros((system.n, 3)))
+        torque[:] = 0.0
+        for t in turning:
+            torque[t.row[t.row >= 0]] += t.torque.sum(axis=0)[:, t.row >= 0].T
+
+
 class PairTerm:
     """A pair style over the cluster list."""
 
@@ -186,8 +229,8 @@ def bonded_terms(system, interactions, pair_terms, units) -> list:
         for use in interactions.uses.get(category, []):
             mine = np.isin(types, list(use.coeff))
             if use.style.function is not None and not use.style.history and mine.any():
-                terms.append(BondedTerm(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units,
-                                        interactions.compat))
+                kind = DipoleTerm if use.style.coordinates == ("gamma",) else BondedTerm
+                terms.append(kind(category, use, items[mine], types[mine], system.counts[f"n{category}types"], units, interactions.compat))
                 terms += one_four_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"], units)
                 terms += end_terms(use, items[mine], types[mine], pair_terms, system.counts["ntypes"])
     return terms

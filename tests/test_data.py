@@ -311,8 +311,8 @@ def test_missing_file_and_binary_file(tmp_path):
         read_data("nosuch.data")
     with pytest.raises(InputError, match="not a text file"):
         load(tmp_path, b"\0\1\2")
-    with pytest.raises(InputError, match="atom_style sphere is not supported"):
-        load(tmp_path, GOOD, atom_style="sphere")
+    with pytest.raises(InputError, match="atom_style ellipsoid is not supported"):
+        load(tmp_path, GOOD, atom_style="ellipsoid")
     with pytest.raises(InputError, match="bonds are not possible with atom_style charge"):
         load(tmp_path, GOOD, atom_style="charge")
     with pytest.raises(InputError, match="2d system"):

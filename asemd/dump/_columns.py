@@ -74,6 +74,28 @@ class View:
     def xsu(self):
         return self.xs + self.image
 
+    def _extra(self, name: str, what: str) -> np.ndarray:
+        if name not in self.system.extra:
+            raise InputError(f"dump: atom style {self.system.atom_style} has no {what} (property {name})")
+        array = self.system.extra[name]
+        return self._vector(array) if array.ndim == 2 else array[self.rows]
+
+    @cached_property
+    def mu(self):
+        return self._extra("mu", "dipoles")
+
+    @cached_property
+    def torque(self):
+        return self._extra("torque", "torques")
+
+    @cached_property
+    def omega(self):
+        return self._extra("omega", "angular velocities")
+
+    @cached_property
+    def radius(self):
+        return self._extra("radius", "radius")
+
     def element(self) -> list[str]:
         if not self._element:
             return ["C"] * len(self.rows)
@@ -107,6 +129,9 @@ COLUMNS: dict[str, tuple[str, Callable[[View], Sequence]]] = {
     "element": ("string", View.element),
     "mass": ("float", lambda w: w.system.atom_masses()[w.rows]),
     "q": ("float", View.charge),
+    "mu": ("float", lambda w: np.linalg.norm(w.mu, axis=1)),
+    "radius": ("float", lambda w: w.radius),
+    "diameter": ("float", lambda w: 2.0 * w.radius),
 }
 LABELS = ("typelabel", "element")
 
@@ -120,6 +145,8 @@ for _k, _a in enumerate(AXES):
         COLUMNS[_a + _suffix] = ("float", _component(_array, _k))
     COLUMNS["v" + _a] = ("float", _component("v", _k))
     COLUMNS["f" + _a] = ("float", _component("f", _k))
+    for _name, _array in (("mu", "mu"), ("tq", "torque"), ("omega", "omega")):
+        COLUMNS[_name + _a] = ("float", _component(_array, _k))
     COLUMNS["i" + _a] = ("integer", _component("image", _k))
 
 

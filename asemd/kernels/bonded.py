@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 
-from asemd.kernels import angle, bond, bond_history, dihedral, image, improper, vectors
+from asemd.kernels import angle, bond, bond_history, dihedral, dipole, image, improper, vectors
 from asemd.kernels.generate import Builder, plain_source
 from asemd.style import VECTORS, Style
 
@@ -54,6 +54,8 @@ def chart(style: Style) -> tuple[str, ...]:
         return VECTORS[:6] if style.category == "angle" else VECTORS
     if style.coordinates[0] in ("phi", "chi"):
         return TORSION
+    if style.coordinates[0] == "gamma":
+        return style.coordinates
     return ANGLE if style.category == "angle" else style.coordinates[:1]
 
 
@@ -62,6 +64,8 @@ def _loop(style: Style) -> Callable:
         return bond_history.bond if style.history else bond.bond
     if style.coordinates[0] == "ax":
         return vectors.three if style.category == "angle" else vectors.four
+    if style.coordinates[0] == "gamma":
+        return dipole.dipole
     if style.category == "angle":
         return angle.angle
     return improper.out_of_plane if style.coordinates == ("omega",) else dihedral.torsion

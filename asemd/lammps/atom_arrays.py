@@ -24,6 +24,8 @@ class AtomArrays:
             return system.mass
         if name in ("x", "v", "f", "id", "type", "molecule", "image", "q", "rmass"):
             values = getattr(system, name)
+        elif name == "mu" and "mu" in system.extra:      # with its length, as LAMMPS keeps it
+            return np.column_stack([system.extra["mu"], np.linalg.norm(system.extra["mu"], axis=1)])
         else:
             values = system.extra.get(name)
         if values is None:

@@ -6,6 +6,7 @@ import pkgutil
 import re
 from functools import cache
 
+from asemd import atom_style
 from asemd.errors import InputError, nearest
 from asemd.lammps.names import COMMANDS
 from asemd.style import ACCELERATED, module_of
@@ -14,7 +15,6 @@ FORCE_FIELD = ("bond", "angle", "dihedral", "improper", "pair")
 PACKAGES = {"command": "asemd.lammps.command",
             **{c: f"asemd.{c}" for c in (*FORCE_FIELD, "kspace", "fix", "compute", "dump", "region", "minimize")}}
 WRAPPERS = ("none", "hybrid")       # styles that are made of others, or of nothing
-ATOM_STYLES = ("angle", "atomic", "bond", "charge", "full", "molecular")
 
 
 @cache
@@ -41,7 +41,7 @@ def plain(name: str) -> str:
 def exists(category: str, name: str) -> bool:
     """Whether there is a style (or command) of that name; imports the one file it would be in."""
     if category == "atom":
-        return name in ATOM_STYLES
+        return name in atom_style.NAMES
     if category == "integrate":
         return name == "verlet"
     if category in FORCE_FIELD and (name in WRAPPERS or (category, name) == ("pair", "hybrid/overlay")):
@@ -67,7 +67,7 @@ def _force_field(category: str, file: str) -> set[str]:
 def names(category: str) -> tuple[str, ...]:
     """All styles of a category by their LAMMPS names; imports their files."""
     if category == "atom":
-        return ATOM_STYLES
+        return tuple(sorted(atom_style.NAMES))
     if category == "integrate":
         return ("verlet",)
     if category == "command":

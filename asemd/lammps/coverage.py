@@ -30,10 +30,13 @@ PARTIAL = {
     ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
     ("command", "region"): "no moving regions, no variable radius",
     ("command", "run_style"): "only verlet",
-    ("command", "set"): "type type/fraction mol x y z vx vy vz charge mass image and types of bonds to impropers",
+    ("command", "set"): "type type/fraction mol x y z vx vy vz charge dipole dipole/random diameter density mass image and types of bonds "
+                        "to impropers",
     ("command", "special_bonds"): "no one/five",
     ("command", "thermo_modify"): "no triclinic/general",
     ("command", "write_data"): "no triclinic/general",
+    ("atom", "dipole"): "no fix turns the dipoles",
+    ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
     ("fix", "langevin"): "no gjf, omega, angmom",
 }
 # names that are read but do nothing useful yet

@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from asemd import atom_style as atom_styles
 from asemd.box import FARTHEST, Box
 from asemd.errors import InputError, Where, nearest
-from asemd.lammps.data_format import ATOM_STYLES, COEFFS, IMAGE, KIND_OF, LABELS, REAL_HEADER, TOPOLOGY
+from asemd.lammps.data_format import COEFFS, IMAGE, KIND_OF, LABELS, REAL_HEADER, TOPOLOGY
 from asemd.lammps.data_table import parse_table
 from asemd.lammps.data_text import DataText
 from asemd.system import System, id_range
@@ -74,8 +75,8 @@ def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "ful
     InputWarning
         What is legal but hardly meant: a bond listed twice, image flags that tear bonds apart, style hints that differ.
     """
-    if atom_style not in ATOM_STYLES:
-        raise InputError(f"read_data: atom_style {atom_style} is not supported; use one of {' '.join(ATOM_STYLES)}")
+    if not atom_styles.known(atom_style):
+        raise InputError(f"read_data: atom_style {atom_style} is not supported; use one of {' '.join(atom_styles.NAMES)}")
     return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float)).read()
 
 
@@ -107,7 +108,7 @@ class _Reader(DataText):
 
     def check_hints(self) -> None:
         hint = self.sections["Atoms"].hint if "Atoms" in self.sections else ""
-        if hint and hint != self.atom_style:
+        if hint and hint != self.atom_style.split()[0]:
             self.warn(f"Atoms section is said to be of style {hint}, but atom_style is {self.atom_style}", self.sections["Atoms"].line)
         said = self.lines[0].rpartition("units = ")[2].split()[:1] if "units = " in self.lines[0] else []
         if said and said[0] != self.units and self.units != "ase":
@@ -234,7 +235,7 @@ class _Reader(DataText):
         return mass
 
     def read_atoms(self, box: Box, rotation: np.ndarray | None, counts: dict[str, int], mass: np.ndarray) -> System:
-        columns, n = ATOM_STYLES[self.atom_style], self.number("atoms")
+        columns, n = atom_styles.columns(self.atom_style), self.number("atoms")
         if n or ("Atoms" in self.sections and self.content(self.sections["Atoms"])):
             a, where = self.table("Atoms", columns, n, optional=IMAGE)
         else:
@@ -264,17 +265,21 @@ class _Reader(DataText):
         if far.any():
             row = int(np.argmax(far.any(axis=1)))
             raise self.fail(f"atom {ids[row]} is more than {FARTHEST:g} boxes away", line(row))
-        v = self.read_velocities(ids)
+        v, omega = self.read_velocities(ids)
+        try:
+            extra = atom_styles.properties({name: array[order] for name, array in a.items()}, omega)
+        except InputError as e:
+            raise self.fail(f"Atoms section: {e.message}", line(e.row)) from None
+        rmass = extra.pop("rmass", None)
         if rotation is not None:
             v = v @ rotation
+            extra |= {name: extra[name] @ rotation for name in ("mu", "omega") if name in extra}
         whole.wrap(x, image)
         top = self.read_topology(ids)
-        known = {"id", "type", "molecule", "q", *"xyz", *IMAGE}
         system = System(
             box=whole.shrink_wrapped(x), x=x, id=ids, type=a["type"][order], image=image, v=v, mass=mass, topology=top, counts=counts,
             molecule=a["molecule"][order] if "molecule" in a else None, q=a["q"][order] if "q" in a else None, labels=self.labels,
-            units=self.units, atom_style=self.atom_style, dimension=self.dimension,
-            extra={name: array[order] for name, array in a.items() if name not in known})
+            units=self.units, atom_style=self.atom_style, dimension=self.dimension, rmass=rmass, extra=extra)
         if flagged and self.onto is None:
             self.check_images(system, line)
         return system
@@ -311,11 +316,13 @@ class _Reader(DataText):
         self.warn(f"inconsistent image flags: bond {bad[0] + 1} (atoms {system.id[i]}-{system.id[j]}): image flags put the atoms "
                   f"{np.linalg.norm(far[1] - far[0]):g} apart, more than half the box{more}", line(suspect))
 
-    def read_velocities(self, ids: np.ndarray) -> np.ndarray:
-        v = np.zeros((len(ids), 3))
+    def read_velocities(self, ids: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Velocities and angular velocities."""
+        v = np.zeros((len(ids), 6))
         if "Velocities" not in self.sections:
-            return v
-        a, where = self.table("Velocities", ("id", "vx", "vy", "vz"), len(ids))
+            return v[:, :3], v[:, 3:]
+        columns = atom_styles.velocity_columns(self.atom_style)
+        a, where = self.table("Velocities", columns, len(ids))
         rows = self.rows("Velocities", a["id"][:, None], ids, where)[:, 0]
         order = np.argsort(rows, kind="stable")
         twice = np.flatnonzero(np.diff(rows[order]) == 0)
@@ -323,8 +330,8 @@ class _Reader(DataText):
             first, second = (where(int(r)) for r in order[twice[0]:twice[0] + 2])
             name = ids[rows[order[twice[0]]]]
             raise self.fail(f"Velocities section: atom ID {name} appears on lines {first + 1} and {second + 1}", second)
-        v[rows] = np.column_stack([a["vx"], a["vy"], a["vz"]])
-        return v
+        v[rows, :len(columns) - 1] = np.column_stack([a[c] for c in columns[1:]])
+        return v[:, :3], v[:, 3:]
 
     def rows(self, section: str, atoms: np.ndarray, ids: np.ndarray, where) -> np.ndarray:
         """Rows of atom ids (m, k)."""

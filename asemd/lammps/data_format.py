@@ -1,28 +1,14 @@
-"""What stands in a LAMMPS data file: header lines, sections, and the columns of every atom style.
-
-A new atom style is one line in `ATOM_STYLES`; columns that `asemd.system.System` does not know go to its ``extra``.
-"""
+"""What stands in a LAMMPS data file: header lines, sections and kinds of columns. Those of an atom style: `asemd.atom_style`."""
 from __future__ import annotations
 
-POSITION = ("x", "y", "z")
+from asemd.atom_style import DIPOLE, SPHERE, SPIN
+
 IMAGE = ("nx", "ny", "nz")
 
 # column -> "id", "whole", "type" or "real"
 KIND_OF = {"id": "id", "molecule": "whole", "type": "type", "q": "real", "x": "real", "y": "real", "z": "real", "nx": "whole",
            "ny": "whole", "nz": "whole", "vx": "real", "vy": "real", "vz": "real", "number": "whole", "atom1": "id",
-           "atom2": "id", "atom3": "id", "atom4": "id"}
-
-ATOM_STYLES = {
-    "atomic": ("id", "type", *POSITION),
-    "charge": ("id", "type", "q", *POSITION),
-    "bond": ("id", "molecule", "type", *POSITION),
-    "angle": ("id", "molecule", "type", *POSITION),
-    "molecular": ("id", "molecule", "type", *POSITION),
-    "full": ("id", "molecule", "type", "q", *POSITION),
-}
-# what an atom style can be bonded by
-BONDED = {"bond": ("bond",), "angle": ("bond", "angle"), "molecular": ("bond", "angle", "dihedral", "improper"),
-          "full": ("bond", "angle", "dihedral", "improper")}
+           "atom2": "id", "atom3": "id", "atom4": "id", **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE), "real")}
 
 # header line -> number of values
 HEADER = {

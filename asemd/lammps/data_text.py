@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd.atom_style import bonded
 from asemd.errors import InputError, InputWarning, Where, nearest
-from asemd.lammps.data_format import BONDED, COEFFS, HEADER, LABELS, REAL_HEADER, SECTIONS, TOPOLOGY, UNSUPPORTED
+from asemd.lammps.data_format import COEFFS, HEADER, LABELS, REAL_HEADER, SECTIONS, TOPOLOGY, UNSUPPORTED
 
 
 def _lines(path: str | os.PathLike) -> list[str]:
@@ -129,7 +130,7 @@ class DataText:
             plural = {"tri": "triangles", "body": "bodies"}.get(word, word + "s")
             if self.number(plural):
                 raise self.fail(f"{plural} need atom_style {word}, which is not supported", self.header_line[plural])
-        kinds = BONDED.get(self.atom_style, ())
+        kinds = bonded(self.atom_style)
         first = self.sections.get("Atoms")
         for section in ("Velocities", *TOPOLOGY):
             there = self.sections.get(section)

@@ -40,7 +40,7 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
     session = Session(passive=True)
     if is_data(lines):
         session.call("units", [units or hint(lines[:1], r"units = (\w+)") or "lj"])
-        session.call("atom_style", [atom_style or hint(lines, r"^\s*Atoms\s*#\s*(\w+)") or guess_style(lines)])
+        session.call("atom_style", [*atom_style.split()] if atom_style else [hint(lines, r"^\s*Atoms\s*#\s*(\w+)") or guess_style(lines)])
         session.execute(Command(f"read_data '{path}' nocoeff", Where("", 1, f"read_data {path}")))
         return session.scene.system.to_ase()
     if units or atom_style:

@@ -1,4 +1,4 @@
-"""``atom_style style``"""
+"""``atom_style style`` and ``atom_style hybrid style style ...``"""
 from __future__ import annotations
 
 from asemd.errors import InputError
@@ -11,6 +11,23 @@ def run(session, args):
     style = catalog.plain(args[0])
     if not catalog.exists("atom", style):
         raise catalog.unknown("atom", args[0])
-    if len(args) > 1:
+    if style == "hybrid":
+        style = hybrid(args[1:])
+    elif len(args) > 1:
         raise InputError(f"atom_style {style} takes no arguments, got {' '.join(args[1:])}")
     session.scene.atom_style = style
+
+
+def hybrid(words: list[str]) -> str:
+    """The styles behind ``hybrid``, each once, as one name."""
+    names = [catalog.plain(w) for w in words]
+    if not names:
+        raise InputError("atom_style hybrid needs the names of its sub-styles")
+    for name in names:
+        if name == "hybrid":
+            raise InputError("atom_style hybrid cannot have hybrid as a sub-style")
+        if not catalog.exists("atom", name):
+            raise catalog.unknown("atom", name)
+        if names.count(name) > 1:
+            raise InputError(f"atom_style hybrid cannot use the style {name} twice")
+    return " ".join(["hybrid", *names])

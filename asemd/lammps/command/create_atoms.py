@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 
+from asemd.atom_style import fresh
 from asemd.errors import InputError, nearest
 from asemd.lammps.command.create_box import describe
 from asemd.lattice import Lattice
@@ -37,8 +38,8 @@ def run(session, args):
         x, types = _random(values, system, region, options["maxtry"], kind)
     else:
         x, types = _lattice(system, lattice, region, options["basis"], kind)
-    new = System(box=system.box, x=x, type=types, units=system.units, atom_style=system.atom_style,
-                 dimension=system.dimension, counts=dict(system.counts), q=None if system.q is None else np.zeros(len(x)))
+    new = System(box=system.box, x=x, type=types, units=system.units, dimension=system.dimension, counts=dict(system.counts),
+                 **fresh(system.atom_style, len(x)))
     scene.system = system.append(new)
     session.stale()
     session.print(f"Created {len(x)} atoms")

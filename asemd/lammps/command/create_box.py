@@ -3,13 +3,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.atom_style import bonded, fresh
 from asemd.box import MARGIN, Box
 from asemd.errors import InputError, nearest
 from asemd.region.prism import Prism
-from asemd.system import COUNTS, MOLECULAR_STYLES, System
+from asemd.system import COUNTS, System
 from asemd.words import take, whole
 
-CHARGED = ("charge", "full")
 KEYWORDS = {**{f"{kind}/types": f"n{kind}types" for kind in ("bond", "angle", "dihedral", "improper")},
             **{name.replace("_", "/"): name for name in COUNTS if name.startswith("extra_")}}
 
@@ -30,7 +30,7 @@ def run(session, args):
         key, what = words[0], f"create_box {words[0]}"
         if key not in KEYWORDS:
             raise InputError(f"create_box: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
-        if scene.atom_style not in MOLECULAR_STYLES:
+        if not bonded(scene.atom_style):
             raise InputError(f"{what}: atom_style {scene.atom_style} has no bonds")
         value = whole(take(words[1:], 1, what)[0], what)
         if value < 0:
@@ -38,8 +38,7 @@ def run(session, args):
         counts[KEYWORDS[key]], words = value, words[2:]
     empty = np.zeros(0)
     scene.system = System(box=_box(scene, region), x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
-                          q=empty if scene.atom_style in CHARGED else None, atom_style=scene.atom_style, dimension=scene.dimension,
-                          step=scene.step)
+                          dimension=scene.dimension, step=scene.step, **fresh(scene.atom_style, 0))
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
     scene.system.box = _widened(scene.system.box)

@@ -3,13 +3,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.atom_style import volume
 from asemd.errors import InputError, nearest
 from asemd.random import position_seeds, uniform_at
 from asemd.words import bounds, number, take, whole
 
 LARGEST = 2**62     # no id is above
 KEYWORDS = {"type": 1, "type/fraction": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1, "charge": 1, "mass": 1, "image": 3,
-            "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
+            "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1, "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
 
 
 def run(session, args):
@@ -63,6 +64,10 @@ class Setter:
             return self._items(key, values[0])
         if key == "type/fraction":
             return self._fraction(values)
+        if key in ("dipole", "dipole/random"):
+            return self._dipole(key, values)
+        if key in ("diameter", "density"):
+            return self._sphere(key, values[0])
         if key == "image":
             return self._image(values)
         if key == "type" and not values[0].startswith("v_"):
@@ -120,6 +125,35 @@ class Setter:
         chosen = self.rows[u <= fraction]
         self.system.type[chosen] = kind
         return len(chosen)
+
+    def _dipole(self, key: str, values: list[str]) -> int:
+        if "mu" not in self.system.extra:
+            raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no dipoles")
+        if key == "dipole":
+            mu = np.column_stack([self._values(word) for word in values])
+        else:
+            seed, length = whole(values[0], f"{self.what}: seed"), number(values[1], self.what)
+            if seed <= 0 or length <= 0.0:
+                raise InputError(f"{self.what}: seed and length must be positive, got {values[0]} {values[1]}")
+            mu = np.zeros((len(self.rows), 3))
+            d = self.system.dimension
+            mu[:, :d] = uniform_at(position_seeds(seed, self.system.x[self.rows]), d) - 0.5
+            mu *= length / np.linalg.norm(mu, axis=1)[:, None]
+        self.system.extra["mu"][self.rows] = mu
+        return len(self.rows)
+
+    def _sphere(self, key: str, word: str) -> int:
+        """Diameters leave the masses as they are; a density gives the mass with the present diameter."""
+        extra, new = self.system.extra, self._values(word)
+        if "radius" not in extra:
+            raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no {key}")
+        if (new < 0.0).any() or (key == "density" and (new == 0.0).any()):
+            raise InputError(f"{self.what}: a {key} must be {'positive' if key == 'density' else '0 or more'}, got {word}")
+        if key == "diameter":
+            extra["radius"][self.rows] = 0.5 * new
+        else:
+            self.system.rmass[self.rows] = new * volume(extra["radius"][self.rows])
+        return len(self.rows)
 
     def _image(self, values: list[str]) -> int:
         for k, word in enumerate(values):
