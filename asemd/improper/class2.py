@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 
 from asemd.cross_terms import CrossTermStyle
-from asemd.kernels.geometry import angle_between, elevation
+from asemd.kernels.geometry import angle_between, cross, elevation, low
 from asemd.style import improper
 
 
 class ImproperClass2(CrossTermStyle):
     def functions(self):
-        return angle_between, elevation, self.function
+        return low, cross, angle_between, elevation, self.function
 
 
 @improper("class2", cls=ImproperClass2, marks={"aa": "M1 M2 M3 theta1 theta2 theta3"}, centre=2, equilibrium="chi0",

@@ -4,13 +4,13 @@ Spring in the distance d of the first atom from the plane of the other three. So
 """
 from __future__ import annotations
 
-from asemd.kernels.geometry import plane_distance
+from asemd.kernels.geometry import cross, low, plane_distance
 from asemd.style import Style, improper
 
 
 class ImproperDistance(Style):
     def functions(self):
-        return plane_distance, self.function
+        return low, cross, plane_distance, self.function
 
 
 @improper("distance", cls=ImproperDistance, example="80.0 30.0")

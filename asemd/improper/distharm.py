@@ -5,13 +5,13 @@ counter-clockwise when seen from atom 1. Source: LAMMPS manual, improper_style d
 """
 from __future__ import annotations
 
-from asemd.kernels.geometry import plane_distance
+from asemd.kernels.geometry import cross, low, plane_distance
 from asemd.style import Style, improper
 
 
 class ImproperDistharm(Style):
     def functions(self):
-        return plane_distance, self.function
+        return low, cross, plane_distance, self.function
 
 
 @improper("distharm", cls=ImproperDistharm, example="25.0 0.3")

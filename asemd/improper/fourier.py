@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.kernels.geometry import elevation
+from asemd.kernels.geometry import cross, elevation, leans_over, low
 from asemd.style import Parameter, Style, improper
 
 
@@ -17,15 +17,13 @@ class ImproperFourier(Style):
         return {"all": 1, **super().parse_coeff(words, settings)}
 
     def functions(self):
-        return elevation, inversion, self.function
+        return low, cross, elevation, leans_over, inversion, self.function
 
 
 def inversion(ax, ay, az, bx, by, bz, cx, cy, cz, C0, C1, C2):
     """Energy of c as the axis and a, b in the plane, over K, and its derivatives."""
     chi, gax, gay, gaz, gbx, gby, gbz, gcx, gcy, gcz = elevation(ax, ay, az, bx, by, bz, cx, cy, cz)
-    side = (ax * cx + ay * cy + az * cz) / math.sqrt(ax * ax + ay * ay + az * az)
-    side += (bx * cx + by * cy + bz * cz) / math.sqrt(bx * bx + by * by + bz * bz)
-    turned = -C1 if side > 0.0 else C1
+    turned = -C1 if leans_over(ax, ay, az, bx, by, bz, cx, cy, cz) else C1
     h, s = math.sin(0.5 * chi), math.sin(chi)
     e = C0 + turned + C2 - 2.0 * (turned * h * h + C2 * s * s)       # cos(x) = 1 - 2 sin^2(x/2): exact near the plane
     d = -s * (turned + 4.0 * C2 * math.cos(chi))

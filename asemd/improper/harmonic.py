@@ -8,7 +8,11 @@ from __future__ import annotations
 from asemd.style import improper
 
 
-@improper("harmonic", example="40.0 10.0", equilibrium="chi0")
+def harmonic_d2(chi, K, chi0):
+    return 2.0 * K
+
+
+@improper("harmonic", example="40.0 10.0", equilibrium="chi0", d2=harmonic_d2)
 def harmonic(chi, K: "energy", chi0: "angle"):
     d = chi - chi0
     return K * d * d, 2.0 * K * d

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import math
 
-from asemd.kernels.geometry import elevation
+from asemd.kernels.geometry import cross, elevation, low
 from asemd.style import Style, improper
 
 
 class ImproperInversion(Style):
     def functions(self):
-        return elevation, self.function
+        return low, cross, elevation, self.function
 
 
 @improper("inversion/harmonic", cls=ImproperInversion, example="18.776 12.0", equilibrium="omega0",

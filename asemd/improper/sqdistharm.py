@@ -5,13 +5,13 @@ Source: LAMMPS manual, improper_style sqdistharm.
 """
 from __future__ import annotations
 
-from asemd.kernels.geometry import plane_distance
+from asemd.kernels.geometry import cross, low, plane_distance
 from asemd.style import Style, improper
 
 
 class ImproperSqdistharm(Style):
     def functions(self):
-        return plane_distance, self.function
+        return low, cross, plane_distance, self.function
 
 
 @improper("sqdistharm", cls=ImproperSqdistharm, example="25.0 0.09")

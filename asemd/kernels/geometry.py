@@ -8,6 +8,20 @@ from __future__ import annotations
 import math
 
 
+def low(p, a, b):
+    """What the rounding of the product p = a b left out (Dekker, Numer. Math. 18, 224 (1971))."""
+    s, t = 134217729.0 * a, 134217729.0 * b
+    s, t = s - (s - a), t - (t - b)
+    return ((s * t - p) + s * (b - t) + (a - s) * t) + (a - s) * (b - t)
+
+
+def cross(ax, ay, az, bx, by, bz):
+    """a x b with all its digits even if a and b are nearly on one line, so that it is upright on both."""
+    p, q, r, s, t, u = ay * bz, az * by, az * bx, ax * bz, ax * by, ay * bx
+    return ((p - q) + (low(p, ay, bz) - low(q, az, by)), (r - s) + (low(r, az, bx) - low(s, ax, bz)),
+            (t - u) + (low(t, ax, by) - low(u, ay, bx)))
+
+
 def angle_between(ax, ay, az, bx, by, bz):
     """Angle of two vectors, 0 to pi, and its derivatives by both (7 numbers)."""
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
@@ -26,7 +40,7 @@ def elevation(ax, ay, az, bx, by, bz, cx, cy, cz):
 
     With n = a x b and q = n x c the angle is atan2(n . c, |q|). Source: Wilson, Decius and Cross, Molecular Vibrations (1955).
     """
-    nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    nx, ny, nz = cross(ax, ay, az, bx, by, bz)
     n = math.sqrt(nx * nx + ny * ny + nz * nz)
     if n == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -44,14 +58,25 @@ def elevation(ax, ay, az, bx, by, bz, cx, cy, cz):
             up * ny - along * (qz * nx - qx * nz), up * nz - along * (qx * ny - qy * nx))
 
 
+def leans_over(ax, ay, az, bx, by, bz, cx, cy, cz):
+    """Whether c leans over to the side of a and b: the sum of its cosines with them is positive."""
+    aa, bb = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz
+    p, q = (ax * cx + ay * cy + az * cz) / math.sqrt(aa), (bx * cx + by * cy + bz * cz) / math.sqrt(bb)
+    if p * q >= 0.0 or p * p + q * q < cx * cx + cy * cy + cz * cz:
+        return p + q > 0.0
+    ux, uy, uz = ay * cz - az * cy, az * cx - ax * cz, ax * cy - ay * cx       # all nearly on one line: the sines tell more
+    vx, vy, vz = by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
+    s, t = (ux * ux + uy * uy + uz * uz) / aa, (vx * vx + vy * vy + vz * vz) / bb
+    return s > t if q > 0.0 else s < t
+
+
 def plane_distance(ax, ay, az, bx, by, bz, cx, cy, cz):
     """Height of the origin over the plane through the ends of a, b and c, and its derivatives by all (10 numbers).
 
     Positive where the ends, seen from the origin, turn counter-clockwise.
     The derivatives are the weights of the ends at the foot of the height, times the normal of the plane.
     """
-    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
-    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    nx, ny, nz = cross(bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az)
     n = math.sqrt(nx * nx + ny * ny + nz * nz)
     if n == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -59,4 +84,11 @@ def plane_distance(ax, ay, az, bx, by, bz, cx, cy, cz):
     wa = -((by * cz - bz * cy) * nx + (bz * cx - bx * cz) * ny + (bx * cy - by * cx) * nz) / n
     wb = -((cy * az - cz * ay) * nx + (cz * ax - cx * az) * ny + (cx * ay - cy * ax) * nz) / n
     wc = -((ay * bz - az * by) * nx + (az * bx - ax * bz) * ny + (ax * by - ay * bx) * nz) / n
-    return (-(nx * ax + ny * ay + nz * az), wa * nx, wa * ny, wa * nz, wb * nx, wb * ny, wb * nz, wc * nx, wc * ny, wc * nz)
+    aa, bb, cc = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, cx * cx + cy * cy + cz * cz
+    if aa <= bb and aa <= cc:                         # from the nearest end: no digits cancel
+        d = -(nx * ax + ny * ay + nz * az)
+    elif bb <= cc:
+        d = -(nx * bx + ny * by + nz * bz)
+    else:
+        d = -(nx * cx + ny * cy + nz * cz)
+    return (d, wa * nx, wa * ny, wa * nz, wb * nx, wb * ny, wb * nz, wc * nx, wc * ny, wc * nz)
