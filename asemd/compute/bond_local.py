@@ -3,6 +3,7 @@
 Keywords: dist dx dy dz (vector from atom 2 to atom 1), engpot force fx fy fz (force on atom 1; ``force`` is positive if they repel each
 other), engvib engrot engtrans (kinetic energy of vibration, rotation and translation of the two atoms), omega (angular velocity), velvib
 (velocity along the bond, positive if it grows), v_name with ``set dist variable``. Turned off bonds have energy and force 0.
+Of a bond across a periodic face LAMMPS takes the motion along the line through the whole box; here it is along the bond.
 
 Source: LAMMPS manual, compute bond/local.
 """
