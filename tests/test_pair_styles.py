@@ -68,6 +68,11 @@ def exact(name: str, r):
         return m.exp(-4 * (r - m.mpf(1.2))) - 2 * m.exp(-2 * (r - m.mpf(1.2)))
     if name == "soft":
         return 10 * (1 + m.cos(m.pi * r / m.mpf(1.1)))
+    if name == "lj/charmmfsw/coul/charmmfsh":
+        a, b = m.mpf(8), m.mpf(10)
+        near = (3 / r)**12 - 3**12 / (a * b)**6 - (3 / r)**6 + 3**6 / (a * b)**3
+        far = 3**12 * b**6 / (b**6 - a**6) * (r**-6 - b**-6)**2 - 3**6 * b**3 / (b**3 - a**3) * (r**-3 - b**-3)**2
+        return (4 * m.mpf(0.1) * (near if r < a else far) if r < b else 0) + (QQ / r * (1 - r / 9)**2 if r < 9 else 0)
     assert name == "lj/charmm/coul/charmm"
     return (4 * m.mpf(0.1) * ((3 / r)**12 - (3 / r)**6) * switch(r, 8, 10) if r < 10 else 0) + (QQ / r * switch(r, 7, 9) if r < 9 else 0)
 
@@ -238,6 +243,7 @@ CASES = [  # style, settings, coefficients of 1-1 and 2-2 (morse: of 1-2), farth
     ("lj/cut", "10.0", "0.1 3.0", "0.25 2.1 8.0", 9.9), ("lj96/cut", "10.0", "0.1 3.0", "0.25 2.1 8.0", 9.9),
     ("lj/cut/coul/cut", "8.0 10.0", "0.1 3.0 7.0", "0.25 2.1 6.0 9.0", 9.9), ("coul/cut", "10.0", "", "9.0", 9.9),
     ("soft", "10.0", "10.0", "30.0 9.0", 9.5), ("lj/charmm/coul/charmm", "8.0 10.0 7.0 9.0", "0.1 3.0 0.2 2.0", "0.25 2.1", 9.9),
+    ("lj/charmmfsw/coul/charmmfsh", "8.0 10.0 9.0", "0.1 3.0 0.2 2.0", "0.25 2.1", 9.9),
     ("morse", "10.0", "10.0 0.9 2.5 8.0", None, 7.9), ("buck", "10.0", "17000.0 0.25 30.0 8.0", None, 7.9),
     ("lj/spica", "10.0", "lj9_6 0.1 3.0", None, 9.9), ("lj/spica", "10.0", "lj12_4 0.1 3.0 8.0", None, 7.9),
     ("lj/sdk", "10.0", "lj12_5 0.1 3.0", None, 9.9), ("lj/sdk", "10.0", "lj12_6 0.1 -3.0", None, 9.9),

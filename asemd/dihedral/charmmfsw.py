@@ -15,6 +15,7 @@ class CharmmSwitched(Charmm):
     """Takes the shifted 1-4 pairs of the pair style."""
 
     one_four = "one_four_shifted"
+    providers = "lj/charmmfsw/coul/charmmfsh"
 
 
 charmmfsw = register(CharmmSwitched("dihedral", "charmmfsw", charmm, example="1.2 3 180 0.5", coeff=COEFF, weight_14="w", doc=__doc__))
