@@ -160,9 +160,3 @@ def check_complete(interactions: Interactions, system) -> None:
         if switch and any(c[switch] for c in use.coeff.values()):
             if not any(hasattr(u.style, "repulsion") for u in interactions.uses["pair"]):
                 raise InputError(NO_REPULSION.format(use.style.name))
-    for use in interactions.uses["dihedral"]:
-        weight = use.style.weight_14
-        if weight and any(c.get(weight, 0.0) for c in use.coeff.values()):
-            if not any(hasattr(u.style, "one_four") for u in interactions.uses["pair"]):
-                raise InputError(f"dihedral style {use.style.name} with a weight that is not 0 needs a pair style with 1-4 coefficients, "
-                                 "such as lj/charmm/coul/charmm")
