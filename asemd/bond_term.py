@@ -1,6 +1,8 @@
 """Terms of bonds with a past (a reference length, breaking), and of bonds that are a pair interaction."""
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from asemd.kernels import pair as pair_kernels
@@ -31,7 +33,7 @@ class HistoryTerm(BondedTerm):
         super().rebuild(engine)
         if "reference" in self.style.coordinates:
             if self.reference is None:
-                self.reference = reference_lengths(self.style, self.use.memory, engine, self.items)
+                self.reference = reference_lengths(self.use, engine.system, engine.state.x.T[engine.slot_of], self.items)
             self.history[:] = 0.0
             self.history[:, 0] = self.reference[self.order]
         self.listed = True
@@ -172,17 +174,16 @@ def start_positions(memory: dict, ids: np.ndarray, now: np.ndarray) -> np.ndarra
     return np.where((memory["id"][at] == ids)[..., None], memory["x"][at], now)
 
 
-def reference_lengths(style, memory: dict, engine, pairs: np.ndarray) -> np.ndarray:
-    """The reference length of each bond, from memory; what is new is remembered.
+def reference_lengths(use, system, x: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """The reference length of each bond (rows `pairs` of positions `x`), from the memory of the style; what is new is remembered.
 
     A style with ``remembers="atoms"`` knows where the atoms were, so that a bond made later has the length its atoms had then; with
     ``"bonds"`` it knows the bonds, so that a bond made later has the length it has at its first force.
     """
-    system, x = engine.system, engine.state.x.T[engine.slot_of]
-    ids = system.id[pairs]
+    memory, ids = use.memory, system.id[pairs]
     if "id" not in memory:
         memory.update(id=system.id.copy(), x=x.copy(), box=system.box)
-    if style.remembers == "atoms":
+    if use.style.remembers == "atoms":
         start = start_positions(memory, ids, x[pairs])
         return _length(start[:, 0] - start[:, 1], memory["box"])
     keys, lengths = pair_keys(ids), _length(x[pairs[:, 0]] - x[pairs[:, 1]], system.box)
@@ -192,6 +193,18 @@ def reference_lengths(style, memory: dict, engine, pairs: np.ndarray) -> np.ndar
         lengths = np.where(old[at] == keys, known[at], lengths)
     memory["bonds"] = _merged(np.concatenate([old, keys]), np.concatenate([known, lengths]))
     return lengths
+
+
+def present(use, system, pairs: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The last `arrays` of the kernel of a style that remembers, for bonds as they are now, each with two atoms of its own."""
+    known = {name: use.memory[name] for name in ("id", "x", "box", "bonds") if name in use.memory}
+    d = system.x[pairs[:, 0]] - system.x[pairs[:, 1]]
+    d, v = system.box.minimum_image(d)[0], system.v[pairs[:, 0]] - system.v[pairs[:, 1]]
+    r = np.sqrt((d * d).sum(axis=1))
+    history = np.zeros((len(pairs), 6))
+    history[:, 0] = reference_lengths(replace(use, memory=known), system, system.x, pairs)
+    history[:, 1] = (d * v).sum(axis=1) / np.where(r > 0.0, r, 1.0)
+    return history, np.zeros((3, 2 * len(pairs))), np.zeros(2)
 
 
 def _merged(keys: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.bond_term import present
 from asemd.kernels import bonded
 from asemd.kernels.state import cell_arrays
 
@@ -43,7 +44,8 @@ def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, u
     x = np.ascontiguousarray(system.x[atoms.ravel()].T)
     forces, shares, virial = np.zeros((3, n)), np.zeros(n), np.zeros((6, n))
     items, types = np.arange(n, dtype=np.int32).reshape(m, k), np.ascontiguousarray(types, np.int32)
-    args = (x, forces, items, types, cell_arrays(cell, periodic), packed.coeff, packed.arrays)
+    arrays = (*packed.arrays, *present(use, system, atoms)) if style.remembers else packed.arrays
+    args = (x, forces, items, types, cell_arrays(cell, periodic), packed.coeff, arrays)
     bad = np.zeros(4)
     loop(*args, 0, m, np.zeros(8), shares, virial, bad)
     energies, forces = shares.reshape(m, k).sum(axis=1), forces.T.reshape(m, k, 3)

@@ -128,6 +128,10 @@ class Fix:
         """Component `i`, counted from 1."""
         raise InputError(f"fix {self.id} (style {self.style}) has no global vector")
 
+    def local_columns(self) -> int | None:
+        """Columns of ``local(state)``, f_ID[i]: 0 for a vector, None for a fix without local values."""
+        return None
+
     def modify(self, words: list[str], session) -> None:
         """``fix_modify`` words: pairs of keyword and value."""
         if len(words) % 2 or not words:

@@ -38,10 +38,14 @@ class StoreLocal(Fix):
         if th.tid == 0:
             p[1] = th.step       # all threads meet before the forces
 
-    def local(self) -> tuple[list[str], np.ndarray]:
-        """Names of the attributes and their values (rows, attributes) by the last multiple of the interval."""
+    def local_columns(self):
+        return len(self.names) if len(self.names) > 1 else 0
+
+    def local(self, state=None) -> np.ndarray:
+        """Values of the attributes, (rows,) or (rows, attributes), up to the last multiple of the interval."""
         rows = self.use.memory.get("broken", np.zeros((0, len(self.columns))))
         step = self.use.memory.get("clock", np.zeros(2))[1]
         end = step - step % self.interval
         rows = rows[(rows[:, 0] > end - self.interval) & (rows[:, 0] <= end)]
-        return list(self.names), rows[:, [self.columns.index(n) for n in self.names]]
+        out = rows[:, [self.columns.index(n) for n in self.names]]
+        return out if len(self.names) > 1 else out[:, 0]

@@ -63,19 +63,20 @@ class Providers:
         raise InputError(f"{shown}: the values per atom have {width} columns")
 
     def local(self, kind: str, id: str, column: int | None) -> np.ndarray:
-        """Local values of a compute; `column` counts from 1, None for a vector."""
+        """Local values of a compute or fix; `column` counts from 1, None for a vector."""
         width = self.local_columns(kind, id)
         if column is None and width:
             raise InputError(f"{kind}_{id}: the local values have {width} columns, say which one: {kind}_{id}[1]")
         if column is not None and not 1 <= column <= width:
             raise InputError(f"{kind}_{id}[{column}]: the local values have {width or 'no'} columns")
-        values = np.asarray(self.session.moment.local(id))
+        moment = self.session.moment
+        values = np.asarray(moment.local(id) if kind == "c" else self.source(kind, id).local(moment.snapshot))
         return values if column is None else values[:, column - 1]
 
     def local_columns(self, kind: str, id: str) -> int:
         """See `asemd.compute.Compute.local_columns`."""
         source = self.source(kind, id)
-        width = source.local_columns() if kind == "c" else None
+        width = source.local_columns()
         if width is None:
             raise InputError(f"{kind}_{id}: {'compute' if kind == 'c' else 'fix'} {id} (style {source.style}) has no local values")
         return width

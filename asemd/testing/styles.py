@@ -56,8 +56,13 @@ class Sample:
         loop = loop or bonded.kernel(self.style, energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal)
         k, n = ATOMS[self.style.category], x.shape[1]
         out = Answer(np.zeros_like(x), np.zeros(8), np.zeros(n), np.zeros((6, n)), np.zeros(4))
+        arrays = self.packed.arrays
+        if self.style.remembers:     # reference lengths, atoms at rest
+            history = np.zeros((n // k, 6))
+            history[:, 0] = np.linspace(0.9, 1.2, n // k)
+            arrays = (*arrays, history, np.zeros_like(x), np.zeros(2))
         loop(x, out.forces, np.arange(n, dtype=np.int32).reshape(-1, k), np.ones(n // k, np.int32), cell or self.cell, self.packed.coeff,
-             self.packed.arrays, 0, n // k, out.acc, out.energies, out.virials, out.bad)
+             arrays, 0, n // k, out.acc, out.energies, out.virials, out.bad)
         return out
 
 
