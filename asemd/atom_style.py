@@ -64,6 +64,11 @@ def has(style: str, column: str) -> bool:
     return any(column in COLUMNS.get(name, ()) for name in parts(style))
 
 
+def mass_by_type(style: str) -> bool:
+    """Whether a mass can be given to a type although every atom has its own: hybrids keep both, the one of the atom counts."""
+    return has(style, "density") and any("density" not in COLUMNS[name] for name in parts(style))
+
+
 def volume(radius: np.ndarray) -> np.ndarray:
     """Volumes of spheres; 1 for points, whose density is their mass."""
     return np.where(radius > 0.0, 4.0 / 3.0 * math.pi * radius**3, 1.0)

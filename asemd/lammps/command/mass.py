@@ -1,6 +1,7 @@
 """``mass I value``"""
 from __future__ import annotations
 
+from asemd.atom_style import mass_by_type
 from asemd.errors import InputError
 from asemd.words import bounds, number
 
@@ -13,6 +14,6 @@ def run(session, args):
     value = number(args[1], "mass")
     if value <= 0.0:
         raise InputError(f"mass: the mass of atom type {args[0]} must be positive, got {args[1]}")
-    if system.rmass is not None:
+    if system.rmass is not None and not mass_by_type(system.atom_style):
         raise InputError("mass: every atom has its own mass in this system, use set mass")
     system.mass[first:last + 1] = value
