@@ -249,7 +249,8 @@ def test_from_python():
 
 
 @pytest.mark.parametrize(("words", "text"), [
-    ("hybrid", "names of its sub-styles"), ("hybrid full full", "twice"), ("hybrid full ful", "full"), ("hybrid full hybrid", "cannot have"),
+    ("hybrid", "names of its sub-styles"), ("hybrid full full", "twice"), ("hybrid full ful", "full"),
+    ("hybrid full hybrid", "cannot have"),
     ("dipole 1", "takes no arguments")])
 def test_refused_atom_styles(words, text):
     with pytest.raises(InputError, match=text):
