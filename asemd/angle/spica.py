@@ -27,7 +27,7 @@ class SpicaAngle(Style):
         return values
 
 
-OPTIONS = dict(cls=SpicaAngle, example="300.0 107.0", equilibrium="theta0",
+OPTIONS = dict(cls=SpicaAngle, example="300.0 107.0 1.0", equilibrium="theta0",
                coeff=(Parameter("K", "energy"), Parameter("theta0", "angle"), Parameter("repulsion", "", optional=True)))
 
 
