@@ -13,7 +13,11 @@ import numpy as np
 
 
 class Node(NamedTuple):
-    """One operation of a formula; numbers have a `value` and an `origin`: where it stands in the text, None for numbers of the calculus."""
+    """One operation of a formula.
+
+    Numbers have a `value` and an `origin`: None for numbers of the calculus, where it stands in the text, or text for one that may have
+    another value later, so that nothing is made simpler for its sake.
+    """
 
     op: str
     args: tuple[Node, ...] = ()
@@ -127,8 +131,12 @@ class Graph:
         if all(a.op == "number" for a in args):
             with np.errstate(all="ignore"):
                 value = float(OPERATIONS[op].value(*(np.float64(a.value) for a in args)))
-            known = all(a.origin is None for a in args)
-            return self.number(value, None if known and math.isfinite(value) else (op, *((a.value, a.origin) for a in args)))
+            origin: object = (op, *((a.value, a.origin) for a in args))
+            if any(isinstance(a.origin, str) for a in args):
+                origin = f"{op}{[a.origin or a.value for a in args]}"
+            elif all(a.origin is None for a in args) and math.isfinite(value):
+                origin = None
+            return self.number(value, origin)
         return self.make(op, args)
 
     def add(self, a: Node, b: Node) -> Node:
@@ -246,4 +254,5 @@ class Graph:
 
 
 def is_number(node: Node, value: float) -> bool:
-    return node.op == "number" and node.value == value
+    """Whether a node is that number and stays it."""
+    return node.op == "number" and node.value == value and not isinstance(node.origin, str)

@@ -19,14 +19,15 @@ from asemd.calculus import FUNCTIONS, OPERATIONS, Graph, Node
 from asemd.errors import InputError, nearest
 
 TOKEN = re.compile(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])")
+VARIABLE = re.compile(r"(?<![A-Za-z0-9_])v_(\w+)")
 ARGUMENT = "x"      # the variable in the written source
 
 
 class Parser:
-    """Recursive descent over one formula without blanks; `start` is where it begins in `text`."""
+    """Recursive descent over one formula without blanks; `start` is where it begins in `text`, `given` has values of names like v_k."""
 
-    def __init__(self, graph: Graph, text: str, start: int, names: Mapping[str, Node], late: set[str]):
-        self.graph, self.text, self.start, self.names, self.late = graph, text, start, names, late
+    def __init__(self, graph: Graph, text: str, start: int, names: Mapping[str, Node], late: set[str], given: Mapping[str, float]):
+        self.graph, self.text, self.names, self.late, self.given = graph, text, names, late, given
         self.at, self.end = start, text.find(";", start) % (len(text) + 1)
         self.kind = self.token = ""
         self.advance()
@@ -73,11 +74,12 @@ class Parser:
         if self.token == "-":
             self.advance()
             return self.graph.neg(self.signed())
-        base = self.primary()
+        negative = self.given.get(self.token, 0.0) < 0.0     # v_k^2 with k = -3 reads as -3^2
+        node = self.primary()
         if self.token == "^":
             self.advance()
-            return self.graph.power(base, self.signed())
-        return base
+            node = self.graph.power(node, self.signed())
+        return self.graph.neg(node) if negative else node
 
     def primary(self) -> Node:
         token, begin = self.token, self.begin
@@ -104,12 +106,16 @@ class Parser:
         self.advance()
 
     def name(self, name: str, begin: int) -> Node:
+        if name in self.given:
+            return self.graph.number(abs(self.given[name]), name)
         if name in self.names:
             return self.names[name]
         if name in self.late:
             raise self.wrong(f"{name} is used after its definition; definitions follow all uses", begin)
         if name in FUNCTIONS:
             raise self.wrong(f"the function {name} needs its argument in parentheses", begin)
+        if VARIABLE.match(name):
+            raise self.wrong(f"{name} is a variable of a script and has no value here", begin)
         known = [*self.names, *FUNCTIONS]
         raise self.wrong(f"unknown name {name}{nearest(name, known)}", begin)
 
@@ -132,8 +138,8 @@ def condense(text: str) -> str:
     return re.sub(r"[\s'\"]", "", text)
 
 
-def parse(text: str, variable: str) -> tuple[Graph, Node]:
-    """The graph of a condensed expression and the node that is its value."""
+def parse(text: str, variable: str, given: Mapping[str, float]) -> tuple[Graph, Node]:
+    """The graph of a condensed expression and the node that is its value; `given` are the values of variables, ``{"v_k": 2.0}``."""
     graph = Graph()
     names: dict[str, Node] = {variable: graph.make("variable")}
     starts = [m.end() for m in re.finditer(";", text)]
@@ -146,9 +152,9 @@ def parse(text: str, variable: str) -> tuple[Graph, Node]:
             name, equals, _ = definition.partition("=")
             if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name):
                 raise InputError(f"expression {text!r}: after a semicolon comes a definition such as k=2, got {definition!r}")
-            names[name] = Parser(graph, text, start + len(name) + 1, names, late).formula()
+            names[name] = Parser(graph, text, start + len(name) + 1, names, late, given).formula()
             late.discard(name)
-        return graph, Parser(graph, text, 0, names, late).formula()
+        return graph, Parser(graph, text, 0, names, late, given).formula()
     except RecursionError:
         raise InputError(f"expression {text!r} is nested too deeply") from None
 
@@ -194,7 +200,7 @@ def compiled_function(name: str, source: str) -> Callable:
 
 
 @lru_cache(4096)
-def differentiate(text: str, variable: str) -> Compiled:
+def differentiate(text: str, variable: str, given: tuple[tuple[str, float], ...] = ()) -> Compiled:
     """Value and derivative of an expression by one variable.
 
     Parameters
@@ -203,13 +209,15 @@ def differentiate(text: str, variable: str) -> Compiled:
         Condensed expression.
     variable : str
         Its one free name.
+    given : tuple of (str, float)
+        Values of names like ``v_k``; they are constants of the source whatever their value.
 
     Raises
     ------
     InputError
         The expression cannot be read; the message says what is wrong where.
     """
-    graph, energy = parse(text, variable)
+    graph, energy = parse(text, variable, dict(given))
     slope = graph.slope(energy)
     words: dict[Node, str] = {}
     temporaries: dict[str, str] = {}
@@ -229,7 +237,7 @@ def differentiate(text: str, variable: str) -> Compiled:
         if n.op == "variable":
             words[n] = ARGUMENT
         elif n.op == "number":
-            if n.origin is None or n.value in (0.0, 1.0, -1.0):
+            if n.origin is None or n.value in (0.0, 1.0, -1.0) and not isinstance(n.origin, str):
                 words[n] = repr(n.value)
             else:
                 words[n] = f"p{len(constants)}"

@@ -3,14 +3,15 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.expression import ARGUMENT, Compiled, compiled_function, condense, differentiate
+from asemd.expression import ARGUMENT, VARIABLE, Compiled, compiled_function, condense, differentiate
 from asemd.style import Packed, Parameter, Style, radians
 
 DOMAIN = "the value of its expression or of the derivative is not finite there"
@@ -56,21 +57,44 @@ class ExpressionStyle(Style):
         return {"offset": words[-1]} if words else {}
 
     def parse_coeff(self, words, settings):
+        first = len(self.coeff) - 1
+        if len(words) > first and words[first][0] in "'\"":      # blanks inside the quotation marks of a data file
+            words = [*words[:first], " ".join(words[first:])]
         values = super().parse_coeff(words, settings)
         values["expression"] = condense(values["expression"])
-        self.compiled(values, settings)
+        if not VARIABLE.search(values["expression"]):
+            self.compiled(values, settings)
         return values
+
+    def fill(self, values: dict[str, Any], settings: Mapping[str, Any], text_of: Callable[[str], str]) -> None:
+        """Put the present values of variables into coefficients whose expression names some; the shift is that of the first time.
+
+        Parameters
+        ----------
+        text_of : callable
+            Text of a variable by its name: a number, or a piece of the expression.
+        """
+        given, text = {}, values["expression"]
+        for name in VARIABLE.findall(text):
+            word = condense(text_of(name))
+            try:
+                given[f"v_{name}"] = float(word)
+            except ValueError:
+                text = re.sub(rf"(?<![A-Za-z0-9_])v_{name}\b", lambda _, word=word: word, text)
+        values["current"] = text, tuple(given.items())
+        values["shift"] = self.compiled(values, settings)[1]
 
     def compiled(self, values: Mapping[str, Any], settings: Mapping[str, Any]) -> tuple[Compiled, float]:
         """The expression as source, and its value at rest, which the energy is shifted by."""
         command = f"{self.category}_coeff {self.name}"
         try:
-            compiled = differentiate(values["expression"], self.variable)
+            text, given = values.get("current", (values["expression"], ()))
+            compiled = differentiate(text, self.variable, given)
         except InputError as e:
             raise InputError(f"{command}: {e.message}") from None
         if not self.equilibrium or settings.get("offset") == "no_offset":
             return compiled, 0.0
-        offset = compiled.value(0.0)
+        offset = values["shift"] if "shift" in values else compiled.value(0.0)
         if not math.isfinite(offset):
             raise InputError(f"{command}: expression {values['expression']!r} is not finite at {self.variable} = 0, so its energy "
                              f"cannot be shifted to 0 there: use {self.category}_style {self.name} no_offset")
@@ -117,3 +141,22 @@ def bound(style: ExpressionStyle, source: str, arguments: tuple[str, ...]) -> Ex
     twin = copy.copy(style)
     twin.function, twin.arguments = compiled_function(style.name, source), arguments
     return twin
+
+
+def fill_variables(uses: Iterable, text_of: Callable[[str], str]) -> list[str]:
+    """Put the present values of a script's variables into all expressions; returns the names of these variables.
+
+    Parameters
+    ----------
+    uses : iterable of `asemd.forcefield.Use`
+    text_of : callable
+        See `ExpressionStyle.fill`.
+    """
+    names: list[str] = []
+    for use in uses:
+        for values in use.coeff.values() if isinstance(use.style, ExpressionStyle) else ():
+            found = VARIABLE.findall(values["expression"])
+            if found:
+                use.style.fill(values, use.settings, text_of)
+            names += found
+    return names

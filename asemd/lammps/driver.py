@@ -11,6 +11,7 @@ import numpy as np
 from asemd import units
 from asemd.errors import InputError, InputWarning
 from asemd.lammps import log
+from asemd.lammps.live_coefficients import fill, live_coefficients
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
 
@@ -39,6 +40,7 @@ def check(session) -> None:
     """
     scene = session.scene
     system = scene.system
+    fill(session)
     if system.rmass is None:
         for kind in sorted({int(t) for t in np.unique(system.type)}):
             if not math.isfinite(system.mass[kind]):
@@ -141,8 +143,8 @@ class Driver:
             check(session)
             check_integration(session)
             session.close_loop()
-            loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), list(scene.fixes.values()),
-                                       scene.groups, scene.dt, step=begin)
+            loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(),
+                                       [*scene.fixes.values(), *live_coefficients(session)], scene.groups, scene.dt, step=begin)
             loop.warn = session.log.warn
             loop.setup(plan.first, plan.last, virial=True)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))

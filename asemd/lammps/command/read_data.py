@@ -11,6 +11,7 @@ from asemd.errors import InputError, InputWarning, nearest
 from asemd.lammps.command.create_box import describe
 from asemd.lammps.data import DataFile, read_data
 from asemd.lammps.data_format import COEFFS
+from asemd.lammps.live_coefficients import fill
 from asemd.system import COUNTS, LABELLED, System
 from asemd.topology import KINDS, Topology
 from asemd.words import number, take, whole
@@ -175,6 +176,7 @@ def _set_coefficients(session, data: DataFile, types: dict[str, np.ndarray]) -> 
                 interactions.set_coeff(category, _coeff_words(section, mark, words, types[kind]), system)
             except InputError as e:
                 raise e.at(where) from None
+    fill(session)
 
 
 def _coeff_words(section: str, mark: str, words: list[str], types: np.ndarray) -> list[str]:

@@ -1,0 +1,57 @@
+"""Expressions of force fields that name variables of the script (``v_k``): their values, at the start of a run and at each step of it."""
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from asemd.errors import InputError
+from asemd.expression_style import ExpressionStyle, fill_variables
+from asemd.fix import Fix
+from asemd.formula import CONSTANTS
+from asemd.formula_functions import MATH
+
+if TYPE_CHECKING:
+    from asemd.lammps.session import Session
+    from asemd.loop import Loop
+
+STEADY = {*CONSTANTS, *MATH, "version"} - {"random", "normal"}
+
+
+def fill(session: Session, category: str = "") -> list[str]:
+    """Put the present values of variables into the expressions of one category or of all; returns the names of these variables."""
+    uses = session.scene.interactions.uses
+    return fill_variables([use for c in uses if category in ("", c) for use in uses[c]], session.variables.value)
+
+
+def changes(session: Session, name: str) -> bool:
+    """Whether a variable may have another value at another step: its formula has more than numbers, functions and other variables."""
+    words = session.variables.references(f"v_{name}")
+    return any(word not in STEADY and not word.startswith("v_") and not re.fullmatch(r"[eE]\d+", word) for word in words)   # 1e5
+
+
+class LiveCoefficients(Fix):
+    """Puts values of variables into the coefficients of running terms before each force computation."""
+
+    style = "live/coefficients"
+
+    def __init__(self, session: Session):
+        super().__init__("all")
+        self.session = session
+
+    def pre_force(self, loop: Loop) -> None:
+        loop.sync_out()
+        loop.system.step = loop.step
+        self.session.moment.forget()
+        fill(self.session)
+        for term in loop.engine.terms:
+            use = getattr(term, "use", None)
+            if use is not None and isinstance(use.style, ExpressionStyle):
+                if use.style.bind(use.settings, use.coeff) is not term.style:
+                    raise InputError(f"{use.style.category}_style {use.style.name}: an exponent in an expression changes during the run: "
+                                     "only other numbers may change")
+                term.packed.coeff[:] = use.style.pack(use.settings, use.coeff, term.packed.coeff.shape[1] - 1, None).coeff
+
+
+def live_coefficients(session: Session) -> list[Fix]:
+    """The fix that a run needs beside the user's, if an expression names a variable whose value changes."""
+    return [LiveCoefficients(session)] if any(changes(session, name) for name in fill(session)) else []
