@@ -139,7 +139,7 @@ def _coefficients(interactions: Interactions, s: System, pair: str) -> Iterator[
         if category == "pair":
             sections = _pair_sections(interactions, s, pair)
         else:
-            sections = _bonded_sections(interactions, category)
+            sections = _bonded_sections(interactions, category, _count(s, category))
         want = _count(s, "atom" if category == "pair" else category)
         for name, lines in sections.items():
             need = want * (want + 1) // 2 if name == "PairIJ Coeffs" else want
@@ -151,8 +151,11 @@ def _coefficients(interactions: Interactions, s: System, pair: str) -> Iterator[
                               InputWarning, stacklevel=2)
 
 
-def _bonded_sections(interactions: Interactions, category: str) -> dict[str, list[list[str]]]:
-    """Lines by section: those with the mark of a cross term go to the section of that term, without the mark."""
+def _bonded_sections(interactions: Interactions, category: str, count: int) -> dict[str, list[list[str]]]:
+    """Lines by section: those with the mark of a cross term go to the section of that term, without the mark.
+
+    In a hybrid the sections of cross terms say ``skip`` for the types of other styles, so that they have a line for each type.
+    """
     main = f"{category.capitalize()} Coeffs"
     out: dict[str, list[list[str]]] = {main: []}
     at = 2 if interactions.hybrid[category] else 1
@@ -161,9 +164,9 @@ def _bonded_sections(interactions: Interactions, category: str) -> dict[str, lis
         name = MARKS.get(category, {}).get(mark, main)
         out.setdefault(name, []).append(line if name == main else [*line[:at], *line[at + 1:]])
     for name, lines in out.items():
-        if name != main and interactions.hybrid[category]:      # types of sub-styles without this cross term
-            there = {line[0] for line in lines}
-            lines += [[line[0], "skip"] for line in out[main] if line[0] not in there]
+        if interactions.hybrid[category] and name != main:
+            known = {line[0] for line in lines}
+            lines += [[str(t), "skip"] for t in range(1, count + 1) if str(t) not in known]
             lines.sort(key=lambda line: int(line[0]))
     return out
 
