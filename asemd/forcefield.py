@@ -245,6 +245,20 @@ class Interactions:
 
     # ------------------------------------------------------------------------------- for engines ---
 
+    def rest_values(self, category: str, ntypes: int) -> np.ndarray:
+        """Rest lengths of bond types or rest angles (degrees) of angle types, as constraints take them.
+
+        Returns
+        -------
+        (ntypes + 1,) float
+            By type, entry 0 unused; nan where a type has no coefficients or its style no rest value.
+        """
+        out = np.full(ntypes + 1, np.nan)
+        for use in self.uses[category]:
+            for t, coeff in use.coeff.items():
+                out[t] = use.style.rest_value(coeff)
+        return out
+
     def pair_terms(self, ntypes: int, units) -> list[PairTerm]:
         """The pair styles with the coefficients of all type pairs, mixed and shifted.
 

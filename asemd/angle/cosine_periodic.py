@@ -16,7 +16,12 @@ def check(coeff, settings):
         raise InputError(f"angle_coeff cosine/periodic: n must be 1 or more, got {coeff['n']}")
 
 
-@angle("cosine/periodic", example="75.0 -1 3", check=check)
+def rest(coeff):
+    """The widest angle of least energy."""
+    return 180.0 if coeff["B"] == 1 else 180.0 - 180.0 / coeff["n"]
+
+
+@angle("cosine/periodic", example="75.0 -1 3", rest=rest, check=check)
 def cosine_periodic(theta, C: "energy", B: "integer", n: "integer"):
     wide = theta > 0.5 * math.pi
     # cos(n (pi - theta)) = (-1)^n cos(n theta), and n (pi - theta) keeps its digits near a straight angle

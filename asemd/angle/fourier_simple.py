@@ -21,7 +21,7 @@ def fourier_simple_lammps(theta, K: "energy", c, n):
     return K * (1.0 + c * math.cos(n * theta)), -K * c * n * ratio * math.sin(theta)
 
 
-@angle("fourier/simple", example="100.0 -1.0 3.0", lammps=fourier_simple_lammps)
+@angle("fourier/simple", example="100.0 -1.0 3.0", rest=lambda coeff: 180.0 / coeff["n"], lammps=fourier_simple_lammps)
 def fourier_simple(theta, K: "energy", c, n):
     a = n * theta
     return K * (1.0 + c * math.cos(a)), -K * c * n * math.sin(a)

@@ -45,7 +45,7 @@ class GaussianAngle(Style):
 
 
 @angle("gaussian", cls=GaussianAngle, coeff=(Parameter("T", "temperature"), Parameter("n", "integer")),
-       example="300.0 2 0.0128 0.375 80.0 0.0730 0.148 123.0")
+       example="300.0 2 0.0128 0.375 80.0 0.0730 0.148 123.0", rest=lambda coeff: coeff["terms"][0][2])
 def gaussian(theta, kT, first, count, terms: "array"):
     begin, end = int(first), int(first + count)
     top = -math.inf                 # the largest exponent is taken out, so that the sum never underflows

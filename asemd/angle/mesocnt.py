@@ -52,7 +52,7 @@ def constants(coeff, units) -> dict:
     return out
 
 
-@angle("mesocnt", cls=Bend, coeff=COEFF, example="buckling custom 400.0 50.0 15.0")
+@angle("mesocnt", cls=Bend, coeff=COEFF, rest=lambda coeff: 180.0, example="buckling custom 400.0 50.0 15.0")
 def mesocnt(theta, K_H: "energy", K_B: "energy", theta_B: "angle"):
     d = math.pi - theta
     if d < theta_B:

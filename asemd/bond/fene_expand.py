@@ -11,7 +11,8 @@ import math
 from asemd.style import bond
 
 
-@bond("fene/expand", example="30.0 1.5 1.0 1.0 0.2", domain="r - shift must be shorter than R0 and, with repulsion, not 0")
+@bond("fene/expand", example="30.0 1.5 1.0 1.0 0.2", rest=lambda coeff: coeff["shift"] + 0.97 * coeff["sigma"],
+      domain="r - shift must be shorter than R0 and, with repulsion, not 0")
 def fene_expand(r, K: "energy/distance^2", R0: "distance", epsilon: "energy", sigma: "distance", shift: "distance"):
     d = r - shift
     rest = (R0 - d) * (R0 + d)

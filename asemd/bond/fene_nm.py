@@ -20,7 +20,8 @@ def check(coeff, settings):
         raise InputError(f"bond_coeff fene/nm: n and m must be different, both are {coeff['n']:g}")
 
 
-@bond("fene/nm", example="30.0 1.5 1.0 1.12246 12 6", check=check, domain="the bond must be longer than 0 and shorter than R0")
+@bond("fene/nm", example="30.0 1.5 1.0 1.12246 12 6", check=check, rest=lambda coeff: 0.97 * coeff["r0"],
+      domain="the bond must be longer than 0 and shorter than R0")
 def fene_nm(r, K: "energy/distance^2", R0: "distance", E0: "energy", r0: "distance", n: "", m: ""):
     rest = (R0 - r) * (R0 + r)
     if not (rest > 0.0 and r > 0.0):

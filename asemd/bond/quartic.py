@@ -25,7 +25,8 @@ class Quartic(Style):
                                  f"{interactions.style_name(category)}: set {category}_style none")
 
 
-@bond("quartic", cls=Quartic, example="1200.0 -0.55 0.25 1.3 34.6878", breaks="off", domain="the bond must be longer than 0")
+@bond("quartic", cls=Quartic, example="1200.0 -0.55 0.25 1.3 34.6878", rest=lambda coeff: 0.97,
+      breaks="off", domain="the bond must be longer than 0")
 def quartic(r, K: "energy/distance^4", B1: "distance", B2: "distance", Rc: "distance", U0: "energy"):
     if r > Rc:
         return math.nan, math.nan

@@ -2,7 +2,8 @@
 
 Keywords: dist dx dy dz (vector from atom 2 to atom 1), engpot force fx fy fz (force on atom 1; ``force`` is positive if they repel each
 other), engvib engrot engtrans (kinetic energy of vibration, rotation and translation of the two atoms), omega (angular velocity), velvib
-(velocity along the bond, positive if it grows), v_name with ``set dist variable``. Turned off bonds have energy and force 0.
+(velocity along the bond, positive if it grows), b1 (reference length of bond style bpm/spring), v_name with ``set dist variable``.
+Turned off bonds have energy and force 0.
 Of a bond across a periodic face LAMMPS takes the motion along the line through the whole box; here it is along the bond.
 
 Source: LAMMPS manual, compute bond/local.
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.bond_term import present
 from asemd.compute._local import Geometry, Local
 from asemd.errors import InputError
 
@@ -51,6 +53,18 @@ class Bonds:
         return across / np.where(self.dist > 0.0, self.dist, np.inf)
 
 
+def reference(g: Geometry) -> np.ndarray:
+    """The lengths that bonds of styles that remember them had at first; 0 for others."""
+    uses = [use for use in g.interactions.uses["bond"] if use.style.remembers == "bonds"]
+    if not uses:
+        raise InputError(f"compute bond/local: bond style {g.interactions.style_name('bond')} has no extra quantity b1")
+    out = np.zeros(len(g.atoms))
+    for use in uses:
+        mine = np.isin(g.types, list(use.coeff))
+        out[mine] = present(use, g.state.system, g.atoms[mine])[0][:, 0]
+    return out
+
+
 class BondLocal(Local):
     """Local values of bonds; arguments as in `asemd.compute._local.Local`."""
 
@@ -64,9 +78,10 @@ class BondLocal(Local):
         **{name: lambda g, name=name: Bonds(g).kinetic(name) for name in ("engvib", "engrot", "engtrans")},
         "omega": lambda g: Bonds(g).omega(),
         "velvib": lambda g: Bonds(g).motion()[3],
+        "b1": reference,
     }
 
     def unknown(self, word):
         if word[:1] == "b" and word[1:].isdigit():
-            return InputError(f"compute bond/local: no bond style here has extra quantities such as {word}")
+            return InputError(f"compute bond/local: no bond style has an extra quantity {word}, only b1 exists")
         return super().unknown(word)
