@@ -69,6 +69,7 @@ class Engine:
         for k, t in enumerate(self.terms):
             t.index = k
         self.acc = np.zeros((self.threads, max(1, len(self.terms)), 8))
+        self.moved = np.zeros(self.threads)      # largest squared displacement since the list was built, for each thread to read
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
         width = 16 if s.precision == "mixed" else 8
@@ -122,7 +123,7 @@ class Engine:
         self.cell = cell_arrays(self.vectors, self.periodic)
         self.shifts27 = IMAGES @ self.cell.reduced
         self.periodic27 = (IMAGES[:, ~self.periodic] == 0).all(axis=1)
-        self.k = kernels(self.ortho)
+        self.k = kernels(self.ortho, self.settings.outdated)
         self._bins = None
 
     def set_groups(self, groups, bits) -> None:
@@ -264,6 +265,8 @@ class Engine:
         """Forces of the present slots into ``state.f``; energies and virials into `acc`."""
         if energy:
             self.acc[:] = 0.0
+        if self.settings.outdated:
+            self.moved[:] = self.k.moved(self.state.x, self.held, self.ns)
         calls = [t.kernel(energy, False) for t in self.terms]
         spent = np.zeros(len(calls))
 

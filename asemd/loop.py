@@ -281,7 +281,7 @@ class Loop:
         run = self._module[1].run
 
         def work(tid):
-            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.buffers, e.bad, self._sync, self._scratch, c, x, e.acc,
+            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.buffers, e.bad, self._sync, self._scratch, c, x, e.acc,
                               e.arguments(tid), self._fix_data)
         for t in range(e.threads):
             e.arguments(t)

@@ -19,11 +19,12 @@ IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # n
 
 
 @cache
-def kernels(ortho: bool):
-    """The compiled list module for axis-aligned (`ortho`) or general cells."""
+def kernels(ortho: bool, mark: bool = False):
+    """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, see `asemd.kernels.cluster.build`."""
     b = Builder("neighbour lists")
     b.constant("CLUSTER", CLUSTER)
     b.constant("ORTHO", ortho)
+    b.constant("MARK", mark)
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
     for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.expand,
               cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load,
@@ -74,13 +75,13 @@ class ClusterList:
     ----------
     first (nth, ncluster+1), entries (nth, m), unshifted (ncluster,), shifts (27, 3), bounds (nth+1,)
         See `asemd.kernels.cluster`.
-    hide (nth, m), known (ncluster,)
+    hide (nth, m)
         For lists that may be outdated, see `asemd.kernels.pair_cluster`.
     """
 
     def __init__(self, threads: int, reach: float, width: int = 8, outdated: bool = False):
         self.threads, self.reach, self.width, self.outdated = threads, reach, width, outdated
-        self.hide, self.known = np.zeros((threads, 1), np.uint8), np.zeros(1, np.bool_)
+        self.hide = np.zeros((threads, 1), np.uint8)
         self.capacity = 0
         self.nx = self.ny = self.nz = 0
         self.entries = np.zeros((threads, 0), np.int32)
@@ -120,7 +121,6 @@ class ClusterList:
         self.first = np.zeros((self.threads, ncl), np.int32)
         self.excluded_first = np.zeros((self.threads, ncl), np.int32)
         self.unshifted = np.zeros(ncl, np.bool_)
-        self.known = np.zeros(ncl, np.bool_)
         self.own, self.span = np.zeros(ncl, np.int32), np.zeros((ncl, CLUSTER), np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
         self._room()
@@ -133,7 +133,8 @@ class ClusterList:
 
     def _room(self) -> None:
         """Work space for the candidates of one cluster."""
-        self.work = np.zeros((self.threads, 7, self.candidates))
+        self.work = np.zeros((self.threads, 11 if self.outdated else 7, self.candidates))
+        self.near = np.zeros((self.threads, self.candidates if self.outdated else 1), np.int32)
         self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
         self.needed = np.zeros((self.threads, self.candidates), np.int32)
         self.earlier = np.zeros((self.threads, self.candidates + 64), np.int32)
@@ -149,6 +150,8 @@ class ClusterList:
         self.shifts = IMAGES @ cell_vectors
         again = self.shares is None and self.threads > 1
         while True:
+            if self.outdated and self.hide.shape[1] < self.entries.shape[1]:
+                self.hide = np.zeros(self.entries.shape, np.uint8)
             self._split(ncl)
             results = [0] * self.threads
 
@@ -157,7 +160,8 @@ class ClusterList:
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
                                      c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.needed[t], self.width, ns, self.row_length[t])
+                                     self.work_codes[t], self.needed[t], self.width, ns, self.row_length[t],
+                                     self.near[t], self.hide[t])
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
@@ -173,10 +177,6 @@ class ClusterList:
             else:
                 self._balance(results)
                 if not again:
-                    if self.outdated:
-                        self.known[:] = False
-                        if self.hide.shape[1] < self.entries.shape[1]:
-                            self.hide = np.zeros(self.entries.shape, np.uint8)
                     return
                 again = False
 

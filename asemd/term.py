@@ -136,7 +136,6 @@ class PairTerm:
             self.buffer = np.zeros((engine.threads, size), real)
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
-            self.packed = np.zeros((engine.threads, 3, self.row if self.outdated else 1))
             self.rows = self.tables.rows.astype(real)
             self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, self.single)
 
@@ -145,7 +144,7 @@ class PairTerm:
         return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts,
                 c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
                 engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index], engine.held, c.hide[tid],
-                c.known, c.reach, engine.settings.skin, engine.ns, self.packed[tid])
+                engine.settings.skin, engine.moved[tid:tid + 1])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")

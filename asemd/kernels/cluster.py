@@ -6,7 +6,7 @@ cluster the images on the positive side. An entry is slot number + (shift code <
 no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
-generated module. What follows from a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`.
+generated module, and MARK (which atoms are beyond reach is wanted). What follows from a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`.
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 CLUSTER = 8
-ORTHO = True
+ORTHO = MARK = True
 SLOT_BITS = 0x3FFFFFF
 
 
@@ -142,14 +142,15 @@ def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2)
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, own, span, unshifted, work, codes, needed, width, empty, longest):
+          first, entries, own, span, unshifted, work, codes, needed, width, empty, longest, near, hide):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
-    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (7, w)`, `codes (w,)`, `needed (w,)`: candidates of one
-    cluster. A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
+    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (11, w)`, `codes (w,)`, `needed (w,)`, `near (w,)`: candidates
+    of one cluster. A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
     ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry; pair p then needs the sums p to p + 3. The
     cluster itself stands in the middle, at ``own[c]``. Rows end with copies of the slot `empty`, so that they fill vectors of `width`.
-    `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row.
+    `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row. With MARK each entry gets
+    in `hide` the bits of the atoms of the cluster that are beyond reach.
     """
     n = 0
     r2 = reach * reach
@@ -221,7 +222,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                     count = k1 - k0
                     if count <= 0:
                         continue
-                    if nt + count > capacity:
+                    if nt + count + CLUSTER > capacity:
                         return -2
                     if code != 13:
                         all_in = False
@@ -236,32 +237,57 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                         codes[np.uint64(nt + q)] = np.int32(k0 + q) | high
                     nt += count
         unshifted[ci] = all_in
+        end = nt
+        if MARK:                     # the cluster itself, for its places in `hide`
+            end = nt + CLUSTER
+            for k in range(CLUSTER):
+                tx[nt + k] = x[0, ci * CLUSTER + k]
+                ty[nt + k] = x[1, ci * CLUSTER + k]
+                tz[nt + k] = x[2, ci * CLUSTER + k]
         for pair in range(CLUSTER // 2):
             td = work[3 + pair]
+            if MARK:
+                te = work[7 + pair]
             k = ci * CLUSTER + 2 * pair
             k2 = min(k + 1, ci * CLUSTER + m - 1)
             if k2 < k:
-                for t in range(nt):
+                for t in range(end):
                     td[t] = 1e300
+                    if MARK:
+                        te[t] = 1e300
                 continue
             xi, yi, zi = x[0, k], x[1, k], x[2, k]
             xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
-            for t in range(nt):
+            for t in range(end):
                 a = tx[t] - xi
                 b = ty[t] - yi
                 c = tz[t] - zi
                 e = tx[t] - xj
                 f = ty[t] - yj
                 g = tz[t] - zj
-                td[t] = min(a * a + b * b + c * c, e * e + f * f + g * g)
+                if MARK:
+                    td[t] = a * a + b * b + c * c
+                    te[t] = e * e + f * f + g * g
+                else:
+                    td[t] = min(a * a + b * b + c * c, e * e + f * f + g * g)
         if n + nt + CLUSTER + width > entries.shape[0]:
             return -1
         # which pairs need each candidate, as bits; those nobody needs are dropped by not moving the counter: no branches to mispredict
         d0, d1, d2, d3 = work[3], work[4], work[5], work[6]
-        for t in range(nt):
-            needed[t] = (d0[t] < r2) + 2 * (d1[t] < r2) + 4 * (d2[t] < r2) + 8 * (d3[t] < r2)
+        if MARK:
+            e0, e1, e2, e3 = work[7], work[8], work[9], work[10]
+            for t in range(end):
+                near[t] = ((d0[t] <= r2) + 2 * (e0[t] <= r2) + 4 * (d1[t] <= r2) + 8 * (e1[t] <= r2) + 16 * (d2[t] <= r2)
+                           + 32 * (e2[t] <= r2) + 64 * (d3[t] <= r2) + 128 * (e3[t] <= r2))
+            for t in range(nt):
+                needed[t] = ((near[t] & 3) != 0) + 2 * ((near[t] & 12) != 0) + 4 * ((near[t] & 48) != 0) + 8 * ((near[t] & 192) != 0)
+        else:
+            for t in range(nt):
+                needed[t] = (d0[t] < r2) + 2 * (d1[t] < r2) + 4 * (d2[t] < r2) + 8 * (d3[t] < r2)
         kept = 0
         for t in range(nt):
+            if MARK:
+                near[np.uint64(kept)] = near[t]
             codes[np.uint64(kept)] = codes[t]
             needed[np.uint64(kept)] = needed[t]
             kept += needed[t] != 0
@@ -280,11 +306,16 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         start = n
         for k in range(CLUSTER):
             entries[start + mine + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
+            if MARK:
+                hide[start + mine + k] = np.uint8(255 - near[nt + k])
         for t in range(kept):
             key = keys[needed[t]]
             q = tally[key]
             tally[key] = q + 1
-            entries[start + q + (CLUSTER if q >= mine else 0)] = codes[t]
+            place = start + q + (CLUSTER if q >= mine else 0)
+            entries[place] = codes[t]
+            if MARK:
+                hide[place] = np.uint8(255 - near[t])
         n = start + kept + CLUSTER
         while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)

@@ -5,9 +5,9 @@ constant, so that the compiler sees no aliasing): x y z, force x y z, charge, th
 atoms i at a time run over the buffer in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and
 excluded partners are moved far away instead of being masked.
 
-A list that may be outdated (``neigh_modify check no``, or a delay) still has LAMMPS's meaning: pairs that were beyond the reach when it was
+A list that may be outdated (``neigh_modify check no``, or a delay) still has LAMMPS's meaning: pairs that were beyond its reach when it was
 built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
-then on they look at a mask of the row (`hide`, bit a for atom a of the cluster), made when needed from the positions `held` since the build.
+then on they look at a mask of the row (`hide`, bit a for atom a of the cluster).
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient
 differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working precision; `pair_force`, `pair_energy` and
@@ -135,36 +135,17 @@ def moved_most(x, held, lo, hi):
     return m
 
 
-def hide_row(held, entries, f0, full, s, shifts, reach2, hide, packed):
-    """Mark in `hide` which atoms of the cluster at slot `s` were beyond reach of each entry of its row when the list was built."""
-    for k in range(full):
-        e = entries[place(f0 + k)]
-        j = np.uint32(e & np.int32(SLOT_BITS))
-        c = np.uint32(e >> 26)
-        packed[0, k] = held[0, j] + shifts[c, 0]
-        packed[1, k] = held[1, j] + shifts[c, 1]
-        packed[2, k] = held[2, j] + shifts[c, 2]
-        hide[place(f0 + k)] = np.uint8(0)
-    for a in range(CLUSTER):
-        xa, ya, za = held[0, s + a], held[1, s + a], held[2, s + a]
-        bit = np.uint8(1 << a)
-        for k in range(full):
-            dx = xa - packed[0, k]
-            dy = ya - packed[1, k]
-            dz = za - packed[2, k]
-            hide[place(f0 + k)] |= bit if dx * dx + dy * dy + dz * dz > reach2 else np.uint8(0)
-
-
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
-                   qqr2e, b, types, saved, acc, held, hide, known, reach, skin, slots, packed):
+                   qqr2e, b, types, saved, acc, held, hide, skin, moved):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz).
 
-    The last seven arguments are for OUTDATED: `known (ncluster,)` says whose part of `hide` is made, `slots` is the number of slots.
+    The last four arguments are for OUTDATED: positions when the list was built, the mask of its entries, and `moved (1,)`, the largest
+    squared displacement since.
     """
     far = real(far_)
     late = False
     if OUTDATED:
-        rest = 0.999999 * skin - math.sqrt(moved_most(x, held, 0, slots))
+        rest = 0.999999 * skin - math.sqrt(moved[0])
     done = real(2) * far      # atoms of the cluster that have had their turn
     for ci in range(c0, c1):
         s = ci * CLUSTER
@@ -174,6 +155,8 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         f0 = np.int64(first[ci])
         full = ((np.int64(first[ci + 1]) - f0) // WIDTH) * WIDTH     # rows are padded: whole vectors
         mine = np.int64(own[ci])
+        if OUTDATED:
+            ripe = rest <= 0.0 or moved_most(x, held, s, s + CLUSTER) > rest * rest
         if unshifted[ci]:
             for k in range(full):
                 j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
@@ -209,10 +192,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
             xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
             if OUTDATED:
-                late = rest <= 0.0 or moved_most(x, held, s + a0, s + a0 + 2) > rest * rest
-                if late and not known[ci]:
-                    hide_row(held, entries, f0, full, s, shifts, reach * reach, hide, packed)
-                    known[ci] = True
+                late = ripe and (rest <= 0.0 or moved_most(x, held, s + a0, s + a0 + 2) > rest * rest)
             qa = real(0)
             qb = real(0)
             if CHARGED:

@@ -70,7 +70,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
         return textwrap.indent("\n".join(lines) or "t0 = t0", " " * indent)
 
-    b.text(f'''def run(tid, nth, ns, s, held, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
+    b.text(f'''def run(tid, nth, ns, s, held, moved, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
     step = control[{STEP}]
     last = control[{LAST}]
     resume = control[{RESUME}]
@@ -98,29 +98,27 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
 {calls("initial_integrate", 12)}
 {calls("post_integrate", 12)}
             ago += 1
-            need = False
-            if ago >= delay and ago % every == 0:
-                need = check == 0
-                if check != 0:
-                    m = 0.0
-                    odd = 0.0
-                    for i in range(hi - lo):
-                        a = x0[i] - held0[i]
-                        b = x1[i] - held1[i]
-                        c = x2[i] - held2[i]
-                        m = max(m, a * a + b * b + c * c)
-                        odd += 0.0 * (a + b + c)                # not zero where a position is not a number
-                    scratch[tid, 1] = m if odd == 0.0 else 1e301
+            due = ago >= delay and ago % every == 0
+            if check == 0 or every > 1 or delay > 1 or due:
+                m = 0.0
+                odd = 0.0
+                for i in range(hi - lo):
+                    a = x0[i] - held0[i]
+                    b = x1[i] - held1[i]
+                    c = x2[i] - held2[i]
+                    m = max(m, a * a + b * b + c * c)
+                    odd += 0.0 * (a + b + c)                # not zero where a position is not a number
+                scratch[tid, 1] = m if odd == 0.0 else 1e301
             if tid == 0:
                 t1 = now()
                 numbers[{MODIFY_TIME}] += t1 - t0
                 t0 = t1
             barrier(th)
-            if ago >= delay and ago % every == 0 and check != 0:
-                m = 0.0
-                for t in range(nth):
-                    m = max(m, scratch[t, 1])
-                need = m > trigger
+            m = 0.0
+            for t in range(nth):
+                m = max(m, scratch[t, 1])
+            moved[tid] = m
+            need = due and (check == 0 or m > trigger)
             if tid == 0:
                 t1 = now()
                 numbers[{COMM_TIME}] += t1 - t0
@@ -131,6 +129,8 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
                     if check != 0 and ago == max(every, delay):
                         control[{DANGEROUS}] += 1
                 return {REBUILD}
+        else:
+            moved[tid] = 0.0
         resume = 0
 {calls("pre_force", 8)}
         for d in range(3):
