@@ -25,6 +25,45 @@ class Plan(NamedTuple):
     rows: dict[int, list[float]]
 
 
+class Written(NamedTuple):
+    """One function for several expressions: its source, its arguments after the coordinate, and the kinds of code it tells apart."""
+
+    source: str
+    arguments: tuple[str, ...]
+    kinds: list[tuple]
+
+    def values(self, compiled: Compiled) -> dict[str, float]:
+        """The arguments that belong to an expression."""
+        return {"kind": float(self.kinds.index(compiled.code)), **{f"p{k}": v for k, v in enumerate(compiled.constants)}}
+
+
+def write(name: str, coordinate: str, argument: str, leading: list[str], compiled: Iterable[Compiled]) -> Written:
+    """The function ``name(coordinate, *leading, kind, p0, p1, ...)``; `argument` is what the expressions' variable stands for."""
+    compiled = list(compiled)
+    kinds = list(dict.fromkeys(c.code for c in compiled))
+    names = leading + ["kind"] * (len(kinds) > 1) + [f"p{k}" for k in range(max((len(c.constants) for c in compiled), default=0))]
+    lines = [f"def {name}({', '.join((coordinate, *names))}):", f"    {ARGUMENT} = {argument}"]
+    for k, (statements, energy, slope) in enumerate(kinds):
+        body = [*statements, f"return {energy}{' - offset' if 'offset' in names else ''}, {slope}"]
+        if k < len(kinds) - 1:
+            lines += [f"    if kind == {k}.0:", *("        " + line for line in body)]
+        else:
+            lines += ["    " + line for line in body]
+    return Written("\n".join(lines) + "\n", tuple(names), kinds)
+
+
+def present(text: str, text_of: Callable[[str], str]) -> tuple[str, tuple[tuple[str, float], ...]]:
+    """An expression whose variables (``v_k``) have become text, and the values of those that are numbers; `text_of` gives their text."""
+    given = {}
+    for name in VARIABLE.findall(text):
+        word = condense(text_of(name))
+        try:
+            given[f"v_{name}"] = float(word)
+        except ValueError:
+            text = re.sub(rf"(?<![A-Za-z0-9_])v_{name}\b", lambda _, word=word: word, text)
+    return text, tuple(given.items())
+
+
 class ExpressionStyle(Style):
     """``*_style lepton``: expressions of one kind (equal up to numbers) share a piece of code, others are told apart by their type.
 
@@ -74,14 +113,7 @@ class ExpressionStyle(Style):
         text_of : callable
             Text of a variable by its name: a number, or a piece of the expression.
         """
-        given, text = {}, values["expression"]
-        for name in VARIABLE.findall(text):
-            word = condense(text_of(name))
-            try:
-                given[f"v_{name}"] = float(word)
-            except ValueError:
-                text = re.sub(rf"(?<![A-Za-z0-9_])v_{name}\b", lambda _, word=word: word, text)
-        values["current"] = text, tuple(given.items())
+        values["current"] = present(values["expression"], text_of)
         values["shift"] = self.compiled(values, settings)[1]
 
     def compiled(self, values: Mapping[str, Any], settings: Mapping[str, Any]) -> tuple[Compiled, float]:
@@ -103,25 +135,16 @@ class ExpressionStyle(Style):
     def plan(self, settings: Mapping[str, Any], coeffs: Mapping[int, Mapping[str, Any]]) -> Plan:
         """The function for these coefficients."""
         each = {t: self.compiled(values, settings) for t, values in sorted(coeffs.items())}
-        kinds = list(dict.fromkeys(c.code for c, _ in each.values()))
         rest, shifted = self.equilibrium, any(offset for _, offset in each.values())
-        names = [rest] * bool(rest) + ["offset"] * shifted + ["kind"] * (len(kinds) > 1)
-        names += [f"p{k}" for k in range(max((len(c.constants) for c, _ in each.values()), default=0))]
-        lines = [f"def {self.name}({', '.join((self.variable, *names))}):",
-                 f"    {ARGUMENT} = np.float64({self.variable}{f' - {rest}' if rest else ''})"]
-        for k, (statements, energy, slope) in enumerate(kinds):
-            body = [*statements, f"return {energy}{' - offset' if shifted else ''}, {slope}"]
-            if k < len(kinds) - 1:
-                lines += [f"    if kind == {k}.0:", *("        " + line for line in body)]
-            else:
-                lines += ["    " + line for line in body]
+        written = write(self.name, self.variable, f"np.float64({self.variable}{f' - {rest}' if rest else ''})",
+                        [rest] * bool(rest) + ["offset"] * shifted, [c for c, _ in each.values()])
         rows = {}
         for t, (c, offset) in each.items():
-            given = {rest: radians(coeffs[t][rest]) if self.category == "angle" else coeffs[t][rest]} if rest else {}
-            given |= {"offset": offset, "kind": float(kinds.index(c.code))}
-            given |= {f"p{k}": value for k, value in enumerate(c.constants)}
-            rows[t] = [given.get(name, 0.0) for name in names]
-        return Plan("\n".join(lines) + "\n", tuple(names), rows)
+            given = written.values(c) | {"offset": offset}
+            if rest:
+                given[rest] = radians(coeffs[t][rest]) if self.category == "angle" else coeffs[t][rest]
+            rows[t] = [given.get(name, 0.0) for name in written.arguments]
+        return Plan(written.source, written.arguments, rows)
 
     def bind(self, settings, coeffs, compat=""):
         plan = self.plan(settings, coeffs)
@@ -154,7 +177,7 @@ def fill_variables(uses: Iterable, text_of: Callable[[str], str]) -> list[str]:
     """
     names: list[str] = []
     for use in uses:
-        for values in use.coeff.values() if isinstance(use.style, ExpressionStyle) else ():
+        for values in use.coeff.values() if hasattr(use.style, "fill") else ():
             found = VARIABLE.findall(values["expression"])
             if found:
                 use.style.fill(values, use.settings, text_of)
