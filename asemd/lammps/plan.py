@@ -183,6 +183,11 @@ def _term(e: Engine, t) -> Item:
         return Item(f"pair {style.name} (1-4)", f"{len(t.one_four[0])} pairs, one by one", "dihedral style with weights of 1-4 pairs")
     if t.pairs == "ends":
         return Item(f"angle repulsion of {style.name}", f"{len(t.one_four[0])} pairs, one by one", "angle style with repulsion of its ends")
+    if t.pairs == "broken":
+        return Item(f"pair {style.name} (broken bonds)", f"{len(t.bonds.items)} bonds, one by one",
+                    "pairs of bonds that break interact at once, before the next list")
+    if t.pairs == "bond":
+        return Item("bond special", f"{len(t.items)} pairs with pair style {style.name}, one by one", "bond_style special")
     why = e.why if e.mode == "plain" else "pairs of the expanded list"
     return Item(f"pair {style.name}", f"pair by pair, double precision, {charged}", why)
 
