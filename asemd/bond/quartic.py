@@ -27,7 +27,8 @@ class Quartic(Style):
 
 @bond("quartic", cls=Quartic, example="1200.0 -0.55 0.25 1.3 34.6878", rest=lambda coeff: 0.97,
       breaks="off", domain="the bond must be longer than 0")
-def quartic(r, K: "energy/distance^4", B1: "distance", B2: "distance", Rc: "distance", U0: "energy"):
+def quartic(r, K: "energy/distance^4", B1: "distance^1", B2: "distance^1", Rc: "distance", U0: "energy"):
+    # B1 and B2 are lengths that may be negative: no warning of that
     if r > Rc:
         return math.nan, math.nan
     if r == 0.0:
