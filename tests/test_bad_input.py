@@ -5,6 +5,7 @@ import re
 import signal
 from pathlib import Path
 
+import bad_scenes_bonded  # noqa: F401  adds its scenes to CASES
 import pytest
 from bad_scenes import CASES, DATA, SCRIPT, Case
 

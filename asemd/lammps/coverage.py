@@ -37,6 +37,7 @@ PARTIAL = {
     ("command", "write_data"): "no triclinic/general",
     ("atom", "dipole"): "no fix turns the dipoles",
     ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
+    ("dump", "local"): "no local values of fixes",
     ("fix", "langevin"): "no gjf, omega, angmom",
 }
 # names that are read but do nothing useful yet
