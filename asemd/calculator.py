@@ -306,33 +306,9 @@ class ForceField(Calculator):
         self._remember(atoms, system_changes)
 
     def get_hessian(self, atoms=None, numerical: bool = False):
-        """Second derivatives of the energy by all positions, exact to round-off.
-
-        Parameters
-        ----------
-        atoms : ase.Atoms, optional
-            By default those of the last calculation.
-        numerical : bool
-            Take differences for styles that do not have second derivatives of their own.
-
-        Returns
-        -------
-        scipy.sparse.csr_matrix
-            (3 n, 3 n), eV/Angstrom^2 (``units lj`` numbers pass unchanged). Constant added forces have none; constraints are not applied.
-
-        Raises
-        ------
-        InputError
-            A style has no second derivatives; the message names it.
-        """
-        from asemd.hessian import hessian_of
-        atoms = self.atoms if atoms is None else atoms
-        if atoms is None:
-            raise InputError("get_hessian needs atoms: nothing has been calculated yet")
-        system = self._system(atoms)
-        self.interactions.check_complete(system)
-        factor = unit_styles.factor("energy/distance^2", self.units)
-        return hessian_of(system, self.interactions, self.neighbor_settings(atoms), numerical) * factor
+        """Second derivatives of the energy, a sparse matrix (3 n, 3 n) in eV/Angstrom^2: see `asemd.hessian.of_calculator`."""
+        from asemd.hessian import of_calculator
+        return of_calculator(self, self.atoms if atoms is None else atoms, numerical)
 
     def adopt(self, atoms, results: dict[str, Any]) -> None:
         """Take over results that the time loop has found for the atoms as they are now."""

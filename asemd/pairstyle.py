@@ -262,10 +262,14 @@ def missing_pairs(pairs) -> str:
 
 
 def pair(name: str, **options):
-    """Register one function as pair style `name`; its cutoff is the setting or coefficient ``cut``. Options as in `PairStyle`."""
+    """Register one function as pair style `name`; its cutoff is the setting or coefficient ``cut``. Options as in `PairStyle`.
+
+    `d2`, a function with the same arguments, gives the second derivative of the energy by the function's coordinate (for `asemd.hessian`).
+    """
     cls = options.pop("cls", PairStyle)
 
     def decorate(function):
+        function.d2 = options.pop("d2", None)
         cut = options.pop("cut", "cut")
         register(cls(name, [(function, cut)], doc=inspect.getdoc(inspect.getmodule(function)) or "", **options))
         return function

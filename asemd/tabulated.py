@@ -123,7 +123,7 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
             raise wrong(f"unknown parameter {word!r} of table {keyword}{nearest(word, known)}", k)
         count = known[word]
         if word == "N" and rest and not re.fullmatch(r"[+-]?\d+", rest[0]):
-            raise wrong(f"N of table {keyword} must be a whole number, got {rest[0]!r}", k)
+            raise wrong(f"parameter N of table {keyword} needs 1 number, a whole one, got {rest[0]!r}", k)
         try:
             parameters[word] = tuple(float(w) for w in rest[:count])
         except ValueError:

@@ -8,7 +8,11 @@ from __future__ import annotations
 from asemd.style import angle
 
 
-@angle("charmm", example="75.0 110.1 50.0 3.0", equilibrium="theta0")
+def charmm_d2(theta, r13, K, theta0, K_ub, r_ub):
+    return (2.0 * K, 0.0), (0.0, 2.0 * K_ub)
+
+
+@angle("charmm", example="75.0 110.1 50.0 3.0", equilibrium="theta0", d2=charmm_d2)
 def charmm(theta, r13, K: "energy", theta0: "angle", K_ub: "energy/distance^2", r_ub: "distance"):
     d = theta - theta0
     u = r13 - r_ub

@@ -9,7 +9,11 @@ import math
 from asemd.style import angle
 
 
-@angle("cosine/shift", example="10.0 45.0", equilibrium="theta0")
+def cosine_shift_d2(theta, Umin, theta0):
+    return 0.5 * Umin * math.cos(theta - theta0)
+
+
+@angle("cosine/shift", example="10.0 45.0", equilibrium="theta0", d2=cosine_shift_d2)
 def cosine_shift(theta, Umin: "energy", theta0: "angle"):
     d = theta - theta0
     c = math.cos(0.5 * d)

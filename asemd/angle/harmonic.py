@@ -7,7 +7,11 @@ from __future__ import annotations
 from asemd.style import angle
 
 
-@angle("harmonic", example="75.0 110.1", equilibrium="theta0")
+def harmonic_d2(theta, K, theta0):
+    return 2.0 * K
+
+
+@angle("harmonic", example="75.0 110.1", equilibrium="theta0", d2=harmonic_d2)
 def harmonic(theta, K: "energy", theta0: "angle"):
     d = theta - theta0
     return K * d * d, 2.0 * K * d

@@ -7,7 +7,12 @@ from __future__ import annotations
 from asemd.style import angle
 
 
-@angle("quartic", example="129.1948 56.8726 -25.9442 -14.2221", equilibrium="theta0")
+def quartic_d2(theta, theta0, K2, K3, K4):
+    d = theta - theta0
+    return 2.0 * K2 + d * (6.0 * K3 + 12.0 * d * K4)
+
+
+@angle("quartic", example="129.1948 56.8726 -25.9442 -14.2221", equilibrium="theta0", d2=quartic_d2)
 def quartic(theta, theta0: "angle", K2: "energy", K3: "energy", K4: "energy"):
     d = theta - theta0
     return d * d * (K2 + d * (K3 + d * K4)), d * (2.0 * K2 + d * (3.0 * K3 + d * 4.0 * K4))

@@ -18,7 +18,18 @@ def check(coeff, settings):
             raise InputError(f"bond_coeff fene: {name} must be > 0, got {coeff[name]:g}")
 
 
-@bond("fene", example="30.0 1.5 1.0 1.0", check=check, domain="the bond must be longer than 0 and shorter than R0")
+def fene_d2(r, K, R0, epsilon, sigma):
+    rest = (R0 - r) * (R0 + r)
+    curvature = K * (R0 / rest) * (R0 / rest) * (R0 * R0 + r * r)
+    s2 = (sigma / r) * (sigma / r)
+    s6 = s2 * s2 * s2
+    if s6 > 0.5:
+        curvature += 4.0 * epsilon * s6 * (156.0 * s6 - 42.0) / (r * r)
+    return curvature
+
+
+@bond("fene", example="30.0 1.5 1.0 1.0", check=check, rest=lambda coeff: 0.97 * coeff["sigma"],
+      domain="the bond must be longer than 0 and shorter than R0", d2=fene_d2)
 def fene(r, K: "energy/distance^2", R0: "distance", epsilon: "energy", sigma: "distance"):
     if not 0.0 < r < R0:
         return math.inf, math.inf

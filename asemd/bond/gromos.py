@@ -8,7 +8,11 @@ from __future__ import annotations
 from asemd.style import bond
 
 
-@bond("gromos", example="80.0 1.2", equilibrium="r0")
+def gromos_d2(r, K, r0):
+    return 4.0 * K * ((r - r0) * (r + r0) + 2.0 * r * r)
+
+
+@bond("gromos", example="80.0 1.2", equilibrium="r0", d2=gromos_d2)
 def gromos(r, K: "energy/distance^4", r0: "distance"):
     d = (r - r0) * (r + r0)
     return K * d * d, 4.0 * K * d * r

@@ -7,7 +7,11 @@ from __future__ import annotations
 from asemd.style import bond
 
 
-@bond("harmonic", example="300.0 1.1", equilibrium="r0")
+def harmonic_d2(r, K, r0):
+    return 2.0 * K
+
+
+@bond("harmonic", example="300.0 1.1", equilibrium="r0", d2=harmonic_d2)
 def harmonic(r, K: "energy/distance^2", r0: "distance"):
     dr = r - r0
     return K * dr * dr, 2.0 * K * dr

@@ -13,7 +13,11 @@ def check(coeff, settings):
         raise InputError(f"bond_coeff harmonic/shift: r0 and rc must be different, both are {coeff['r0']:g}")
 
 
-@bond("harmonic/shift", example="10.0 0.8 1.3", check=check, equilibrium="r0")
+def harmonic_shift_d2(r, Umin, r0, rc):
+    return 2.0 * Umin / ((r0 - rc) * (r0 - rc))
+
+
+@bond("harmonic/shift", example="10.0 0.8 1.3", check=check, equilibrium="r0", d2=harmonic_shift_d2)
 def harmonic_shift(r, Umin: "energy", r0: "distance", rc: "distance"):
     K = Umin / ((r0 - rc) * (r0 - rc))
     return K * (r - rc) * ((r - r0) + (rc - r0)), 2.0 * K * (r - r0)

@@ -10,7 +10,14 @@ import math
 from asemd.style import bond
 
 
-@bond("nonlinear", example="100.0 1.1 1.4", equilibrium="r0", domain="the bond length must differ from r0 by less than lambda")
+def nonlinear_d2(r, epsilon, r0, lamda):
+    d = r - r0
+    rest = (lamda - d) * (lamda + d)
+    return 2.0 * epsilon * (lamda / rest) * (lamda / rest) * (lamda * lamda + 3.0 * d * d) / rest
+
+
+@bond("nonlinear", example="100.0 1.1 1.4", equilibrium="r0", domain="the bond length must differ from r0 by less than lambda",
+      d2=nonlinear_d2)
 def nonlinear(r, epsilon: "energy", r0: "distance", lamda: "distance"):
     d = r - r0
     rest = (lamda - d) * (lamda + d)

@@ -17,7 +17,11 @@ def check(coeff, settings):
         raise InputError(f"dihedral_coeff harmonic: incorrect multiplicity, n must be 0 or more, got {coeff['n']}")
 
 
-@dihedral("harmonic", example="80.0 1 2", check=check)
+def harmonic_d2(phi, K, d, n):
+    return -K * d * n * n * math.cos(n * phi)
+
+
+@dihedral("harmonic", example="80.0 1 2", check=check, d2=harmonic_d2)
 def harmonic(phi, K: "energy", d: "integer", n: "integer"):
     c = math.cos(0.5 * n * phi) if d > 0.0 else math.sin(0.5 * n * phi)     # 1 + cos(x) = 2 cos^2(x/2), 1 - cos(x) = 2 sin^2(x/2)
     return 2.0 * K * c * c, -K * d * n * math.sin(n * phi)

@@ -10,7 +10,12 @@ import math
 from asemd.style import dihedral
 
 
-@dihedral("opls", example="1.740 -0.157 0.279 0.900")
+def opls_d2(phi, K1, K2, K3, K4):
+    first = -0.5 * K1 * math.cos(phi) + 2.0 * K2 * math.cos(2.0 * phi)
+    return first - 4.5 * K3 * math.cos(3.0 * phi) + 8.0 * K4 * math.cos(4.0 * phi)
+
+
+@dihedral("opls", example="1.740 -0.157 0.279 0.900", d2=opls_d2)
 def opls(phi, K1: "energy", K2: "energy", K3: "energy", K4: "energy"):
     # (1 + cos(x)) / 2 = cos^2(x/2), (1 - cos(x)) / 2 = sin^2(x/2); the forces of all terms have the factor sin(phi)
     h, c, s = math.cos(0.5 * phi), math.cos(phi), math.sin(phi)

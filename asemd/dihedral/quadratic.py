@@ -10,7 +10,11 @@ import math
 from asemd.style import dihedral
 
 
-@dihedral("quadratic", example="100.0 80.0")
+def quadratic_d2(phi, K, phi0):
+    return 2.0 * K
+
+
+@dihedral("quadratic", example="100.0 80.0", d2=quadratic_d2)
 def quadratic(phi, K: "energy", phi0: "angle"):
     d = phi - phi0
     if d > math.pi:

@@ -14,8 +14,15 @@ def tail(c, cut):
     return front * (x - 2.0), front * (3.0 * x - 4.0)
 
 
+def lj96_cut_d2(r2, epsilon, sigma):
+    r2inv = 1.0 / r2
+    s2 = sigma * sigma * r2inv
+    s3 = s2 * math.sqrt(s2)
+    return 3.0 * epsilon * s3 * s3 * (33.0 * s3 - 16.0) * r2inv * r2inv
+
+
 @pair("lj96/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, tail=tail,
-      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj96/cut")
+      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj96/cut", d2=lj96_cut_d2)
 def lj96_cut(r2, epsilon: "energy", sigma: "distance"):
     r2inv = 1.0 / r2
     s2 = sigma * sigma * r2inv

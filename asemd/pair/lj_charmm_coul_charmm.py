@@ -50,6 +50,33 @@ def coul_charmm_lammps(r2, qq, coul_inner2, coul_outer2, coul_scale):
     return e, -0.5 * e * r2inv
 
 
+def lj_charmm_d2(r2, epsilon, sigma, inner2, outer2, scale):
+    r2inv = 1.0 / r2
+    s2 = sigma * sigma * r2inv
+    s6 = s2 * s2 * s2
+    e, d = 4.0 * epsilon * s6 * (s6 - 1.0), -12.0 * epsilon * s6 * (2.0 * s6 - 1.0) * r2inv
+    second = 24.0 * epsilon * s6 * (7.0 * s6 - 2.0) * r2inv * r2inv
+    if r2 <= inner2:
+        return second
+    gap = outer2 - r2
+    switch = gap * gap * (outer2 + 2.0 * r2 - 3.0 * inner2) * scale
+    return second * switch + 12.0 * d * gap * (inner2 - r2) * scale + 6.0 * e * (2.0 * r2 - inner2 - outer2) * scale
+
+
+def coul_charmm_d2(r2, qq, coul_inner2, coul_outer2, coul_scale):
+    e = qq / math.sqrt(r2)
+    d, second = -0.5 * e / r2, 0.75 * e / (r2 * r2)
+    if r2 <= coul_inner2:
+        return second
+    gap = coul_outer2 - r2
+    switch = gap * gap * (coul_outer2 + 2.0 * r2 - 3.0 * coul_inner2) * coul_scale
+    return (second * switch + 12.0 * d * gap * (coul_inner2 - r2) * coul_scale
+            + 6.0 * e * (2.0 * r2 - coul_inner2 - coul_outer2) * coul_scale)
+
+
+lj_charmm.d2, coul_charmm.d2 = lj_charmm_d2, coul_charmm_d2
+
+
 class CharmmPair(PairStyle):
     """Checks the switching distances, derives constants of the switches, and has tables of 1-4 pairs for dihedral_style charmm."""
 

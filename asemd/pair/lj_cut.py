@@ -14,8 +14,15 @@ def tail(c, cut):
     return front * (x * x - 3.0), 2.0 * front * (2.0 * x * x - 3.0)
 
 
+def lj_cut_d2(r2, epsilon, sigma):
+    r2inv = 1.0 / r2
+    s2 = sigma * sigma * r2inv
+    s6 = s2 * s2 * s2
+    return 24.0 * epsilon * s6 * (7.0 * s6 - 2.0) * r2inv * r2inv
+
+
 @pair("lj/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, tail=tail,
-      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj/cut")
+      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj/cut", d2=lj_cut_d2)
 def lj_cut(r2, epsilon: "energy", sigma: "distance"):
     r2inv = 1.0 / r2
     s2 = sigma * sigma * r2inv
