@@ -6,10 +6,16 @@ from asemd.errors import InputError
 
 def run(session, args):
     scene = session.scene
+    before = storing(scene)
     scene.interactions.set_style("bond", args)
-    uses = [use for use in scene.interactions.uses["bond"] if "store/local" in use.settings]
-    if uses or any(hasattr(fix, "use") for fix in scene.fixes.values()):
-        keep_broken(scene, uses)
+    after = storing(scene)
+    if before or after:
+        keep_broken(scene, after)
+
+
+def storing(scene) -> list:
+    """The styles with ``store/local``."""
+    return [use for use in scene.interactions.uses["bond"] if "store/local" in use.settings]
 
 
 def keep_broken(scene, uses) -> None:
