@@ -194,7 +194,7 @@ def test_computes_travel(folder):
 
 @pytest.mark.parametrize(("line", "message"), [
     ("compute c all bond/local", "at least one"), ("compute c all bond/local dits", "did you mean dist"),
-    ("compute c all bond/local b1", "extra quantities"), ("compute c all bond/local v_twice", "set dist"),
+    ("compute c all bond/local b2", "extra quantity"), ("compute c all bond/local v_twice", "set dist"),
     ("compute c all bond/local dist set dist x", "without a variable"), ("compute c all bond/local v_twice set theta x", "set dist"),
     ("compute c all bond/local v_none set dist x", "none"), ("compute c all bond/local v_twice set dist twice", "internal"),
     ("compute c all bond/local v_x set dist x", "equal"), ("compute c all improper/local v_twice set chi x", "unknown keyword"),
