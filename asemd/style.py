@@ -131,6 +131,8 @@ class Style:
         Where the function is defined, in words a user understands.
     equilibrium : str
         Name of the coefficient that is the rest length or angle (used by SHAKE).
+    rest : callable, optional
+        ``rest(coeff)``, the rest length or angle (degrees) where it is not a coefficient.
     see : str
         Source of the formula (paper or manual page).
     xfail : mapping
@@ -158,11 +160,11 @@ class Style:
     def __init__(self, category: str, name: str, function: Callable | None, *, settings=(), coeff=None, example: str = "",
                  settings_example: str = "", domain: str = "", equilibrium: str = "", see: str = "",
                  xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
-                 centre: int = 0, lammps: Callable | None = None, d2: Callable | None = None, breaks: str = "",
-                 remembers: str = "", pair_weights: tuple[str, str] | tuple[()] = ()):
+                 centre: int = 0, lammps: Callable | None = None, rest: Callable | None = None,
+                 d2: Callable | None = None, breaks: str = "", remembers: str = "", pair_weights: tuple[str, str] | tuple[()] = ()):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
-        self.equilibrium, self.see, self.xfail = equilibrium, see, dict(xfail)
+        self.equilibrium, self.rest, self.see, self.xfail = equilibrium, rest, see, dict(xfail)
         self.weight_14, self._check, self.lammps, self.d2 = weight_14, check, lammps, d2
         self.breaks, self.remembers, self.pair_weights = breaks, remembers, pair_weights
         self.centre = centre or (1 if category == "improper" else 2)
@@ -244,6 +246,11 @@ class Style:
     def coeff_lines(self, coeff: Mapping[str, Any]) -> list[list[str]]:
         """Words of all lines that make the coefficients of a type again."""
         return [self.format_coeff(coeff)]
+
+    def rest_value(self, coeff: Mapping[str, Any]) -> float:
+        """Rest length, or rest angle in degrees, of a type with these coefficients; nan if the style has none."""
+        value = self.rest(coeff) if self.rest else coeff.get(self.equilibrium)
+        return math.nan if value is None else float(value)
 
     def missing(self, coeff: Mapping[str, Any]) -> list[str]:
         """Marks of the lines that a type still needs."""

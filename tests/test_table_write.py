@@ -11,11 +11,11 @@ from asemd.errors import AsemdError, InputError
 from asemd.lammps import Lammps
 
 SCENE = ["units real", "atom_style full", "region b block -50 50 -50 50 -50 50",
-         "create_box 2 b bond/types 2 angle/types 2 dihedral/types 2", "mass * 1.0"]
+         "create_box 2 b bond/types 3 angle/types 2 dihedral/types 2", "mass * 1.0"]
 PAIRS = ["pair_style lj/cut/coul/cut 8.0", "pair_coeff * * 0.2 3.0"]
 CASES = {
     "bond": ["bond_style hybrid harmonic morse", "bond_coeff 1 harmonic 300 1.1", "bond_coeff 2 morse 80.0 1.2 1.5",
-             "bond_write 1 23 0.5 2.0 FILE ONE", "bond_write 2 7 0.5 2.0 FILE TWO"],
+             "bond_coeff 3 harmonic 1 1", "bond_write 1 23 0.5 2.0 FILE ONE", "bond_write 2 7 0.5 2.0 FILE TWO"],
     "angle": [*PAIRS, "angle_style charmm", "angle_coeff 1 40 110 0 0", "angle_coeff 2 75.0 110.1 50.0 3.0",
               "angle_write 1 19 FILE ONE", "angle_write 2 24 FILE TWO"],
     "dihedral": [*PAIRS, "dihedral_style opls", "dihedral_coeff 1 0 0 2.5 0", "dihedral_coeff 2 1.0 2.0 0.5 0.3",
@@ -109,9 +109,10 @@ def test_appending(tmp_path):
 
 
 @pytest.mark.parametrize(("line", "message"), [
-    ("bond_write 1 5 0.5 2.0 t", "needs 6 values"), ("bond_write 1 1 0.5 2.0 t K", "at least 2"), ("bond_write 3 5 0.5 2.0 t K", "type 3"),
+    ("bond_write 1 5 0.5 2.0 t", "needs 6 values"), ("bond_write 1 1 0.5 2.0 t K", "at least 2"), ("bond_write 4 5 0.5 2.0 t K", "type 4"),
     ("bond_write 1 5 2.0 0.5 t K", "outer above inner"), ("bond_write 1 5 0.0 0.5 t K", "above 0"), ("bond_write x 5 0.5 1 t K", "whole"),
     ("bond_write 1 5 0.5 1 nowhere/t K", "cannot write"), ("angle_write 1 5 t K", "before angle_style"),
+    ("bond_write 3 5 0.5 1.6 t K", "harmonic/restrain depends on more than a length"),
     ("bond_write 2 5 0.5 1.6 t K", "1.6 is outside the domain of bond style fene"),
     ("pair_write 1 2 5 q 2 8 t K", "expected one of r rsq bitmap"), ("pair_write 1 2 5 r 2 8 t K 1", "two charges or none"),
     ("pair_write 1 9 5 r 2 8 t K", "type 9"), ("pair_write 1 2 3 bitmap 2 8 t K", "too few"), ("pair_write 1 2 5 r 0 8 t K", "above 0"),
@@ -119,5 +120,6 @@ def test_appending(tmp_path):
 def test_refused(line, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match=message):
-        execute([*SCENE, *PAIRS, "bond_style hybrid harmonic fene", "bond_coeff 1 harmonic 300 1.1", "bond_coeff 2 fene 30 1.5 1 1", line])
+        execute([*SCENE, *PAIRS, "bond_style hybrid harmonic fene harmonic/restrain", "bond_coeff 1 harmonic 300 1.1",
+                 "bond_coeff 2 fene 30 1.5 1 1", "bond_coeff 3 harmonic/restrain 100", line])
     assert not (tmp_path / "t").exists()

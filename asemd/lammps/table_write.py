@@ -72,6 +72,10 @@ def style_of(session, category: str, t: int, command: str) -> tuple[Style, dict,
     for use in interactions.uses[category]:
         if t in use.coeff:
             style = use.style.bind(use.settings, use.coeff, interactions.compat)
+            beyond = [name for name in style.coordinates if name in ("rate", "reference", "gamma")]
+            if beyond:
+                one = "length" if category == "bond" else "angle"
+                raise InputError(f"{command}: {category} style {style.name} depends on more than a {one}: it has no table")
             if style.function is None:
                 return style, use.coeff[t], lambda *q: (0.0,) * (1 + len(q))
             packed = style.pack(use.settings, {t: use.coeff[t]}, t, unit_styles.get(system.units))
@@ -109,10 +113,11 @@ def run_bonded(session, args, category: str, words: int, points: Callable) -> No
         energies.append(e)
         forces.append(force if category == "bond" else math.radians(force))
     head = f"N {n}" + " DEGREES" * (category == "dihedral")
-    if category != "dihedral" and style.equilibrium in coeff:
-        head += f" EQ {coeff[style.equilibrium]:.15g}"
-    elif category == "angle":      # a reader would take 180 degrees
-        head += f" EQ {x[int(np.argmin(energies))]:.15g}"
+    rest = style.rest_value(coeff)
+    if category == "angle" and math.isnan(rest):      # a reader would take 180 degrees
+        rest = x[int(np.argmin(energies))]
+    if category != "dihedral" and math.isfinite(rest):
+        head += f" EQ {rest:.15g}"
     name = session.scene.interactions.style_name(category)
     title = f"{category.capitalize()} potential {name} for {category} type {t}: i,{'r' if category == 'bond' else 'theta'},energy,force"
     append(session, command, args[-2], title, args[-1], head, (x, energies, forces))
