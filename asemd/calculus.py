@@ -256,3 +256,12 @@ class Graph:
 def is_number(node: Node, value: float) -> bool:
     """Whether a node is that number and stays it."""
     return node.op == "number" and node.value == value and not isinstance(node.origin, str)
+
+
+def zbl(g: Graph, zi: Node, zj: Node, r: Node, energy: Node, length: Node) -> Node:
+    """Screened nuclear repulsion of Ziegler, Biersack and Littmark; `energy` is the Coulomb constant, `length` one Angstrom."""
+    a = g.div(g.mul(g.number(0.4685), length), g.add(g.power(zi, g.number(0.23)), g.power(zj, g.number(0.23))))
+    x, screening = g.div(r, a), g.number(0.0)
+    for share, rate in ((0.02817, 0.20162), (0.28022, 0.4029), (0.50986, 0.94229), (0.18175, 3.1998)):
+        screening = g.add(screening, g.mul(g.number(share), g.call("exp", g.mul(g.number(-rate), x))))
+    return g.mul(g.div(g.mul(energy, g.mul(zi, zj)), r), screening)

@@ -15,11 +15,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from asemd.calculus import FUNCTIONS, OPERATIONS, Graph, Node
+from asemd.calculus import FUNCTIONS, OPERATIONS, Graph, Node, zbl
 from asemd.errors import InputError, nearest
 
 TOKEN = re.compile(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])")
 VARIABLE = re.compile(r"(?<![A-Za-z0-9_])v_(\w+)")
+ZBL = ("zbl energy", "zbl length")     # constants of the function zbl; it exists where they are given
 ARGUMENT = "x"      # the variable in the written source
 
 
@@ -120,17 +121,21 @@ class Parser:
         raise self.wrong(f"unknown name {name}{nearest(name, known)}", begin)
 
     def call(self, name: str, begin: int) -> Node:
-        if name not in FUNCTIONS:
-            raise self.wrong(f"unknown function {name}{nearest(name, FUNCTIONS)}", begin)
+        functions = FUNCTIONS if ZBL[0] not in self.given else {**FUNCTIONS, "zbl": (3, self.zbl)}
+        if name not in functions:
+            raise self.wrong(f"unknown function {name}{nearest(name, functions)}", begin)
         bracket, args = self.begin, []
         while not args or self.token == ",":
             self.advance()
             args.append(self.sum())
         self.close(bracket)
-        count, make = FUNCTIONS[name]
+        count, make = functions[name]
         if len(args) != count:
             raise self.wrong(f"{name} needs {count} argument{'s' * (count != 1)}, got {len(args)}", begin)
         return make(self.graph, *args)
+
+    def zbl(self, graph: Graph, *args: Node) -> Node:
+        return zbl(graph, *args, *(graph.number(self.given[name], name) for name in ZBL))
 
 
 def condense(text: str) -> str:
@@ -191,9 +196,9 @@ class Compiled:
             return float(compiled_function("value", source)(*map(np.float64, (x, *self.constants))))
 
 
-def compiled_function(name: str, source: str) -> Callable:
-    """A function from written source, with the text as its attribute ``source``."""
-    names: dict = {"math": math, "np": np}
+def compiled_function(name: str, source: str, module: str = __name__) -> Callable:
+    """A function of `module` from written source, with the text as its attribute ``source``."""
+    names: dict = {"math": math, "np": np, "__name__": module}
     exec(compile(source, f"<{name}>", "exec"), names)
     names[name].source = source
     return names[name]

@@ -104,7 +104,7 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
     for use, filled in complete(interactions, ntypes):
         if interactions.modified(use, "compute"):
             shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
-            style = use.style.variant(use.settings, interactions.compat)
+            style = use.style.variant(use.settings, interactions.compat).bind(use.settings, filled)
             out.append(PairTerm(use, style, style.pack_pairs(use.settings, filled, ntypes, units, shift), filled, use.label, tail))
     return out
 

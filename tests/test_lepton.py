@@ -203,6 +203,49 @@ def test_quotation_marks_of_data_files():
         style.parse_coeff(["1.5", "r^2", "k"], {})
 
 
+# ------------------------------------------------------------------ pairs ---
+
+PAIRS = """
+    units metal
+    variable q equal 1.5
+    atom_style atomic
+    lattice fcc 4.0
+    region b block 0 {size} 0 {size} 0 {size}
+    create_box 2 b
+    create_atoms 1 box
+    set group all type/fraction 2 0.4 1234
+    mass * 40.0
+    displace_atoms all random 0.2 0.2 0.2 777 units box
+    pair_style lepton 6.0
+    pair_coeff 1 1 "4*eps*((sig/r)^12-(sig/r)^6); eps=0.01; sig=2.5"
+    pair_coeff 1 2 "4*eps*((sig/r)^12-(sig/r)^6); eps=0.02; sig=2.4" 5.5
+    pair_coeff 2 2 "zbl(3,6,r) + v_q*exp(-r^2) + 0.1*r^-3.5"
+    pair_modify shift yes
+    fix 1 all nve
+    run 5
+"""
+
+
+@pytest.mark.parametrize("size", [3, 7])
+def test_pairs_agree_with_lammps(size):
+    """With few atoms over plain pairs, with many over clusters."""
+    text = PAIRS.format(size=size)
+    theirs = lammps({"pairs": text})["pairs"]
+    assert_same(asemd(text), theirs, x=1e-11, v=1e-9)
+
+
+def test_pair_text_and_refusals():
+    style = registry.find("pair", "lepton")
+    assert style.parse_coeff(['"r^2', "+", '1"', "4.0"], {}) == {"expression": "r^2+1", "cut": 4.0}
+    assert style.format_coeff({"expression": "r^2+1", "cut": 4.0}) == ["r^2+1", "4.0"]
+    with pytest.raises(InputError, match="does not mix"):
+        style.filled({(1, 1): {"expression": "r"}, (2, 2): {"expression": "r"}}, {"cut": 2.0}, 2)
+    with pytest.raises(InputError, match=r"pair_coeff lepton: expression .*unknown name theta"):
+        style.parse_coeff(["theta"], {})
+    with pytest.raises(InputError, match="variable q changes during the run"):
+        asemd(PAIRS.format(size=3).replace("equal 1.5", "equal step"))
+
+
 # ------------------------------------------------------------------ messages ---
 
 @pytest.mark.parametrize(("text", "message"), [

@@ -66,6 +66,8 @@ def exact(name: str, r):
         return m.mpf(27) / 4 * m.mpf(0.1) * ((3 / r)**9 - (3 / r)**6)
     if name == "morse":
         return m.exp(-4 * (r - m.mpf(1.2))) - 2 * m.exp(-2 * (r - m.mpf(1.2)))
+    if name == "lepton":
+        return 4 * m.mpf(0.9) * ((m.mpf(1.1) / r)**12 - (m.mpf(1.1) / r)**6)
     if name == "soft":
         return 10 * (1 + m.cos(m.pi * r / m.mpf(1.1)))
     if name == "lj/charmmfsw/coul/charmmfsh":

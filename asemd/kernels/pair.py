@@ -1,7 +1,6 @@
 """Compiled pair kernels of a style: one for the cluster list, one for plain pair lists, made for exactly the variant a scene needs."""
 from __future__ import annotations
 
-import inspect
 import re
 from collections.abc import Sequence
 from functools import cache
@@ -9,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.kernels import bond_history, pair_cluster, pair_list
-from asemd.kernels.generate import Builder, plain_source
+from asemd.kernels.generate import Builder, plain_source, text_of
 from asemd.pairstyle import PairStyle
 
 ROWS = (536, 1048, 2072, 4120, 8216, 16408, 32792)
@@ -89,7 +88,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
                             CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
                             OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
-    if any("math.exp" in s or "math.log" in s or "math.erfc" in s for s in map(inspect.getsource, style.functions())):
+    if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
         from asemd.kernels import vector_math
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)

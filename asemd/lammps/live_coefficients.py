@@ -54,4 +54,7 @@ class LiveCoefficients(Fix):
 
 def live_coefficients(session: Session) -> list[Fix]:
     """The fix that a run needs beside the user's, if an expression names a variable whose value changes."""
+    for name in fill(session, "pair"):
+        if changes(session, name):
+            raise InputError(f"pair_coeff lepton: the variable {name} changes during the run: an expression of pairs must stay the same")
     return [LiveCoefficients(session)] if any(changes(session, name) for name in fill(session)) else []
