@@ -54,6 +54,8 @@ for name, lines in given["cases"].items():
     for line in [f"log {place}/log", *given["setup"], *lines, *given["end"], f"write_data {place}/theirs nocoeff"]:
         lmp.command(line)
     answer[name] = {"energies": [lmp.get_thermo(w) for w in given["words"]], "data": open(f"{place}/theirs").read()}
+    answer[name]["items"] = {k: sorted(np.array(getattr(lmp.numpy, f"gather_{k}s")()).reshape(-1, width + 1).tolist())
+                             for k, width in (("bond", 2), ("angle", 3), ("dihedral", 4), ("improper", 4))}
     lmp.close()
     answer[name]["log"] = open(f"{place}/log").read()
 """
@@ -158,6 +160,7 @@ def test_same_as_lammps(theirs, folder, name, tmp_path):
     expected = theirs[name]
     np.testing.assert_allclose([lmp.get_thermo(w) for w in WORDS], expected["energies"], rtol=1e-11, atol=1e-11)
     assert items((tmp_path / "ours").read_text()) == items(expected["data"])
+    assert {k: sorted(getattr(lmp.numpy, f"gather_{k}s")().tolist()) for k in expected["items"]} == expected["items"]
     told = [[line.strip() for line in text.splitlines() if "turned on" in line or line.startswith("Added")]
             for text in ((tmp_path / "log").read_text(), expected["log"])]
     assert told[0] == told[1]
@@ -191,6 +194,15 @@ def test_lists_of_partners_travel(folder):
     assert top.concatenate(bare.shift(12)).special(24)[0].tolist() == pairs + bare.shift(12).special(24)[0].tolist()
     assert len(top.repeat(12, 3).special(36)[0]) == 3 * len(pairs)
     assert top != bare and Topology(frozen=top).special(12)[0].tolist() == pairs
+
+
+def test_no_script_for_turned_off_items(folder, tmp_path):
+    """A scene that a data file cannot hold is not handed over as if it could."""
+    from asemd.lammps.export import commands
+    for line in ("delete_bonds all bond 1", "delete_bonds all bond 1 remove"):
+        scene = ours([*setup(folder), line]).scene
+        with pytest.raises(InputError, match="turned off"):
+            commands(scene.system, scene.interactions, data=tmp_path / "d")
 
 
 def test_type_zero_is_a_broken_bond(folder, tmp_path):

@@ -320,3 +320,15 @@ class NumpyView:
     def gather_bonds(self) -> np.ndarray:
         """(nbonds, 3) type, id, id."""
         return np.array(self._l.gather_bonds()[1]).reshape(-1, 3)
+
+    def gather_angles(self) -> np.ndarray:
+        """(nangles, 4) type, id, id, id."""
+        return np.array(self._l.gather_angles()[1]).reshape(-1, 4)
+
+    def gather_dihedrals(self) -> np.ndarray:
+        """(ndihedrals, 5) type and four ids."""
+        return np.array(self._l.gather_dihedrals()[1]).reshape(-1, 5)
+
+    def gather_impropers(self) -> np.ndarray:
+        """(nimpropers, 5) type and four ids."""
+        return np.array(self._l.gather_impropers()[1]).reshape(-1, 5)

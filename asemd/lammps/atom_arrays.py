@@ -93,12 +93,27 @@ class AtomArrays:
         flat = np.asarray(values).ravel()
         return (kind * flat.size)(*(flat.tolist() if dtype == 1 else flat.astype(np.int64).tolist()))
 
-    def gather_bonds(self):
-        """Number of bonds and a ctypes int array of type, id, id."""
-        system = self.scene.need_system("gather_bonds")
-        topology = system.topology
-        table = np.column_stack([np.abs(topology.bond_types), system.id[topology.bonds]]) if len(topology.bonds) else np.zeros((0, 3), int)
+    def _gather_items(self, kind: str):
+        system = self.scene.need_system(f"gather_{kind}s")
+        atoms, types = system.topology.items(kind)
+        table = np.column_stack([np.abs(types), system.id[atoms]])[types != 0]
         return len(table), self._c_array(table, 0)
+
+    def gather_bonds(self):
+        """Number of bonds and a ctypes int array of type, id, id; turned off ones as if they were on, without broken ones."""
+        return self._gather_items("bond")
+
+    def gather_angles(self):
+        """Number of angles and a ctypes int array of type and three ids."""
+        return self._gather_items("angle")
+
+    def gather_dihedrals(self):
+        """Number of dihedrals and a ctypes int array of type and four ids."""
+        return self._gather_items("dihedral")
+
+    def gather_impropers(self):
+        """Number of impropers and a ctypes int array of type and four ids."""
+        return self._gather_items("improper")
 
     @staticmethod
     def encode_image_flags(ix: int, iy: int, iz: int) -> int:

@@ -8,6 +8,7 @@ import numpy as np
 
 from asemd import units as unit_styles
 from asemd.engine import Settings
+from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
 from asemd.lammps.data_write import write_data
 from asemd.system import System
@@ -36,8 +37,12 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
     Raises
     ------
     InputError
-        What a data file cannot hold.
+        What a data file cannot hold; bonded items that are turned off or broken, lists of 1-2, 1-3 and 1-4 pairs of former bonds.
     """
+    top = system.topology
+    if top.frozen is not None or any((types <= 0).any() for _, _, types in top):
+        raise InputError("bonds or other items that are turned off, or whose 1-2, 1-3 and 1-4 lists are older than they are, have no "
+                         "form in a data file: use delete_bonds with remove and special, create_bonds with special yes")
     settings = settings or Settings()
     native = system.units == "ase"
     name = "metal" if native else system.units
