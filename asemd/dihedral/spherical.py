@@ -1,7 +1,8 @@
 r"""$$E = \sum_{i=1}^{n} C_i \, [u_i - \cos(K_i (\phi - a_i))] \, [v_i - \cos(L_i (\theta_1 - b_i))] \, [w_i - \cos(M_i (\theta_2 - c_i))]$$
 
 Products of functions of the torsion and of both bond angles (theta1 is the angle 1-2-3, theta2 the angle 2-3-4), which place atom 4 on a
-sphere around atom 3. Source: LAMMPS manual, dihedral_style spherical.
+sphere around atom 3. The pressure differs from LAMMPS's, whose virial of this style has the wrong sign in the part of the bond 1-2.
+Source: LAMMPS manual, dihedral_style spherical.
 """
 from __future__ import annotations
 
