@@ -163,7 +163,7 @@ def test_agrees_with_lammps(tmp_path):
         lines = [style.example, *LINES.get((category, name), [])]
         if style.weight_14 or getattr(style, "repulsion", ""):
             lines = lines[1:]                                        # these ask for a pair style that knows them
-        tables = [""] if style.settings_example == "" else ["spline 100", "linear 100", "spline 12", "linear 11"]
+        tables = [style.settings_example] if "KEYWORD" not in style.example else ["spline 100", "linear 100", "spline 12", "linear 11"]
         if "KEYWORD" in style.example:
             lines = [" ".join(styles.example_words(style, str(tmp_path)))]
         for settings in tables:
