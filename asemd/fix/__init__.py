@@ -21,6 +21,9 @@ Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` give
 only, with ``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own
 that several hooks share is named with ``@hook(uses=[function])`` and pasted beside them.
 
+A fix may offer ``final_initial`` besides: `final_integrate` of a step and `initial_integrate` of the next in one pass, used where nothing
+happens in between.
+
 The array that `parameters` returns is the one the hooks work on, so a fix that keeps it sees its numbers live; likewise `atom_arrays`.
 
 ``asemd.fix.NVT`` is the class in ``asemd/fix/nvt.py``, imported when asked for; `find` goes by the LAMMPS name.

@@ -38,3 +38,16 @@ class NVE(Fix):
             for i in range(v.size):
                 if mask[i] & bit != 0:
                     v[i] += half * inverse_mass[i] * f[i]
+
+    @hook
+    def final_initial(th, s, p, a):
+        bit, half, mine = np.int32(np.int64(p[0])), 0.5 * th.dt, slice(th.lo, th.hi)
+        mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
+        for d in range(3):
+            x, v, f = s.x[d, mine], s.v[d, mine], s.f[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    kick = half * inverse_mass[i] * f[i]
+                    v[i] += kick
+                    v[i] += kick
+                    x[i] += th.dt * v[i]
