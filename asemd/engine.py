@@ -69,7 +69,7 @@ class Engine:
         for k, t in enumerate(self.terms):
             t.index = k
         self.acc = np.zeros((self.threads, max(1, len(self.terms)), 8))
-        self.moved = np.zeros(self.threads)      # largest squared displacement since the list was built, for each thread to read
+        self.farthest = np.zeros(self.threads)      # largest of `moved`, for each thread to read
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
         width = 16 if s.precision == "mixed" else 8
@@ -155,6 +155,7 @@ class Engine:
         self.buffers = np.zeros((self.threads, 3, capacity))
         self.state = new._replace(f=self.buffers[0])
         self.held = np.zeros((3, capacity))
+        self.moved = np.zeros(capacity)      # squared displacement of each slot since the list was built, for lists that may be outdated
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
 
     def __getstate__(self):
@@ -213,6 +214,7 @@ class Engine:
         elif self.mode == "plain":
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self._mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
+        self.moved[:] = 0.0
         for t in self.terms:
             t.rebuild(self)
         self._arguments = None
@@ -266,7 +268,7 @@ class Engine:
         if energy:
             self.acc[:] = 0.0
         if self.settings.outdated:
-            self.moved[:] = self.k.moved(self.state.x, self.held, self.ns)
+            self.farthest[:] = self.k.displacements(self.state.x, self.held, self.ns, self.moved)
         calls = [t.kernel(energy, False) for t in self.terms]
         spent = np.zeros(len(calls))
 

@@ -129,12 +129,16 @@ class Loop:
         self._kinds = [f.hooks() for f in self.fixes]
         self._compiled = all(compiled for kinds in self._kinds for compiled in kinds.values())
         hooks = [{name: getattr(f, name) for name in tl.COMPILED if kinds.get(name)} for f, kinds in zip(self.fixes, self._kinds)]
+        for f, compiled in zip(self.fixes, hooks):
+            if {"initial_integrate", "final_integrate"} <= set(compiled) and hasattr(f, "final_initial"):
+                compiled["final_initial"] = f.final_initial
         terms = self.engine.terms
         kernels = [(t.kernel(False, False), t.kernel(True, False)) for t in terms]
-        key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks))
+        key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks), self.settings.outdated)
         if self._module is not None and self._module[0] == key:
             return
-        self._module = (key, tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes]))
+        self._module = (key, tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes],
+                                       self.settings.outdated))
         if self._compiled:
             self._enter(0, False)     # compiles, or loads from the cache, without moving anything
 
@@ -281,7 +285,7 @@ class Loop:
         run = self._module[1].run
 
         def work(tid):
-            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.buffers, e.bad, self._sync, self._scratch, c, x, e.acc,
+            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.farthest, e.buffers, e.bad, self._sync, self._scratch, c, x, e.acc,
                               e.arguments(tid), self._fix_data)
         for t in range(e.threads):
             e.arguments(t)

@@ -28,7 +28,7 @@ def kernels(ortho: bool, mark: bool = False):
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
     for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.expand,
               cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load,
-              rebuild.store, rebuild.moved, rebuild.add_buffers, rebuild.clear, rebuild.mark_special,
+              rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.mark_special,
               rebuild.drop_excluded, rebuild.special_pairs):
         b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster_rows.rows))
     return b.build()

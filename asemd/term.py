@@ -143,8 +143,8 @@ class PairTerm:
         s, c = engine.state, engine.list
         return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts,
                 c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
-                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index], engine.held, c.hide[tid],
-                engine.settings.skin, engine.moved[tid:tid + 1])
+                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index], c.hide[tid],
+                engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")

@@ -230,11 +230,15 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                     py = shifts[code, 1]
                     pz = shifts[code, 2]
                     high = np.int32(code << 26)
-                    for q in range(count):
-                        tx[np.uint64(nt + q)] = x[0, np.uint64(k0 + q)] + px
-                        ty[np.uint64(nt + q)] = x[1, np.uint64(k0 + q)] + py
-                        tz[np.uint64(nt + q)] = x[2, np.uint64(k0 + q)] + pz
-                        codes[np.uint64(nt + q)] = np.int32(k0 + q) | high
+                    for q in range(0, count, 8):             # whole vectors; what is copied beyond the end is overwritten
+                        for k in range(8):
+                            tx[np.uint64(nt + q + k)] = x[0, np.uint64(k0 + q + k)] + px
+                        for k in range(8):
+                            ty[np.uint64(nt + q + k)] = x[1, np.uint64(k0 + q + k)] + py
+                        for k in range(8):
+                            tz[np.uint64(nt + q + k)] = x[2, np.uint64(k0 + q + k)] + pz
+                        for k in range(8):
+                            codes[np.uint64(nt + q + k)] = np.int32(k0 + q + k) | high
                     nt += count
         unshifted[ci] = all_in
         end = nt

@@ -101,7 +101,6 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.function(pair_cluster.inner_two, fast=True)
     b.function(pair_cluster.one_pair, fast=True)
     if outdated:
-        b.text(plain_source(pair_cluster.moved_most), "fastmath=True")
         b.constants["HIDE"] = True
         b.function(pair_cluster.inner_two, "inner_hidden", fast=True)
     b.function(pair_cluster.cluster_forces, fast=True)

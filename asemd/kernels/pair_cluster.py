@@ -123,29 +123,17 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     return fx, fy, fz, ev, ec, dx * fx, dy * fy, dz * fz, dx * fy, dx * fz, dy * fz
 
 
-def moved_most(x, held, lo, hi):
-    """Largest squared displacement of slots lo..hi-1 since the list was built (compiled without regard to NaN, so that it vectorises)."""
-    m = 0.0
-    for k in range(hi - lo):
-        i = place(lo + k)
-        a = x[0, i] - held[0, i]
-        b = x[1, i] - held[1, i]
-        c = x[2, i] - held[2, i]
-        m = max(m, a * a + b * b + c * c)
-    return m
-
-
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
-                   qqr2e, b, types, saved, acc, held, hide, skin, moved):
+                   qqr2e, b, types, saved, acc, hide, skin, moved, farthest):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz).
 
-    The last four arguments are for OUTDATED: positions when the list was built, the mask of its entries, and `moved (1,)`, the largest
-    squared displacement since.
+    The last four arguments are for OUTDATED: the mask of the entries, squared displacements of the slots since the list was built, and
+    `farthest (1,)`, the largest of them.
     """
     far = real(far_)
     late = False
     if OUTDATED:
-        rest = 0.999999 * skin - math.sqrt(moved[0])
+        rest = 0.999999 * skin - math.sqrt(farthest[0])      # how far another atom may have moved
     done = real(2) * far      # atoms of the cluster that have had their turn
     for ci in range(c0, c1):
         s = ci * CLUSTER
@@ -155,8 +143,6 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         f0 = np.int64(first[ci])
         full = ((np.int64(first[ci + 1]) - f0) // WIDTH) * WIDTH     # rows are padded: whole vectors
         mine = np.int64(own[ci])
-        if OUTDATED:
-            ripe = rest <= 0.0 or moved_most(x, held, s, s + CLUSTER) > rest * rest
         if unshifted[ci]:
             for k in range(full):
                 j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
@@ -192,7 +178,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
             xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
             if OUTDATED:
-                late = ripe and (rest <= 0.0 or moved_most(x, held, s + a0, s + a0 + 2) > rest * rest)
+                late = rest <= 0.0 or max(moved[place(s + a0)], moved[place(s + a0 + 1)]) > rest * rest
             qa = real(0)
             qb = real(0)
             if CHARGED:

@@ -96,6 +96,18 @@ def moved(x, held, ns):
     return m
 
 
+def displacements(x, held, ns, out):
+    """Squared displacement of each slot since the list was built into `out`; returns the largest."""
+    m = 0.0
+    for i in range(ns):
+        a = x[0, i] - held[0, i]
+        b = x[1, i] - held[1, i]
+        c = x[2, i] - held[2, i]
+        out[i] = a * a + b * b + c * c
+        m = max(m, out[i])
+    return m
+
+
 def add_buffers(buffers, ns):
     """Sum the threads' force buffers into the first."""
     for t in range(1, buffers.shape[0]):

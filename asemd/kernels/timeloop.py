@@ -15,13 +15,14 @@ from asemd.kernels import random
 from asemd.kernels.generate import FAST, Builder, plain_source
 
 FINISHED, REBUILD, BAD = 0, 1, 2
-COMPILED = ("final_initial", "initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate", "end_of_step")
+COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate", "end_of_step")
 # places in `control` (int64) and `numbers` (float64)
 STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY = range(11)
 DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
 
 
-def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[dict[str, object]], everys: Sequence[int]) -> ModuleType:
+def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[dict[str, object]], everys: Sequence[int],
+           outdated: bool = False) -> ModuleType:
     """The loop module.
 
     Parameters
@@ -34,6 +35,8 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
         Per fix: hook name -> compiled-hook function (only those that are compiled).
     everys : sequence of int
         Per fix: `end_of_step` is called on multiples of this.
+    outdated : bool
+        The list may be: kernels look at how far each slot has moved.
     """
     b = Builder("time loop")
     b.line("from asemd.kernels.threads import barrier, reduce_sum")
@@ -75,7 +78,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
         return textwrap.indent("\n".join(lines) or "t0 = t0", " " * indent)
 
-    b.text(f'''def run(tid, nth, ns, s, held, moved, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
+    b.text(f'''def run(tid, nth, ns, s, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
     step = control[{STEP}]
     last = control[{LAST}]
     resume = control[{RESUME}]
@@ -93,6 +96,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
     f = buffers[tid]
     x0, x1, x2 = s.x[0, lo:hi], s.x[1, lo:hi], s.x[2, lo:hi]            # slices: indices that are surely not negative vectorise
     held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
+    away = moved[lo:hi]
     ready = False          # whether the first half of the next step is done
     t0 = now()
     th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
@@ -107,7 +111,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
 {calls("post_integrate", 12)}
             ago += 1
             due = ago >= delay and ago % every == 0
-            if check == 0 or every > 1 or delay > 1 or due:
+            if {outdated} or due:
                 m = 0.0
                 odd = 0.0
                 for i in range(hi - lo):
@@ -116,6 +120,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
                     c = x2[i] - held2[i]
                     m = max(m, a * a + b * b + c * c)
                     odd += 0.0 * (a + b + c)                # not zero where a position is not a number
+                    {"away[i] = a * a + b * b + c * c" if outdated else ""}
                 scratch[tid, 1] = m if odd == 0.0 else 1e301
             if tid == 0:
                 t1 = now()
@@ -125,7 +130,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             m = 0.0
             for t in range(nth):
                 m = max(m, scratch[t, 1])
-            moved[tid] = m
+            farthest[tid] = m
             need = due and (check == 0 or m > trigger)
             if tid == 0:
                 t1 = now()
@@ -138,7 +143,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
                         control[{DANGEROUS}] += 1
                 return {REBUILD}
         else:
-            moved[tid] = 0.0
+            farthest[tid] = 0.0
         resume = 0
 {calls("pre_force", 8)}
         for d in range(3):
