@@ -134,7 +134,8 @@ class Loop:
                 compiled["final_initial"] = f.final_initial
         terms = self.engine.terms
         kernels = [(t.kernel(False, False), t.kernel(True, False)) for t in terms]
-        key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks), self.settings.outdated)
+        key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks),
+               self.settings.outdated)
         if self._module is not None and self._module[0] == key:
             return
         self._module = (key, tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes],
@@ -285,8 +286,8 @@ class Loop:
         run = self._module[1].run
 
         def work(tid):
-            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.farthest, e.buffers, e.bad, self._sync, self._scratch, c, x, e.acc,
-                              e.arguments(tid), self._fix_data)
+            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.farthest, e.buffers, e.bad, self._sync, self._scratch, c, x,
+                              e.acc, e.arguments(tid), self._fix_data)
         for t in range(e.threads):
             e.arguments(t)
         e.parallel(work)

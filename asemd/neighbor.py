@@ -20,7 +20,7 @@ IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # n
 
 @cache
 def kernels(ortho: bool, mark: bool = False):
-    """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, see `asemd.kernels.cluster.build`."""
+    """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, see `cluster.build`."""
     b = Builder("neighbour lists")
     b.constant("CLUSTER", CLUSTER)
     b.constant("ORTHO", ortho)

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.kernels import bond_history, pair_cluster, pair_list
-from asemd.kernels.generate import Builder, plain_source, text_of
+from asemd.kernels.generate import Builder, text_of
 from asemd.pairstyle import PairStyle
 
 ROWS = (536, 1048, 2072, 4120, 8216, 16408, 32792)

@@ -10,8 +10,8 @@ built do not interact. Two atoms of a cluster meet such pairs only once they and
 then on they look at a mask of the row (`hide`, bit a for atom a of the cluster).
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient
-differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working precision; `pair_force`, `pair_energy` and
-`fill_rows` are made from the style.
+differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working
+precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
 """
 from __future__ import annotations
 
