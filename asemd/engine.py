@@ -10,7 +10,7 @@ from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
 from asemd.exclusions import Exclusions
-from asemd.kernels.state import cell_arrays, empty_state
+from asemd.kernels.state import aligned, cell_arrays, empty_state
 from asemd.kernels.team import Team
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, kernels
 from asemd.result import Result, Settings, Snapshot
@@ -146,16 +146,16 @@ class Engine:
         self.slot_of = np.zeros(n, np.int32)
 
     def _allocate(self, capacity: int) -> None:
-        old = self.state
+        old, capacity = self.state, -(-capacity // 8) * 8      # rows of whole cache lines
         new = empty_state(capacity)
         if old is not None:
             m = self.ns
             for a, b in zip(new, old):
                 a[..., :m] = b[..., :m]
-        self.buffers = np.zeros((self.threads, 3, capacity))
+        self.buffers = aligned((self.threads, 3, capacity))
         self.state = new._replace(f=self.buffers[0])
-        self.held = np.zeros((3, capacity))
-        self.moved = np.zeros(capacity)      # squared displacement of each slot since the list was built, for lists that may be outdated
+        self.held = aligned((3, capacity))
+        self.moved = aligned((capacity,))      # squared displacement of each slot since the list was built, for lists that may be outdated
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
 
     def __getstate__(self):

@@ -8,6 +8,7 @@ import numpy as np
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels.cluster import CLUSTER
+from asemd.kernels.state import aligned
 from asemd.pairing import NO_REPULSION
 
 BONDED_KEY = {"bond": "ebond", "angle": "eangle", "dihedral": "edihed", "improper": "eimp"}
@@ -133,7 +134,7 @@ class PairTerm:
             self.row = pair_kernels.row_length(int(1.15 * engine.list.longest()))
             real = np.float32 if self.single else np.float64
             size = (7 + 2 * (len(self.uniform) - sum(self.uniform)) + 1) * self.row
-            self.buffer = np.zeros((engine.threads, size), real)
+            self.buffer = aligned((engine.threads, -(-size // 16) * 16), real)
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
             self.rows = self.tables.rows.astype(real)

@@ -11,7 +11,7 @@ from asemd.kernels import bond_history, pair_cluster, pair_list
 from asemd.kernels.generate import Builder, text_of
 from asemd.pairstyle import PairStyle
 
-ROWS = (536, 1048, 2072, 4120, 8216, 16408, 32792)
+ROWS = (608, 1120, 2144, 4192, 8288, 16480, 32864)
 
 
 def row_length(neighbours: int) -> int:
