@@ -55,3 +55,23 @@ class Marsaglia:
         factor = math.sqrt(-2.0 * math.log(square) / square)
         self._saved = a * factor
         return b * factor
+
+    def subset(self, n: int, k: int) -> list[int]:
+        """`k` of the numbers 0 to n - 1, in ascending order.
+
+        Every candidate is taken with equal probability so that about the right number results; then only the ones looked at last are
+        looked at again, to add or remove what is missing or too many.
+        """
+        marked, candidates, count = [False] * n, (list(range(n)), []), 0
+        while count != k:
+            mark = count < k
+            pool = candidates[not mark]
+            chance = min(max(abs(k - count) / len(pool), 0.01), 0.99)
+            kept: tuple[list[int], list[int]] = ([], [])
+            for i in pool:
+                if self.uniform() < chance:
+                    marked[i] = mark
+                    count += 1 if mark else -1
+                kept[marked[i]].append(i)
+            candidates = kept
+        return [i for i in range(n) if marked[i]]

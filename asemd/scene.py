@@ -141,10 +141,13 @@ class Scene:
     first_step: int = 0
     lattice: Any = None
     regions: dict[str, Any] = field(default_factory=dict)
+    molecules: dict[str, Any] = field(default_factory=dict)      # templates: lists of asemd.molecule.Molecule
     seeds: dict[str, int] = field(default_factory=dict)
     map_style: str | None = None
     newton: tuple[bool, bool] = (True, True)
     time_base: tuple[float, int] = (0.0, 0)     # simulation time at the step where the timestep last changed
+    restarts: dict[int, Any] = field(default_factory=dict)      # 1: a series of restart files, 2: two in turn
+    restored: dict[str, Any] | None = None      # what a restart file has for fixes to come and for the first run
 
     @property
     def step(self) -> int:

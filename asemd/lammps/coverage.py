@@ -21,7 +21,7 @@ CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 PARTIAL = {
     ("command", "atom_modify"): "id no is refused: atoms always have ids",
     ("command", "atom_style"): "the styles listed under atom",
-    ("command", "create_atoms"): "styles box region single random, keywords basis remap units maxtry",
+    ("command", "create_atoms"): "no style mesh",
     ("command", "dump_modify"): "no variable intervals, no keywords of image and movie styles",
     ("command", "group"): "no dynamic groups",
     ("command", "kspace_style"): "only none",

@@ -1,7 +1,9 @@
 """``create_atoms type style args keyword values ...``"""
 from __future__ import annotations
 
+import math
 import time
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -9,6 +11,8 @@ from asemd.atom_style import fresh
 from asemd.errors import InputError, nearest
 from asemd.lammps.command.create_box import describe
 from asemd.lattice import Lattice
+from asemd.marsaglia import Marsaglia
+from asemd.molecule import Molecule, random_rotation, rotation, turned
 from asemd.random import ParkMiller
 from asemd.system import System
 from asemd.words import bounds, choice, number, take, whole, yes_no
@@ -16,67 +20,181 @@ from asemd.words import bounds, choice, number, take, whole, yes_no
 EPSILON = 1.0e-6        # part of the box by which lattice points may miss a periodic face
 WARMUP = 30             # draws thrown away by style random
 STYLES = {"box": 0, "region": 1, "single": 3, "random": 3}
-REFUSED = ("mol", "rotate", "overlap", "ratio", "subset", "var", "set")
+VALUES = {"mol": 2, "basis": 2, "ratio": 2, "subset": 2, "remap": 1, "var": 1, "set": 2, "rotate": 4, "overlap": 1, "maxtry": 1, "units": 1}
+SEEDS = 900_000_000     # the largest of Marsaglia's generator
+
+
+@dataclass
+class _Options:
+    basis: dict[int, int] = field(default_factory=dict)
+    part: tuple[str, float, int] | None = None      # ratio or subset, how many, seed
+    remap: bool = False
+    lattice: bool = True
+    maxtry: int = 1000
+    variable: str = ""
+    axes: dict[int, str] = field(default_factory=dict)      # direction -> internal variable that holds the coordinate
+    template: Molecule | None = None
+    turns: Marsaglia | None = None      # draws the rotations of molecules
+    rotate: np.ndarray | None = None
+    overlap: float | None = None
 
 
 def run(session, args):
     started = time.perf_counter()
     scene, system = session.scene, session.scene.need_system("create_atoms")
     kind, style = take(args, 2, "create_atoms")[:2]
+    if style == "mesh":
+        raise InputError("create_atoms mesh is not supported: make the points of the surface beforehand and read them with read_data")
     if style not in STYLES:
         raise InputError(f"create_atoms: style {style!r} is unknown or not supported{nearest(style, STYLES)}; there are {' '.join(STYLES)}")
-    kind = _type(kind, system)
     values = take(args[2:], STYLES[style], f"create_atoms {style}")
     lattice = scene.lattice or Lattice()
-    options = _options(args[2 + len(values):], system, lattice)
+    options = _options(session, args[2 + len(values):], system, lattice)
+    kind = _type(kind, system, options.template)
+    if options.template is not None:
+        options.template.check(system, "create_atoms mol", kind)
     region = None
     if style in ("region", "random") and values[-1] != "NULL":
         region = scene.region(values[-1], f"create_atoms {style}")
+    wanted = _test(session, options)
     if style == "single":
-        x, types = _single(values, system, lattice, options, kind)
+        x, types = _single(values, system, lattice, options, kind, wanted)
     elif style == "random":
-        x, types = _random(values, system, region, options["maxtry"], kind)
+        x, types = _random(session, values, system, region, lattice, options, kind, wanted)
     else:
-        x, types = _lattice(system, lattice, region, options["basis"], kind)
-    new = System(box=system.box, x=x, type=types, units=system.units, dimension=system.dimension, counts=dict(system.counts),
-                 **fresh(system.atom_style, len(x)))
+        x, types = _lattice(system, lattice, region, options, kind, wanted)
+    if options.template is not None:
+        if x.ndim == 2:
+            x = np.array([_molecule(point, options, system.dimension) for point in x]).reshape(-1, options.template.natoms, 3)
+        new = options.template.copies(x, system, kind)
+    else:
+        new = System(box=system.box, x=x, type=types, units=system.units, dimension=system.dimension, counts=dict(system.counts),
+                     **fresh(system.atom_style, len(x)))
     scene.system = system.append(new)
     session.stale()
-    session.print(f"Created {len(x)} atoms")
-    session.print(f"  using {'lattice' if options['lattice'] else 'box'} units in {describe(system.box)}")
+    session.print(f"Created {new.n} atoms")
+    session.print(f"  using {'lattice' if options.lattice else 'box'} units in {describe(system.box)}")
     session.print(f"  create_atoms CPU = {time.perf_counter() - started:.3f} seconds")
 
 
-def _type(word: str, system) -> int:
+def _type(word: str, system, template: Molecule | None = None) -> int:
+    """The atom type, or what is added to the types of a molecule."""
     if "*" in word:
         raise InputError(f"create_atoms needs one atom type, got {word}")
+    if template is not None and word not in system.labels["atom"].values():
+        return whole(word, "create_atoms: atom type")
     first, _ = bounds(word, 1, system.counts["ntypes"], "create_atoms: atom type", system.labels["atom"])
     return first
 
 
-def _options(words: list[str], system, lattice: Lattice) -> dict:
-    out = {"basis": {}, "remap": False, "lattice": True, "maxtry": 1000}
+def _options(session, words: list[str], system, lattice: Lattice) -> _Options:
+    out = _Options()
     while words:
         key, what = words[0], f"create_atoms {words[0]}"
-        if key in REFUSED:
-            raise InputError(f"{what} is not supported; supported keywords: basis remap units maxtry")
-        if key not in ("basis", "remap", "units", "maxtry"):
-            raise InputError(f"create_atoms: unknown keyword {key!r}{nearest(key, ('basis', 'remap', 'units', 'maxtry'))}")
-        values = take(words[1:], 2 if key == "basis" else 1, what)
+        if key not in VALUES:
+            raise InputError(f"create_atoms: unknown keyword {key!r}{nearest(key, VALUES)}")
+        values = take(words[1:], VALUES[key], what)
         if key == "basis":
             number_of_basis = 0 if lattice.style == "none" else len(lattice.basis)
             basis = whole(values[0], what)
             if not 1 <= basis <= number_of_basis:
                 raise InputError(f"{what}: the lattice has {number_of_basis} basis atoms, got {basis}")
-            out["basis"][basis - 1] = _type(values[1], system)
+            out.basis[basis - 1] = _type(values[1], system)
         elif key == "remap":
-            out["remap"] = yes_no(values[0], what)
+            out.remap = yes_no(values[0], what)
         elif key == "units":
-            out["lattice"] = choice(values[0], ("lattice", "box"), what) == "lattice"
+            out.lattice = choice(values[0], ("lattice", "box"), what) == "lattice"
+        elif key == "maxtry":
+            out.maxtry = _positive(whole(values[0], what), what)
+        elif key == "overlap":
+            out.overlap = number(values[0], what)
+            if out.overlap < 0.0:
+                raise InputError(f"{what}: the distance must not be negative, got {values[0]}")
+        elif key in ("ratio", "subset"):
+            out.part = _part(key, values, what)
+        elif key == "var":
+            session.variables.find(values[0])
+            out.variable = values[0]
+        elif key == "set":
+            out.axes["xyz".index(choice(values[0], "xyz", what))] = _internal(session, values[1], what)
+        elif key == "mol":
+            out.template, out.turns = _template(session, values[0], what), Marsaglia(_seed(values[1], what))
         else:
-            out["maxtry"] = whole(values[0], what)
+            out.rotate = _rotation(values, system.dimension, what)
         words = words[1 + len(values):]
+    if bool(out.variable) != bool(out.axes):
+        raise InputError(f"create_atoms {'var' if out.variable else 'set'}: the keywords var and set must be given together")
     return out
+
+
+def _positive(value, what: str):
+    if value <= 0:
+        raise InputError(f"{what}: must be positive, got {value}")
+    return value
+
+
+def _seed(word: str, what: str) -> int:
+    seed = whole(word, f"{what}: seed")
+    if not 0 < seed <= SEEDS:
+        raise InputError(f"{what}: the seed must be from 1 to {SEEDS}, got {word}")
+    return seed
+
+
+def _part(key: str, values: list[str], what: str) -> tuple[str, float, int]:
+    amount = number(values[0], what) if key == "ratio" else whole(values[0], what)
+    if key == "ratio" and amount > 1.0:
+        raise InputError(f"{what}: the fraction must be from 0 to 1, got {values[0]}")
+    return key, _positive(amount, what), _seed(values[1], what)
+
+
+def _internal(session, name: str, what: str) -> str:
+    table = session.variables.table
+    if name not in table:
+        session.variables.define(name, "internal", ["0.0"])
+    elif table[name].style != "internal":
+        raise InputError(f"{what}: variable {name} has style {table[name].style}, it must have style internal")
+    return name
+
+
+def _template(session, name: str, what: str) -> Molecule:
+    molecules = session.scene.molecules
+    if name not in molecules:
+        raise InputError(f"{what}: there is no molecule {name}{nearest(name, molecules)}")
+    if len(molecules[name]) > 1:
+        session.warn(f"{what}: molecule {name} was read from several files, only the first is used")
+    return molecules[name][0]
+
+
+def _rotation(values: list[str], dimension: int, what: str) -> np.ndarray:
+    angle, *axis = (number(w, what) for w in values)
+    if not any(axis):
+        raise InputError(f"{what}: the axis must not be zero")
+    if dimension == 2 and (axis[0] or axis[1]):
+        raise InputError(f"{what}: in a 2d simulation the axis must be along z")
+    scale = 1.0 / math.sqrt(sum(a * a for a in axis))
+    return rotation([a * scale for a in axis], angle * math.pi / 180.0)
+
+
+def _molecule(centre: np.ndarray, options: _Options, dimension: int) -> np.ndarray:
+    """Positions of a molecule about a centre, turned as asked or at random."""
+    matrix = random_rotation(options.turns, dimension) if options.rotate is None else options.rotate
+    return turned(matrix, options.template.centred) + centre
+
+
+def _test(session, options: _Options):
+    """Which of some points the variable wants, as a function (n, 3) -> (n,) bool; None without variable."""
+    if not options.variable:
+        return None
+    variables = session.variables
+
+    def wanted(x: np.ndarray) -> np.ndarray:
+        out = np.zeros(len(x), bool)
+        for row, point in enumerate(x):
+            for axis, name in options.axes.items():
+                variables.set(name, repr(float(point[axis])))
+            out[row] = variables.number(options.variable) != 0.0
+        return out
+    return wanted
 
 
 def _inside(x: np.ndarray, box, below: float = 0.0, above: float = 0.0) -> np.ndarray:
@@ -88,38 +206,49 @@ def _inside(x: np.ndarray, box, below: float = 0.0, above: float = 0.0) -> np.nd
     return ((coordinates >= lo - below * length) & (coordinates < hi - above * length)).all(axis=1)
 
 
-def _lattice(system, lattice: Lattice, region, basis_types: dict[int, int], kind: int):
+def _lattice(system, lattice: Lattice, region, options: _Options, kind: int, wanted):
     """The lattice points in the box: exactly one of two that face each other across a periodic boundary."""
     box = system.box
     corners = box.origin + np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell
     types = np.full(max(1, 0 if lattice.style == "none" else len(lattice.basis)), kind)
-    for n, t in basis_types.items():
+    for n, t in options.basis.items():
         types[n] = t
     xs, ts = [np.zeros((0, 3))], [np.zeros(0, int)]
     for x, basis in lattice.points(corners.min(axis=0), corners.max(axis=0)):
         keep = np.flatnonzero(_inside(x, box, EPSILON, 2.0 * EPSILON))
         if region is not None:
             keep = keep[region.inside(x[keep])]
+        if wanted is not None:
+            keep = keep[wanted(x[keep])]
         xs.append(x[keep])
         ts.append(types[basis[keep]])
-    x = np.concatenate(xs)
-    return x, np.concatenate(ts)
+    x, types = np.concatenate(xs), np.concatenate(ts)
+    if options.part is not None:
+        key, amount, seed = options.part
+        count = int(amount if key == "subset" else amount * len(x))
+        if count > len(x):
+            raise InputError(f"create_atoms subset: {count} of {len(x)} lattice points are wanted")
+        rows = Marsaglia(seed).subset(len(x), count)
+        x, types = x[rows], types[rows]
+    return x, types
 
 
-def _single(values, system, lattice, options, kind):
+def _single(values, system, lattice, options: _Options, kind, wanted):
     x = np.array([[number(w, "create_atoms single") for w in values]])
-    if options["lattice"]:
+    if options.lattice:
         x *= lattice.spacings
     if system.dimension == 2 and x[0, 2] != 0.0:
         raise InputError(f"create_atoms single: z must be 0 in a 2d simulation, got {values[2]}")
-    if options["remap"]:
+    if options.remap:
         system.box.wrap(x, np.zeros((1, 3), np.int32))      # the image flags of the new atom stay 0
     keep = _inside(x, system.box)
+    if wanted is not None:
+        keep &= wanted(x)
     return x[keep], np.full(int(keep.sum()), kind)
 
 
-def _random(values, system, region, maxtry: int, kind: int):
-    """Uniform in the box that encloses box and region, until a point lies in both."""
+def _random(session, values, system, region, lattice, options: _Options, kind: int, wanted):
+    """Uniform in the box that encloses box and region, until a point lies in both and far enough from all atoms."""
     n = whole(values[0], "create_atoms random: number of atoms")
     if n < 0:
         raise InputError(f"create_atoms random: the number of atoms must not be negative, got {n}")
@@ -131,18 +260,50 @@ def _random(values, system, region, maxtry: int, kind: int):
         lo, hi = np.maximum(lo, region.extent()[0]), np.minimum(hi, region.extent()[1])
         if np.any(lo > hi):
             raise InputError(f"create_atoms random: region {region.id} does not overlap the box")
-    found, failed = [], 0
-    while len(found) < n:
-        x = lo + generator.uniform(3 * max(64, n - len(found))).reshape(-1, 3) * (hi - lo)
+    crowd = None
+    if options.overlap is not None:
+        crowd = _Crowd(system, options.overlap * (lattice.spacings[0] if options.lattice else 1.0))
+    found, atoms, tries = [], 0, 0
+    while atoms < n:
+        x = lo + generator.uniform(3 * max(64, n - atoms)).reshape(-1, 3) * (hi - lo)
         if system.dimension == 2:
             x[:, 2] = 0.0
         good = _inside(x, box) if box.triclinic else np.ones(len(x), bool)
         if region is not None:
             good &= region.inside(x)
-        for row in np.flatnonzero(good):
-            found.append(x[row])
-        failed = 0 if good.any() else failed + len(x)
-        if failed >= maxtry:
-            raise InputError(f"create_atoms random: no point found in {failed} tries, is the region in the box?")
-    x = np.array(found[:n]).reshape(-1, 3)
+        for row, point in enumerate(x):
+            if atoms == n:
+                break
+            tries += 1
+            if good[row] and (wanted is None or wanted(x[row:row + 1])[0]):
+                point = _molecule(point, options, system.dimension) if options.template is not None else point
+                if crowd is None or crowd.takes(point):
+                    found.append(point)
+                    tries = options.maxtry
+            if tries == options.maxtry:      # on to the next atom, whether this one was placed or not
+                atoms, tries = atoms + 1, 0
+    if len(found) < n:
+        session.warn(f"Only inserted {len(found)} particles out of {n}")
+    x = np.array(found).reshape(-1, *((options.template.natoms,) if options.template is not None else ()), 3)
     return x, np.full(len(x), kind)
+
+
+class _Crowd:
+    """Atoms, old and new, that keep a distance from new ones."""
+
+    def __init__(self, system, distance: float):
+        self.box, self.limit, self.x, self.n = system.box, distance * distance, system.x.copy(), system.n
+
+    def takes(self, new: np.ndarray) -> bool:
+        """Whether new atoms (3,) or (m, 3) are far enough from all; if so they join."""
+        new = new.reshape(-1, 3)
+        if self.n:
+            d = (new[:, None] - self.x[None, :self.n]).reshape(-1, 3)
+            near, _ = self.box.minimum_image(d)
+            if ((near * near).sum(axis=1) < self.limit).any():
+                return False
+        if self.n + len(new) > len(self.x):
+            self.x = np.concatenate([self.x[:self.n], np.zeros((max(64, self.n, len(new)), 3))])
+        self.x[self.n:self.n + len(new)] = new
+        self.n += len(new)
+        return True

@@ -1,0 +1,217 @@
+"""Molecule templates and create_atoms with molecules, subsets and variables, against LAMMPS."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from both import asemd, assert_same, lammps
+
+from asemd.errors import InputError
+
+WATER = """# water
+
+3 atoms
+2 bonds
+1 angles
+0.1 0.2 0.3 com
+
+Coords
+
+1    0.00000  -0.06556   0.00000
+2    0.75695   0.52032   0.00000
+3   -0.75695   0.52032   0.00000
+
+Types
+
+1        1   # oxygen
+3        2
+2        2
+
+Charges
+
+1       -0.834
+2        0.417
+3        0.417
+
+Bonds
+
+1   1      1      2
+2   1      1      3
+
+Angles
+
+1   1      2      1      3
+
+Special Bond Counts
+
+1 2 0 0
+2 1 1 0
+3 1 1 0
+
+Special Bonds
+
+1 2 3
+2 1 3
+3 1 2
+
+Shake Flags
+
+1 1
+2 1
+3 1
+
+Shake Atoms
+
+1 1 2 3
+2 1 2 3
+3 1 2 3
+
+Shake Bond Types
+
+1 1 1 1
+2 1 1 1
+3 1 1 1
+"""
+PAIR = """dimer
+2 atoms
+1 bonds
+2 fragments
+
+Coords
+
+1 0 0 0
+2 1 0 0
+
+Types
+
+1 A
+2 B
+
+Molecules
+
+1 1
+2 2
+
+Fragments
+
+one 1
+both 1 2
+
+Bonds
+
+1 bb 1 2
+"""
+BOX = """
+units real
+atom_style full
+region b block 0 10 0 10 0 10
+create_box 3 b bond/types 2 angle/types 2 extra/bond/per/atom 3 extra/angle/per/atom 3 extra/special/per/atom 3
+labelmap atom 1 A 2 B 3 C
+labelmap bond 1 aa 2 bb
+molecule m {water}
+molecule two {water} offset 1 1 1 0 0 toff 0 {water} scale 2.0
+molecule big {water} scale 1.5 boff 1
+molecule p {pair}
+"""
+TRICLINIC = BOX.replace("block 0 10 0 10 0 10", "prism 0 10 0 11 0 12 3 -2 4")
+FLAT = "dimension 2\n" + BOX.replace("block 0 10 0 10 0 10", "block 0 10 0 10 -1 1")
+LATTICE = "units lj\nlattice fcc 0.8\nregion b block 0 5 0 4 0 3\ncreate_box 2 b\n"
+RIPPLE = "variable r equal 'v_xx*v_xx+v_yy > 12'\ncreate_atoms 1 {} var r set x xx set y yy"
+CASES = {
+    "subset": LATTICE + "create_atoms 1 box subset 7 991\ncreate_atoms 2 box ratio 0.3 71",
+    "subset of few": LATTICE + "create_atoms 1 box subset 239 12345\ncreate_atoms 2 box ratio 0.01 5\ncreate_atoms 1 box subset 1 3",
+    "subset of a region": LATTICE + "region s sphere 2 2 2 2\ncreate_atoms 1 region s ratio 0.5 8888 basis 2 2",
+    "variable": LATTICE + RIPPLE.format("box"),
+    "variable and ratio": LATTICE + RIPPLE.format("box ratio 0.4 17"),
+    "variable random": LATTICE + RIPPLE.format("random 40 81 NULL"),
+    "overlap": LATTICE + "create_atoms 1 random 60 81 NULL overlap 0.5 maxtry 100\ncreate_atoms 2 random 20 82 NULL overlap 0.8 units box",
+    "overlap triclinic": TRICLINIC + "create_atoms 1 random 60 81 NULL overlap 1.5",
+    "too crowded": LATTICE + "create_atoms 1 random 40 81 NULL overlap 1.6 maxtry 5",
+    "single molecule": BOX + "create_atoms 0 single 5 5 5 mol m 4711 rotate 90 0 0 1\ncreate_atoms 0 single 5 5 9.9 mol m 4711",
+    "type offset": BOX + "create_atoms 1 single 1 1 1 mol m 55\ncreate_atoms 0 single 6 6 6 mol two 7\n"
+    "create_atoms 0 single 3 6 8 mol big 9",
+    "labels and two molecules": BOX + "create_atoms 0 single 1 1 1 mol p 5\ncreate_atoms 0 single 1 1 9.8 mol p 6\n"
+    "create_atoms 0 single 4 4 4 mol m 6",
+    "random molecules": BOX + "create_atoms 0 random 5 991 NULL mol m 77\ncreate_atoms 0 random 3 992 NULL mol p 78",
+    "random molecules apart": BOX + "create_atoms 0 random 20 991 NULL mol m 77 overlap 1.8",
+    "random molecules triclinic": TRICLINIC + "create_atoms 0 random 20 991 NULL mol m 77",
+    "lattice of molecules": BOX + "lattice sc 3.4\ncreate_atoms 0 box mol m 123\nregion r sphere 1 1 1 1\ncreate_atoms 0 region r mol p 4",
+    "subset of molecules": BOX + "lattice sc 3.4\ncreate_atoms 0 box mol m 123 subset 5 99",
+    "flat molecules": FLAT + "create_atoms 0 random 4 991 NULL mol p 77",
+}
+
+
+def fill(text: str, folder) -> str:
+    for name, content in (("water", WATER), ("pair", PAIR)):
+        (folder / f"{name}.txt").write_text(content)
+        text = text.replace("{" + name + "}", str(folder / f"{name}.txt"))
+    return text.replace("molecule m ", "#").replace("molecule two", "#").replace("molecule big", "#") if "dimension 2" in text else text
+
+
+@pytest.fixture(scope="module")
+def scripts(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("molecules")
+    return {name: fill(text, folder) for name, text in CASES.items()}
+
+
+@pytest.fixture(scope="module")
+def theirs(scripts):
+    return lammps(scripts)
+
+
+@pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
+@pytest.mark.parametrize("name", CASES)
+def test_same_atoms_as_lammps(scripts, theirs, name):
+    assert_same(asemd(scripts[name]), theirs[name], x=1e-14)
+
+
+@pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
+def test_bonds_and_report(tmp_path):
+    session = asemd(fill(BOX + "create_atoms 0 single 1 1 1 mol two 5\ncreate_atoms 0 single 5 5 5 mol p 5", tmp_path))
+    top = session.scene.system.topology
+    assert top.bonds.tolist() == [[0, 1], [0, 2], [3, 4]] and top.bond_types.tolist() == [2, 2, 2] and top.angles.tolist() == [[1, 0, 2]]
+    told = "".join(session.told)
+    assert "Read molecule template p:\ndimer\n  2 molecules\n  2 fragments\n  0 bodies\n  2 atoms with max type 2\n" in told
+    assert "only the first" in told
+    assert session.scene.molecules["p"][0].fragments["both"].tolist() == [True, True]
+    assert session.scene.molecules["m"][0].shake["types"][0] == [1, 1, 1]
+
+
+@pytest.mark.parametrize("old, new, message", [
+    ("2 B", "2 X", "unknown atom type 'X'"), ("2 1 0 0", "3 1 0 0", "outside the valid range 1 to 2"), ("2 1 0 0\n", "", "fewer lines"),
+    ("2 1 0 0\n", "1 1 0 0\n", "twice"), ("2 fragments", "2 frags", "header line"), ("1 bb 1 2", "1 bb 1 3", "valid range"),
+    ("1 bb 1 2", "1 bb 1 1", "twice"), ("1 bb 1 2", "1 bb 1", "number, type and 2 atoms"),
+    ("Molecules", "Molecule", "did you mean Molecules"),
+    ("1 bonds", "2 bonds", "for each of its 2 bonds"), ("1 bonds\n", "", "no number of bonds"), ("2 atoms\n", "", "no number of atoms"),
+    ("2 1 0 0", "2 1 0", "3 values|4 words"), ("2 1 0 0", "2 1 0 x", "number"),
+    ("Bonds\n\n1 bb 1 2", "", "there is no section Bonds"), ("Bonds", "Coords\n\n1 0 0 0\n2 0 0 0\n\nBonds", "appears twice"),
+])
+def test_bad_files(tmp_path, old, new, message):
+    (tmp_path / "bad.txt").write_text(PAIR.replace(old, new, 1))
+    session = asemd(fill(BOX, tmp_path))
+    with pytest.raises(InputError, match=message):
+        session.execute(f"molecule bad {tmp_path / 'bad.txt'}")
+
+
+@pytest.mark.parametrize("line, message", [
+    ("molecule m x", "in use"), ("molecule q", "2 values"), ("molecule q-- x", "letters"), ("molecule q nowhere.txt", "cannot open"),
+    ("molecule q {water} toff 5", "atom type 6"), ("molecule q {water} scale 0", "positive"),
+    ("molecule q {water} offset 1 1 1", "5 values"),
+    ("create_atoms 0 single 1 1 1 mol q 5", "no molecule q"), ("create_atoms 0 single 1 1 1 mol m 0", "seed"),
+    ("create_atoms 2 single 1 1 1 mol m 5", "needs atom type 4"), ("create_atoms 0 single 1 1 1 mol m 5 rotate 1 0 0 0", "axis"),
+    ("create_atoms 1 random 5 9 NULL overlap -1", "negative"), ("create_atoms 1 box ratio 1.5 3", "0 to 1"),
+    ("create_atoms 1 single 1 1 1 var v", "undefined variable"), ("create_atoms 1 single 1 1 1 set x xx", "together"),
+    ("create_atoms 1 mesh file.stl", "not supported"), ("create_atoms 1 random 5 9 NULL maxtry 0", "positive"),
+])
+def test_mistakes(tmp_path, line, message):
+    session = asemd(fill(BOX + "lattice sc 2", tmp_path))
+    with pytest.raises(InputError, match=message):
+        session.execute(fill(line, tmp_path))
+    assert session.scene.system.n == 0
+
+
+def test_molecules_without_positions(tmp_path):
+    (tmp_path / "types").write_text("only types\n1 atoms\n\nTypes\n\n1 1\n")
+    session = asemd(fill(BOX, tmp_path) + f"molecule q {tmp_path / 'types'}")
+    with pytest.raises(InputError, match="no Coords section"):
+        session.execute("create_atoms 0 single 1 1 1 mol q 5")
+    assert np.isnan(session.scene.system.mass[1])
