@@ -139,7 +139,8 @@ def test_groups_follow_the_atoms():
 @pytest.mark.parametrize("line, message", [
     ("create_box 1 b", "defined already"), ("create_atoms 3 box", "valid range 1 to 2"), ("create_atoms 1 bix", "did you mean box"),
     ("create_atoms 1 region q", "unknown region"), ("create_atoms 1 single 1 1", "3 values"),
-    ("create_atoms 1 box basis 5 1", "4 basis atoms"), ("create_atoms 0 box", "valid range"), ("create_atoms 1 box mol m 1", "no molecule m"),
+    ("create_atoms 1 box basis 5 1", "4 basis atoms"), ("create_atoms 0 box", "valid range"),
+    ("create_atoms 1 box mol m 1", "no molecule m"),
     ("create_atoms 1 random 5 0 NULL", "seed"),
     ("create_atoms 1 random 5 9 far", "does not overlap"), ("mass 3 1.0", "valid range"), ("mass 1 0", "positive"),
     ("mass 1 x", "number"), ("mass 1", "1 words"), ("mass 1 nan", "finite"), ("labelmap atom 3 C", "valid range"),
