@@ -122,6 +122,7 @@ def run(context: typer.Context,
         log: Annotated[str | None, typer.Option(help="Log file, none for none.")] = None,
         quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing; the log is written all the same.")] = False,
         compat: Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")] = None,
+        import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
         ) -> int:
     """Run a LAMMPS input script (LAMMPS's -var -in -log -echo -screen -nocite -sf -pk are accepted)."""
     from asemd.lammps.session import Session, Stop
@@ -132,6 +133,7 @@ def run(context: typer.Context,
         options.compat = lammps_switches.one_of(compat, ("lammps",), "--compat")
     if log is not None:
         options.log = log
+    import_files(import_)
     path = script or options.input
     if path is None:
         raise InputError("asemd run needs a script: asemd run in.file (give the script before -var, or with -in)")
@@ -159,6 +161,14 @@ def run(context: typer.Context,
             raise
     session.close()
     return complain("interrupted", INTERRUPTED) if status == INTERRUPTED else status
+
+
+def import_files(paths: Sequence[str] | None) -> None:
+    """Execute the files of ``--import``."""
+    if paths:
+        from asemd.user_styles import import_file
+        for path in paths:
+            import_file(path)
 
 
 class interruptible:     # noqa: N801  reads as a word in `with`

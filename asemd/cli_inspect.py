@@ -14,6 +14,7 @@ Tolerance = Annotated[float | None, typer.Option(help="Largest relative differen
 Script = Annotated[str | None, typer.Argument(help="LAMMPS input script.")]
 Compat = Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")]
 Precision = Annotated[str, typer.Option(help="double, or mixed: pair forces in single precision.")]
+Import = Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")]
 Threads = Annotated[int, typer.Option(help="Number of threads.", min=1)]
 
 
@@ -51,10 +52,12 @@ def validate(context: typer.Context, script: Script = None,
 
 
 def plan(context: typer.Context, script: Script = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
-         as_json: Json = False) -> int:
+         import_: Import = None, as_json: Json = False) -> int:
     """Print what a script's scene needs and what is left out, and why; no step is run."""
     from asemd.lammps.plan import of_script
     path, switches = _setup(context, script, "plan", compat, precision, threads)
+    from asemd.cli import import_files
+    import_files(import_)
     found = of_script(path, switches)
     _print(found.parts(), found.to_dict(), as_json)
     return 0

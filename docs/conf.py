@@ -2,7 +2,10 @@
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent), str(HERE)]
+
+import style_pages  # noqa: E402
 
 from asemd import __version__  # noqa: E402
 
@@ -17,3 +20,20 @@ exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = f"asemd {__version__}"
 suppress_warnings = ["myst.xref_missing", "misc.highlighting_failure"]
+
+
+def write_styles(app):
+    """A page for each style, from the registry."""
+    style_pages.write(HERE / style_pages.FOLDER)
+
+
+def link_styles(app, docname, source):
+    """The overview of the styles leads to their pages."""
+    if docname == "styles":
+        source[0] = style_pages.link(source[0])
+
+
+def setup(app):
+    app.connect("builder-inited", write_styles)
+    app.connect("source-read", link_styles)
+    return {"parallel_read_safe": True}

@@ -14,7 +14,7 @@ import asemd
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "workflows").glob("*/README.md")]
-PAGES = sorted(p for p in PAGES if "_build" not in p.parts)
+PAGES = sorted(p for p in PAGES if "_build" not in p.parts and p.parent != ROOT / "docs" / "styles")      # those are made by Sphinx
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
 
 

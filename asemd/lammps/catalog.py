@@ -6,7 +6,7 @@ import pkgutil
 import re
 from functools import cache
 
-from asemd import atom_style
+from asemd import atom_style, style
 from asemd.errors import InputError, nearest
 from asemd.lammps.names import COMMANDS
 from asemd.style import ACCELERATED, module_of
@@ -46,21 +46,15 @@ def exists(category: str, name: str) -> bool:
         return name == "verlet"
     if category in FORCE_FIELD and (name in WRAPPERS or (category, name) == ("pair", "hybrid/overlay")):
         return True
+    if category in FORCE_FIELD:
+        return style.exists(category, plain(name))      # also one that the user has defined
     if category not in PACKAGES or not name or _file(plain(name)) not in files(category):
         return False
     if category == "command":
         return "/" not in name
-    if category in FORCE_FIELD:
-        return plain(name) in _force_field(category, _file(plain(name)))
     if category == "minimize":
         return not name.startswith("_")
     return any(c.style == plain(name) for c in _classes(importlib.import_module(module_of(category, plain(name)))))
-
-
-def _force_field(category: str, file: str) -> set[str]:
-    from asemd import style
-    importlib.import_module(f"{PACKAGES[category]}.{file}")
-    return {name for found, name in style._registry if found == category}
 
 
 @cache
@@ -73,7 +67,6 @@ def names(category: str) -> tuple[str, ...]:
     if category == "command":
         return tuple(sorted(files(category)))
     if category in FORCE_FIELD:
-        from asemd import style
         own = {"hybrid/overlay"} if category == "pair" else set()
         return tuple(sorted({*style.names(category), *WRAPPERS, *own}))
     if category == "minimize":
@@ -112,6 +105,5 @@ def unknown(category: str, name: str) -> InputError:
             return InputError(f"command {name} of LAMMPS is not supported yet: remove it, or run this script with LAMMPS")
         return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
     if category in FORCE_FIELD:
-        from asemd import style
         return style.unknown(category, name)
     return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")

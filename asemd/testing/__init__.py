@@ -6,6 +6,7 @@ from typing import Any
 
 _LAZY = {
     "check_style": "asemd.testing.styles",
+    "report_style": "asemd.testing.styles",
     "ask": "asemd.testing.oracle",
     "lammps_available": "asemd.testing.oracle",
     "lammps_version": "asemd.testing.oracle",

@@ -291,3 +291,19 @@ def check_style(style: Style, checks: list[str] | None = None) -> None:
         raise ValueError(f"{style}: only bond, angle, dihedral and improper styles can be checked here")
     for name in checks or checks_of(style):
         CHECKS[name](style)
+
+
+def report_style(style: Style) -> str:
+    """What the shipped checks say about a bonded style, a line for each: passed, FAILED and why, or left out and why."""
+    lines = []
+    for name, check in CHECKS.items():
+        said = (check.__doc__ or "").split(";")[0].rstrip(".")
+        if name not in checks_of(style):
+            lines.append(f"{name:11}left out  {style.xfail.get(name, 'the style has no forces')}")
+            continue
+        try:
+            check(style)
+            lines.append(f"{name:11}passed    {said}")
+        except AssertionError as e:
+            lines.append(f"{name:11}FAILED    {str(e).removeprefix(f'{style}: ')}")
+    return "\n".join([str(style), *lines])
