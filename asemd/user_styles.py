@@ -27,20 +27,18 @@ def import_file(path: str) -> None:
     file = Path(path)
     if not file.is_file():
         raise InputError(f"--import: cannot open {path}: no such file")
-    spec = importlib.util.spec_from_file_location(file.stem, file)
+    title = f"imported_{file.stem}"           # a file may have the name of another module
+    spec = importlib.util.spec_from_file_location(title, file)
     if spec is None or spec.loader is None:
         raise InputError(f"--import {path}: the name of a Python file must end with .py")
     module = importlib.util.module_from_spec(spec)
-    before, known = sys.modules.get(file.stem), dict(style._registry)
-    sys.modules[file.stem] = module           # classes of the file find their module there
+    known = dict(style._registry)
+    sys.modules[title] = module           # classes of the file find their module there
     sys.path.insert(0, str(file.resolve().parent))
     try:
         spec.loader.exec_module(module)
     except Exception as e:
-        if before is None:
-            del sys.modules[file.stem]
-        else:
-            sys.modules[file.stem] = before
+        del sys.modules[title]
         lines = [frame.lineno for frame in traceback.extract_tb(e.__traceback__) if Path(frame.filename).resolve() == file.resolve()]
         line = getattr(e, "lineno", None) or (lines[-1] if lines else 1)
         text = file.read_text(errors="replace").splitlines()
@@ -49,10 +47,10 @@ def import_file(path: str) -> None:
     finally:
         sys.path.remove(str(file.resolve().parent))
     for key, own in list(style._registry.items()):
-        if getattr(own.function, "__module__", "") != file.stem or importlib.util.find_spec(style.module_of(*key)) is None:
+        if getattr(own.function, "__module__", "") != title or importlib.util.find_spec(style.module_of(*key)) is None:
             continue
         importlib.import_module(style.module_of(*key))      # does nothing if that was done before
         taken = style._registry[key] if style._registry[key] is not own else known.get(key)
         style._registry[key] = taken or own
-        if taken and getattr(taken.function, "__module__", "") != file.stem:
+        if taken and getattr(taken.function, "__module__", "") != title:
             raise InputError(f"--import {path}: asemd has a {key[0]} style {key[1]} already: give yours another name")

@@ -177,7 +177,7 @@ def test_files_that_cannot_be_imported(text, message, tmp_path):
         import_file(str(file))
     if "Error" in message or "zero" in message:
         assert error.value.where.line == 2
-    assert "wrong_styles" not in sys.modules or "already" in message
+    assert "imported_wrong_styles" not in sys.modules or "already" in message
     assert registry.find("bond", "harmonic").function.__module__ == "asemd.bond.harmonic"
 
 
