@@ -152,8 +152,22 @@ class Fix:
         return 0.0
 
     def state(self) -> dict[str, Any]:
-        """What a restart needs."""
+        """What a restart file needs so that this fix goes on: numbers, words and arrays by name, nothing for a fix without memory.
+
+        What hooks keep in ``p`` and ``a`` between the steps of a run is kept without it; this is what outlives a run.
+        """
         return {}
+
+    def restore(self, state: dict[str, Any]) -> None:
+        """Take up what `state` of a fix of this ID and style returned; called when the fix was just made.
+
+        Raises
+        ------
+        InputError
+            By fixes that return something from `state` and do not override this.
+        """
+        if state:
+            raise InputError(f"fix {self.id} (style {self.style}) cannot go on from a restart file")
 
 
 def find(name: str) -> type[Fix]:

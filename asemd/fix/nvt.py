@@ -203,3 +203,9 @@ class NVT(Thermostat):
     def state(self) -> dict:
         """Positions and velocities of the chain."""
         return {"eta": self.p[HEADER:HEADER + self.chain].copy(), "eta_dot": self.p[HEADER + self.chain:HEADER + 2 * self.chain].copy()}
+
+    def restore(self, state: dict) -> None:
+        """Of a chain of another length nothing is taken."""
+        if len(state["eta"]) == self.chain:
+            self.p[HEADER:HEADER + self.chain] = state["eta"]
+            self.p[HEADER + self.chain:HEADER + 2 * self.chain] = state["eta_dot"]

@@ -179,3 +179,10 @@ class VelocityScaling(Thermostat):
     def scalar(self) -> float:
         """Energy taken out of the atoms so far, energy units."""
         return float(self.p[7])
+
+    def state(self) -> dict:
+        """The energy taken out."""
+        return {"energy": self.scalar()}
+
+    def restore(self, state: dict) -> None:
+        self.p[7] = state["energy"]

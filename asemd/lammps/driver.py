@@ -10,7 +10,7 @@ import numpy as np
 
 from asemd import units
 from asemd.errors import InputError, InputWarning
-from asemd.lammps import log
+from asemd.lammps import checkpoint, log, restart
 from asemd.lammps.live_coefficients import fill, live_coefficients
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
@@ -131,6 +131,7 @@ class Driver:
         self.session, self.plan, self.scene = session, plan, session.scene
         self.words = self.scene.thermo.columns(self.scene.box_changes)
         self.output_seconds = 0.0
+        self.afresh = False         # the next run must not go on without a setup
         self.natoms = self.scene.system.n
 
     def run(self) -> None:
@@ -142,11 +143,15 @@ class Driver:
             from asemd.loop import Loop
             check(session)
             check_integration(session)
+            restart.check_folders(session)
+            state = restart.first_run(session)
             session.close_loop()
             loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(),
                                        [*scene.fixes.values(), *live_coefficients(session)], scene.groups, scene.dt, step=begin)
             loop.warn = session.log.warn
             loop.setup(plan.first, plan.last, virial=True)
+            if state is not None:
+                checkpoint.resume(loop, state)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         else:
             loop.sync_in()      # commands between the runs may have changed velocities
@@ -176,6 +181,8 @@ class Driver:
         steps = scene.step - begin
         self._summary(seconds, steps, {k: v - before.get(k, 0.0) for k, v in engine.timings.items()})
         session.log.flush()
+        if self.afresh:
+            session.loop = None
         if session.interrupted:
             raise KeyboardInterrupt
 
@@ -199,18 +206,25 @@ class Driver:
                 rate = (step - begin) / max(time.perf_counter() - self.progress.started - self.output_seconds, 1e-9)
                 self._watch("update", step - begin)
             started = time.perf_counter()
-            if session.interrupted and step < target:
-                loop.result = loop.engine.compute()     # between outputs energies are not computed
-                self._provide(step, step, fresh=False)
+            saving = restart.due(session, step) or (session.interrupted and bool(self.scene.restarts))
+            early = session.interrupted and step < target       # between outputs energies are not computed
+            going_on = step < end or session.interrupted        # the next run begins afresh by itself
+            alone = checkpoint.renew(loop) if early or (saving and going_on) else None
+            if early:
+                self._provide(step, step, fresh=True)
                 self._output(step, ends=True, dumps=True)
             else:
-                self._provide(step, end, fresh=False)
+                self._provide(step, end, fresh=alone is not None)
                 self._output(step, ends=step == end or session.interrupted, dumps=session.interrupted)
+            if saving:
+                restart.write_due(session, step, alone, all_of_them=session.interrupted)
+                self.afresh = not going_on
             self.output_seconds += time.perf_counter() - started
 
     def _next_output(self, step: int) -> int:
         """The next step on which something is written."""
         steps = [_multiple(d.every, step) for d in self.scene.dumps.values()] + [self._next_thermo(step)]
+        steps.append(restart.next_step(self.session, step))
         return min(s for s in steps)
 
     def _next_thermo(self, step: int) -> int:
@@ -235,7 +249,7 @@ class Driver:
         if self._is_thermo(step):
             needs |= scene.thermo.needs(self.words, scene.computes, self.session.variables.references)
         for dump in scene.dumps.values():
-            if _due(dump.every, step):
+            if dump.schedule.next == step:
                 needs |= dump.needs
         return needs
 
@@ -260,10 +274,16 @@ class Driver:
         session, scene = self.session, self.scene
         if ends or self._is_thermo(step):
             self._thermo(step)
+        clock = (step, scene.time(step), scene.dt)
         for dump in scene.dumps.values():
-            wanted = dumps or _due(dump.every, step) or (dump.first and step == self.progress.begin)
-            if wanted and dump.last_written != step:        # a run's last step is the next one's first
+            starts = step == self.progress.begin
+            due = dump.schedule.is_due(*clock) or (dump.first and dump.last_written is None) if starts else dump.schedule.next == step
+            if (dumps or due) and dump.last_written != step:        # a run's last step is the next one's first
                 dump.write(session.moment.snapshot, step)
+            if starts:
+                dump.schedule.start(*clock, session.variables.number)
+            elif due:
+                dump.schedule.advance(*clock, session.variables.number)
 
     def _thermo(self, step: int) -> None:
         session, scene = self.session, self.scene
@@ -272,7 +292,7 @@ class Driver:
         values = [evaluate(session.moment, w, norm) for w in self.words]
         session.log.write(scene.thermo.row(self.words, values, step, self.progress.cpu() if step > self.progress.begin else 0.0) + "\n")
         session.last_thermo = {scene.thermo.name(k, w): v for k, (w, v) in enumerate(zip(self.words, values), 1)}
-        session.last_thermo_step = step
+        session.last_words, session.last_thermo_step = self.words, step
         if scene.thermo.flush or session.watched:
             session.log.flush()
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import re
 
 from asemd.errors import InputError
-from asemd.lammps import catalog
+from asemd.lammps import catalog, restart
 from asemd.words import take
 
 
@@ -21,5 +21,6 @@ def run(session, args):
     new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
     new.id = id
     scene.fixes[id] = new
+    restart.restore_fix(session, new)
     session.remember(f"fix {id}")
     session.loop = None

@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.lammps import log
+from asemd.lammps import log, restart
 from asemd.lammps.driver import Driver, Plan, check, memory
 from asemd.minimize import Problem, find
 from asemd.moment import Progress
@@ -59,6 +59,8 @@ class Minimization(Driver):
         from asemd.loop import Loop
         session, scene, begin = self.session, self.scene, self.scene.step
         check(session)
+        restart.check_folders(session)
+        restart.first_run(session)
         session.close_loop()
         if scene.min_style in DAMPED:
             scene.system.v[:] = 0.0
@@ -101,12 +103,13 @@ class Minimization(Driver):
             if scene.min_style in DAMPED:
                 system.v[:] = v
             self._watch("update", iteration)
-            due = [d.every for d in scene.dumps.values()] + ([scene.thermo.every] if isinstance(scene.thermo.every, int) else [])
-            if any(every and scene.step % every == 0 for every in due):
+            if self._is_thermo(scene.step) or any(d.schedule.next == scene.step for d in scene.dumps.values()):
                 began = time.perf_counter()
                 self._provide(scene.step, scene.step, fresh=True)
                 self._output(scene.step, ends=False)
                 self.output_seconds += time.perf_counter() - began
+            if restart.due(session, scene.step) or (session.interrupted and scene.restarts):
+                restart.write_due(session, scene.step, all_of_them=session.interrupted)
             return session.interrupted
 
         result = find(scene.min_style).minimize(problem, *self.arguments, scene.min_modify, look)
@@ -116,8 +119,8 @@ class Minimization(Driver):
         loop.step = scene.step = begin + result.iterations
         if result.iterations:
             self._provide(scene.step, scene.step, fresh=True)
-            if session.last_thermo_step != scene.step:
-                self._output(scene.step, ends=True)
+            self._output(scene.step, ends=session.last_thermo_step != scene.step, dumps=result.iterations < self.plan.steps)
+            restart.write_due(session, scene.step, all_of_them=True)
         return result
 
     def _report(self, loop, result, seconds: float) -> None:

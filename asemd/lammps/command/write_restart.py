@@ -1,0 +1,28 @@
+"""``write_restart file``: everything a run needs to go on, see `asemd.lammps.restart`; ``*`` stands for the step."""
+from __future__ import annotations
+
+from asemd.errors import InputError, nearest
+from asemd.lammps import restart
+from asemd.words import take, whole
+
+
+def run(session, args):
+    name = take(args, 1, "write_restart")[0]
+    session.scene.need_system("write_restart")
+    no_pieces(args[1:], [name], "write_restart")
+    restart.write(session, restart.file_name(name, session.scene.step))
+    session.loop = None         # the next run begins as one that is continued from the file
+
+
+def no_pieces(words: list[str], names: list[str], command: str) -> None:
+    """Read ``fileper N`` and ``nfile N``, which have no effect: there is one process, one file."""
+    words = list(words)
+    while words:
+        key = words.pop(0)
+        if key not in ("fileper", "nfile"):
+            raise InputError(f"{command}: unknown keyword {key!r}{nearest(key, ('fileper', 'nfile'))}")
+        if not any("%" in name for name in names):
+            raise InputError(f"{command} {key} needs a file name with %")
+        if whole(take(words, 1, f"{command} {key}")[0], f"{command} {key}") < 1:
+            raise InputError(f"{command} {key} must be positive, got {words[0]}")
+        del words[0]
