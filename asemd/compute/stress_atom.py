@@ -53,6 +53,9 @@ class StressAtom(Compute):
     def to_lammps(self) -> list[str]:
         return [self.temperature.id if self.temperature else "NULL", *self.words]
 
+    def per_atom_columns(self) -> int:
+        return 6
+
     def per_atom(self, state) -> np.ndarray:
         """(n, 6) xx yy zz xy xz yz; zero outside the group."""
         total = np.zeros((state.system.n, 6))

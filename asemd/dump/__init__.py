@@ -1,30 +1,32 @@
-r"""Dumps write snapshots of atoms to text files. One format, one file; each is a class built on `Dump`.
+r"""Dumps write snapshots of atoms to files. One format, one file; each is a class built on `Dump`.
 
-A caller writes a step with ``dump.write(snapshot, step)`` when ``step`` is a multiple of ``dump.every``, and on the first step of a run
+A caller writes a step with ``dump.write(snapshot, step)`` on the steps that ``dump.schedule`` names, and on the first step of a run
 if ``dump.first``; ``dump.needs`` names what the force evaluation of such a step must provide. Files open at the first snapshot.
 Atoms come in order of id unless ``dump_modify sort`` says otherwise. Boxes that are not in LAMMPS's frame are rotated into it.
 """
 from __future__ import annotations
 
-import gzip
+import copy
 import operator
 import re
 from typing import IO, Any, ClassVar
 
 import numpy as np
 
+from asemd.dump import _binary
 from asemd.dump._columns import COLUMNS, LABELS, View, column_of, kind_of
-from asemd.errors import InputError, nearest
-from asemd.words import number, take, whole, yes_no
+from asemd.dump._files import Series, is_compressed, open_binary
+from asemd.dump._modify import Modify
+from asemd.dump._schedule import Schedule
+from asemd.errors import InputError
 
 OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
              "|^": lambda a, b: (a != 0) != (b != 0)}
 DEFAULT = {"integer": "%d", "float": "%g", "string": "%s"}
-CONVERSION = re.compile(r"%(?:%|[-+ 0#]*\d*(?:\.\d+)?l*[diueEfFgGsxX])")
 
 
-class Dump:
-    """Base class of text dumps.
+class Dump(Modify):
+    """Base class of dumps, and all of those that are text.
 
     Parameters
     ----------
@@ -33,7 +35,8 @@ class Dump:
     every : int
         Interval, steps.
     path : str
-        File; ``*`` becomes the step (one file per snapshot), ``.gz`` at the end compresses.
+        File; ``*`` becomes the step (one file per snapshot), ``%`` the process (0). Endings gz bz2 xz lzma zst lz4 compress, ``.bin``
+        is LAMMPS's binary format.
     columns : list of str
         What each line holds, names as in ``dump custom``.
     variables : asemd.variable.Variables, optional
@@ -43,28 +46,29 @@ class Dump:
     """
 
     style: ClassVar[str] = ""
+    wildcards: ClassVar[str] = "*%"     # what the file name may hold
+    binary: ClassVar[bool] = False      # whether there is a binary format too
     id: str = ""
     label: str = "ATOMS"        # what the header calls the lines
 
     def __init__(self, group: str, every: int, path: str, columns: list[str], *, variables=None, regions=None):
         if every <= 0:
             raise InputError(f"dump {self.style}: the interval must be positive, got {every}")
-        if "%" in path:
-            raise InputError(f"dump {self.style}: one file per processor (% in {path}) is not supported, use a plain file name")
-        if path.endswith((".bin", ".zst")):
-            raise InputError(f"dump {self.style}: {path[-4:]} files are not supported, use plain text or .gz")
-        self.group, self.every, self.path, self.columns = group, every, path, columns
+        self._check_path(path)
+        self.group, self.columns = group, columns
+        self.files, self.schedule = Series(path), Schedule(every)
         self.variables, self.regions = variables, regions if regions is not None else {}
-        self.first = self.append = self.image = self.unit = self.time = False
+        self.first = self.append = self.image = self.unit = self.time = self.pbc = False
         self.flush = self.header = True
-        self.delay, self.pad, self.sort, self.line = 0, 0, "id", ""
+        self.sort, self.line, self.skip, self.refresh = "id", "", "", ""
         self.formats: dict[str | int, str] = {}
         self.element: list[str] = []
         self.names: dict[int, str] = {}
-        self.thresholds: list[tuple[str, str, float]] = []
+        self.thresholds: list[tuple[str, str, float | None]] = []       # None: the value at the last snapshot
+        self._last: dict[int, dict[int, float]] = {}                    # number of a threshold -> id -> value at the last snapshot
         self.region: str = ""
         self.last_written: int | None = None
-        self._file: IO[str] | None = None
+        self._file: IO[bytes] | None = None
         self._units_written = False
         for name in columns:
             self._check(name)
@@ -85,6 +89,26 @@ class Dump:
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_file": None, "variables": None}
+
+    @property
+    def path(self) -> str:
+        return self.files.path
+
+    @property
+    def every(self) -> int:
+        return self.schedule.every
+
+    @property
+    def is_binary(self) -> bool:
+        return self.path.endswith(".bin")
+
+    def _check_path(self, path: str) -> None:
+        for mark in "*%":
+            if mark in path and mark not in self.wildcards:
+                raise InputError(f"dump {self.style}: {mark} in the file name {path} is not possible: one file holds all snapshots"
+                                 if mark == "*" else f"dump {self.style}: one file per processor (% in {path}) is not possible")
+        if path.endswith(".bin") and not self.binary:
+            raise InputError(f"dump {self.style}: there is no binary format, {path} cannot end in .bin")
 
     # ---- what is written
     def kind(self, name: str) -> str:
@@ -125,26 +149,39 @@ class Dump:
             if self.region not in self.regions:
                 raise InputError(f"dump {self.id}: region {self.region} does not exist any more")
             mask &= self.regions[self.region].inside(snapshot.system.x)
-        rows = np.flatnonzero(mask)
-        everything = View(snapshot, rows, self.element, self.variables)
-        for name, relation, value in self.thresholds:
-            rows = rows[OPERATORS[relation](column_of(View(snapshot, rows, self.element, self.variables), name), value)]
-        everything = View(snapshot, rows, self.element, self.variables)
+        everything = View(snapshot, np.arange(len(mask)), self.element, self.variables)
+        for k, (name, relation, value) in enumerate(self.thresholds):
+            values = np.asarray(column_of(everything, name), float)
+            mask &= OPERATORS[relation](values, value if value is not None else self._values_before(k, everything.id, values))
+        if self.pbc:
+            snapshot = _wrapped(snapshot)
+        view = View(snapshot, np.flatnonzero(mask), self.element, self.variables)
         if self.sort == "off":
-            return everything
-        order = np.argsort(everything.id, kind="stable")
+            return view
+        order = np.argsort(view.id, kind="stable")
         if self.sort != "id":
-            values = np.asarray(column_of(everything, self.columns[abs(int(self.sort)) - 1]))[order]
+            values = np.asarray(column_of(view, self.columns[abs(int(self.sort)) - 1]))[order]
             order = order[np.argsort(values if int(self.sort) > 0 else -values, kind="stable")]
-        return View(snapshot, rows[order], self.element, self.variables)
+        return View(snapshot, view.rows[order], self.element, self.variables)
+
+    def _values_before(self, k: int, ids: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """What the atoms had at the last snapshot (now, if there was none); the values of now are kept for the next."""
+        before = self._last.get(k, {})
+        now = dict(zip(ids.tolist(), values.tolist()))
+        self._last[k] = now
+        return np.array([before.get(i, v) for i, v in now.items()])
 
     def format(self) -> str:
         """The format of one line, with its newline."""
         if self.line and not self.formats:
             return self.line + "\n"
+        return " ".join(self.column_formats()) + "\n"
+
+    def column_formats(self) -> list[str]:
+        """The format of each column."""
         kinds, words = [self.kind(c) for c in self.columns], self.line.split()
         base = words if len(words) == len(kinds) else [DEFAULT[k] for k in kinds]
-        return " ".join(self.formats.get(n, self.formats.get(k, b)) for n, (k, b) in enumerate(zip(kinds, base), 1)) + "\n"
+        return [self.formats.get(n, self.formats.get(k, b)) for n, (k, b) in enumerate(zip(kinds, base), 1)]
 
     def lines(self, view: View) -> str:
         """All lines of atoms."""
@@ -152,24 +189,46 @@ class Dump:
         form = self.format()
         return "".join([form % row for row in zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in columns))])
 
+    def column_names(self) -> list[str]:
+        """What the header calls the columns."""
+        return [self.names.get(k, c) for k, c in enumerate(self.columns, 1)]
+
     def head(self, snapshot, step: int, n: int) -> str:
         """Everything before the lines of atoms."""
-        box, _ = _frame(snapshot.system.box)
-        lo, hi, (xy, xz, yz) = box.lo, box.hi, box.tilt
-        bounds, word = np.column_stack([lo, hi]), ""
-        if box.triclinic:       # bounds of the tilted box, and its tilt factors
-            bounds[0] += min(0.0, xy, xz, xy + xz), max(0.0, xy, xz, xy + xz)
-            bounds[1] += min(0.0, yz), max(0.0, yz)
-            bounds, word = np.column_stack([bounds, (xy, xz, yz)]), "xy xz yz "
+        box, _ = frame(snapshot.system.box)
+        bounds = bounds_of(box)
+        word = "xy xz yz " if box.triclinic else ""
         text = ""
-        if self.unit and not self._units_written:
-            text, self._units_written = f"ITEM: UNITS\n{snapshot.system.units}\n", True
+        if self.needs_units():
+            text = f"ITEM: UNITS\n{snapshot.system.units}\n"
         if self.time:
             text += f"ITEM: TIME\n{step * snapshot.dt:.16g}\n"
-        names = " ".join(self.names.get(k, c) for k, c in enumerate(self.columns, 1))
         label = self.label
         return (f"{text}ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF {label}\n{n}\nITEM: BOX BOUNDS {word}{' '.join(box.boundary)}\n"
-                + "".join(" ".join(f"{v:.16e}" for v in row) + "\n" for row in bounds) + f"ITEM: {label} {names}\n")
+                + "".join(" ".join(f"{v:.16e}" for v in row) + "\n" for row in bounds) + f"ITEM: {label} {' '.join(self.column_names())}\n")
+
+    def needs_units(self) -> bool:
+        """Whether the units are still to be written into this file."""
+        wanted = self.unit and not self._units_written
+        self._units_written |= wanted
+        return wanted
+
+    def foot(self) -> str:
+        """Everything after the lines of atoms."""
+        return ""
+
+    def encode(self, snapshot, step: int, view: View) -> bytes:
+        """A snapshot as it stands in the file."""
+        if self.is_binary:
+            box, _ = frame(snapshot.system.box)
+            bounds = bounds_of(box)
+            bounds = np.concatenate([bounds[:, :2].ravel(), bounds[:, 2:].ravel()])
+            columns = [column_of(view, "type" if self.kind(c) == "string" else c) for c in self.columns]
+            return _binary.head(self.style, step, len(view.rows), box, bounds, self.column_names(), snapshot.system.units
+                                if self.needs_units() else "", step * snapshot.dt if self.time else None) + _binary.body(columns)
+        lines = self.lines(view)
+        head = self.head(snapshot, step, len(view.rows)) if self.header else ""
+        return (head + lines + self.foot()).encode()
 
     def write(self, snapshot, step: int) -> None:
         """Write one snapshot.
@@ -184,168 +243,66 @@ class Dump:
         InputError
             The file cannot be written.
         """
-        if step < self.delay:
+        if step < self.schedule.delay:
             return
-        view = self.view(snapshot)
-        lines = self.lines(view)
-        self._open(step)
-        head = self.head(snapshot, step, len(view.rows)) if self.header else ""
-        self._file.write(head + lines)
-        if "*" in self.path:
-            self.close()
-        elif self.flush:
-            self._file.flush()
         self.last_written = step
-
-    def _open(self, step: int) -> None:
-        if self._file is not None:
+        if self.skip and self.variables.number(self.skip) != 0.0:
             return
-        path = self.path.replace("*", str(step).zfill(self.pad))
-        mode = "a" if self.append else "w"
-        if "*" in self.path:
+        self.write_view(snapshot, step, self.view(snapshot))
+        if self.refresh:
+            self.variables.provider.source("c", self.refresh).refresh()
+
+    def write_view(self, snapshot, step: int, view: View) -> None:
+        """Write the chosen atoms of a snapshot."""
+        if self.files.is_many:
             self._units_written = False
+        data = self.encode(snapshot, step, view)
+        path = self.files.name(step)
         try:
-            self._file = gzip.open(path, mode + "t", encoding="utf-8") if path.endswith(".gz") else open(path, mode, encoding="utf-8")
+            if self._file is None:
+                self._file = open_binary(path, self.append)
+            self._file.write(data)
+            if self.files.is_many:
+                self.close()
+                self.files.written(path)
+            elif self.flush:
+                self._file.flush()
         except OSError as e:
-            raise InputError(f"dump {self.id or self.style}: cannot write {path}: {e.strerror}") from None
+            raise self.cannot_write(path, e) from None
+
+    def cannot_write(self, path: str, e: OSError) -> InputError:
+        return InputError(f"dump {self.id or self.style}: cannot write {path}: {e.strerror or e}")
 
     def close(self) -> None:
         """Close the file; a later snapshot is appended to it."""
         if self._file is not None:
             self._file.close()
-            self._file, self.append = None, self.append or "*" not in self.path
-
-    # ---- dump_modify
-    KEYWORDS = {"append": 1, "buffer": 1, "colname": 2, "delay": 1, "element": 0, "every": 1, "first": 1, "flush": 1, "format": 2,
-                "header": 1, "pad": 1, "region": 1, "sort": 1, "thresh": 3, "time": 1, "types": 1, "units": 1}
-
-    def modify(self, words: list[str], session) -> None:
-        """The words of ``dump_modify ID words...``.
-
-        Raises
-        ------
-        InputError
-            Unknown or unsupported keyword, wrong value.
-        """
-        if not words:
-            raise InputError("dump_modify needs a keyword")
-        while words:
-            key, what = words[0], f"dump_modify {words[0]}"
-            if key not in self.KEYWORDS:
-                raise InputError(f"dump_modify: keyword {key!r} is not supported by dump style {self.style}{nearest(key, self.KEYWORDS)}")
-            count = self.KEYWORDS[key]
-            if key == "element":
-                count = session.scene.system.counts["ntypes"]
-            elif key == "thresh" and words[1:2] == ["none"] or key == "format" and words[1:2] == ["none"]:
-                count = 1
-            elif key == "colname" and words[1:2] == ["default"]:
-                count = 1
-            values = take(words[1:], count, what)
-            words = words[1 + count:]
-            special = getattr(self, "_modify_" + key, None)
-            if special is not None:
-                special(values, what, session)
-            else:
-                self._modify_flag(values, what, key)
-
-    def _modify_flag(self, values: list[str], what: str, key: str) -> None:
-        value = yes_no(values[0], what)
-        if key == "buffer":     # output is always buffered until a snapshot is complete: nothing to choose
-            return
-        setattr(self, {"units": "unit"}.get(key, key), value)
-
-    def _modify_colname(self, values, what, session):
-        if values[0] == "default":
-            self.names.clear()
-            return
-        column = self.columns.index(values[0]) + 1 if values[0] in self.columns else whole(values[0], what)
-        self.names[self._column(column, what)] = values[1]
-
-    def _column(self, column: int, what: str) -> int:
-        if not 1 <= abs(column) <= len(self.columns):
-            raise InputError(f"{what}: there are {len(self.columns)} columns, got {column}")
-        return column
-
-    def _modify_delay(self, values, what, session):
-        self.delay = whole(values[0], what)
-
-    def _modify_element(self, values, what, session):
-        self.element = list(values)
-
-    def _modify_every(self, values, what, session):
-        if values[0].startswith("v_"):
-            raise InputError(f"{what}: a variable interval is not supported, give a number of steps")
-        every = whole(values[0], what)
-        if every <= 0:
-            raise InputError(f"{what}: the interval must be positive, got {every}")
-        self.every = every
-
-    def _modify_format(self, values, what, session):
-        which = values[0]
-        if which == "none":
-            self.formats, self.line = {}, ""
-            return
-        text = values[1]
-        found = [c[-1] for c in CONVERSION.findall(text) if c != "%%"]
-        if "%" in CONVERSION.sub("", text):
-            raise InputError(f"{what}: {text!r} is not a C format of numbers and strings")
-        if which == "line":
-            kinds = [self.kind(c) for c in self.columns]
-            if len(found) < len(kinds):
-                raise InputError(f"{what} line: {len(found)} formats for {len(kinds)} columns: {text!r}")
-            if len(found) > len(kinds) or any(not _fits(c, k) for c, k in zip(found, kinds)):
-                raise InputError(f"{what} line: {text!r} does not fit the columns {' '.join(self.columns)}")
-            self.line = text
-            return
-        if which in ("int", "float"):
-            kind = key = {"int": "integer", "float": "float"}[which]
-        else:
-            key = self.columns.index(which) + 1 if which in self.columns else self._column(whole(which, what), what)
-            kind = self.kind(self.columns[key - 1])
-        if len(found) != 1 or not _fits(found[0], kind):
-            raise InputError(f"{what} {which}: {text!r} is not a format for one {kind} value")
-        self.formats[key] = text
-
-    def _modify_pad(self, values, what, session):
-        self.pad = max(0, whole(values[0], what))
-
-    def _modify_region(self, values, what, session):
-        self.region = ""
-        if values[0] != "none":
-            session.scene.region(values[0], what)
-            self.region = values[0]
-
-    def _modify_sort(self, values, what, session):
-        if values[0] not in ("off", "id"):
-            column = self._column(whole(values[0], what), what)
-            if self.kind(self.columns[abs(column) - 1]) == "string":
-                raise InputError(f"{what}: column {abs(column)} ({self.columns[abs(column) - 1]}) is not a number")
-        self.sort = values[0]
-
-    def _modify_thresh(self, values, what, session):
-        if values[0] == "none":
-            self.thresholds = []
-            return
-        name, relation, limit = values
-        self._check(name)
-        if self.kind(name) == "string" or relation not in OPERATORS:
-            raise InputError(f"{what}: expected attribute, one of {' '.join(OPERATORS)} and a number, got {' '.join(values)}")
-        self.thresholds.append((name, relation, number(limit, what)))
-
-    def _modify_types(self, values, what, session):
-        if values[0] not in ("labels", "numeric"):
-            raise InputError(f"{what}: expected labels or numeric, got {values[0]!r}")
-        swap = {"type": "typelabel"} if values[0] == "labels" else {"typelabel": "type"}
-        self.columns = [swap.get(c, c) for c in self.columns]
+            self._file, self.append = None, self.append or not self.files.is_many
 
 
-def _fits(conversion: str, kind: str) -> bool:
-    return conversion in {"integer": "diuxX", "float": "eEfFgG", "string": "s"}[kind]
-
-
-def _frame(box):
+def frame(box):
     """The box in LAMMPS's frame and the rotation into it, or None if it is there already."""
     return (box, None) if box.is_lammps_frame else box.to_lammps()
 
 
-__all__ = ["COLUMNS", "LABELS", "Dump", "View"]
+def bounds_of(box) -> np.ndarray:
+    """Rows lo hi for x, y, z; of a tilted box those of the upright box around it, with the tilt factors as third column."""
+    lo, hi, (xy, xz, yz) = box.lo, box.hi, box.tilt
+    bounds = np.column_stack([lo, hi])
+    if not box.triclinic:
+        return bounds
+    bounds[0] += min(0.0, xy, xz, xy + xz), max(0.0, xy, xz, xy + xz)
+    bounds[1] += min(0.0, yz), max(0.0, yz)
+    return np.column_stack([bounds, (xy, xz, yz)])
+
+
+def _wrapped(snapshot):
+    """The snapshot with all atoms in the box."""
+    out, out_system = copy.copy(snapshot), copy.copy(snapshot.system)
+    out_system.x, out_system.image = snapshot.system.x.copy(), snapshot.system.image.copy()
+    out_system.box.wrap(out_system.x, out_system.image)
+    out.system = out_system
+    return out
+
+
+__all__ = ["COLUMNS", "LABELS", "OPERATORS", "Dump", "View", "bounds_of", "frame", "is_compressed"]

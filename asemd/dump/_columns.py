@@ -93,8 +93,22 @@ class View:
         return self._extra("omega", "angular velocities")
 
     @cached_property
+    def angmom(self):
+        return self._extra("angmom", "angular momenta")
+
+    @cached_property
     def radius(self):
         return self._extra("radius", "radius")
+
+    def custom(self, name: str) -> np.ndarray:
+        """Values of ``fix property/atom``: i_name, d_name, i2_name[k] or d2_name[k]."""
+        base, _, index = name.rstrip("]").partition("[")
+        if base not in self.system.extra:
+            raise InputError(f"dump: atoms have no property {base}, define it with fix property/atom")
+        values = self.system.extra[base]
+        if (values.ndim == 2) != bool(index) or index and not 1 <= int(index) <= values.shape[1]:
+            raise InputError(f"dump: {name}: property {base} has {values.shape[1] if values.ndim == 2 else 'no'} columns")
+        return values[self.rows, int(index) - 1] if index else values[self.rows]
 
     def element(self) -> list[str]:
         if not self._element:
@@ -145,7 +159,7 @@ for _k, _a in enumerate(AXES):
         COLUMNS[_a + _suffix] = ("float", _component(_array, _k))
     COLUMNS["v" + _a] = ("float", _component("v", _k))
     COLUMNS["f" + _a] = ("float", _component("f", _k))
-    for _name, _array in (("mu", "mu"), ("tq", "torque"), ("omega", "omega")):
+    for _name, _array in (("mu", "mu"), ("tq", "torque"), ("omega", "omega"), ("angmom", "angmom")):
         COLUMNS[_name + _a] = ("float", _component(_array, _k))
     COLUMNS["i" + _a] = ("integer", _component("image", _k))
 
@@ -160,6 +174,8 @@ def kind_of(name: str) -> str:
     """
     if re.fullmatch(r"[cfv]_\w+(\[\d+\])?", name):
         return "float"
+    if custom := re.fullmatch(r"([id])(_\w+|2_\w+\[\d+\])", name):
+        return "integer" if custom[1] == "i" else "float"
     if name not in COLUMNS:
         raise InputError(f"dump: column {name!r} is unknown or not supported{nearest(name, COLUMNS)}")
     return COLUMNS[name][0]
@@ -169,6 +185,8 @@ def column_of(view: View, name: str) -> Sequence:
     """The values of one column."""
     if name in COLUMNS:
         return COLUMNS[name][1](view)
+    if name[0] in "id":
+        return view.custom(name)
     kind, source = name[0], name[2:]
     if view.variables is None:
         raise InputError(f"dump: column {name} needs a session")

@@ -9,7 +9,8 @@ class Atom(Dump):
     """Columns ``id type xs ys zs``; ``dump_modify scale no`` writes x y z, ``image yes`` adds ix iy iz."""
 
     style = "atom"
-    KEYWORDS = {**Dump.KEYWORDS, "scale": 1, "image": 1}
+    binary = True
+    KEYWORDS = {**Dump.KEYWORDS, "image": 1, "scale": 1, "triclinic/general": 1, "types": 1}
 
     def __init__(self, group: str, every: int, path: str, *, variables=None, regions=None):
         self.scale = True

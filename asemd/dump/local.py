@@ -29,7 +29,7 @@ class Local(Dump):
 
     style = "local"
     label = "ENTRIES"
-    KEYWORDS = {k: n for k, n in Dump.KEYWORDS.items() if k not in ("element", "region", "thresh", "types")} | {"label": 1}
+    KEYWORDS = {**Dump.KEYWORDS, "label": 1}
 
     def __init__(self, group: str, every: int, path: str, columns: list[str], *, variables=None, regions=None):
         columns = [name for word in columns for name in self._expanded(word, variables)]

@@ -223,9 +223,7 @@ class Driver:
 
     def _next_output(self, step: int) -> int:
         """The next step on which something is written."""
-        steps = [_multiple(d.every, step) for d in self.scene.dumps.values()] + [self._next_thermo(step)]
-        steps.append(restart.next_step(self.session, step))
-        return min(s for s in steps)
+        return min([d.schedule.next for d in self.scene.dumps.values()] + [self._next_thermo(step), restart.next_step(self.session, step)])
 
     def _next_thermo(self, step: int) -> int:
         every = self.scene.thermo.every

@@ -62,6 +62,33 @@ class Providers:
         shown, width = f"{kind}_{id}{f'[{column}]' if column else ''}", values.shape[1] if values.ndim == 2 else "no"
         raise InputError(f"{shown}: the values per atom have {width} columns")
 
+    def per_atom_columns(self, kind: str, id: str) -> int:
+        """How many columns the values per atom of a compute (c), fix (f) or property (i2, d2) have."""
+        if kind in ("i2", "d2"):
+            name = f"{kind}_{id}"
+            if name not in self.system.extra:
+                raise InputError(f"atoms have no property {name}, define it with fix property/atom")
+            return self.system.extra[name].shape[1]
+        source = self.source(kind, id)
+        if hasattr(source, "per_atom_columns"):
+            return source.per_atom_columns()
+        moment = self.session.moment
+        values = np.asarray(moment.per_atom(id) if kind == "c" else source.per_atom(moment.snapshot))
+        if values.ndim != 2:
+            raise InputError(f"{kind}_{id}[*]: the values per atom have no columns")
+        return values.shape[1]
+
+    def thermo_words(self, step: int) -> tuple:
+        """The keywords of the thermo row of a step and its `Moment`; no keywords if the step has no row."""
+        session = self.session
+        return (session.last_words if session.last_thermo_step == step else ()), session.moment
+
+    def thermo_row(self, step: int) -> dict[str, float]:
+        """LAMMPS's name of each column of the thermo row of a step and its value; empty if the step has no row."""
+        session, words = self.session, self.thermo_words(step)[0]
+        names = [thermo.KEYWORDS[w].column if w in thermo.KEYWORDS else w for w in words]
+        return dict(zip(names, session.last_thermo.values()))
+
     def local(self, kind: str, id: str, column: int | None) -> np.ndarray:
         """Local values of a compute or fix; `column` counts from 1, None for a vector."""
         width = self.local_columns(kind, id)

@@ -68,6 +68,7 @@ class Session:
             self.variables.define(name, "index", values)
         self.loop: Any = None
         self.last_thermo: dict[str, Any] = {}
+        self.last_words: list[str] = []
         self.last_thermo_step = -1
         self.running = False
         self.interrupted = False
