@@ -173,7 +173,12 @@ class Box:
 
     def fractional(self, x: np.ndarray) -> np.ndarray:
         """Fractional coordinates of positions (n, 3)."""
-        return (x - self.origin) / np.diag(self.cell) if self.aligned else (x - self.origin) @ self.inverse
+        d = x - self.origin
+        if self.is_lammps_frame and self.triclinic:     # sums in LAMMPS's order: it says on which side of a face an atom is
+            (lx, ly, lz), (xy, xz, yz) = np.diag(self.cell), self.tilt
+            return np.column_stack([1.0 / lx * d[:, 0] - xy / (lx * ly) * d[:, 1] + (yz * xy - ly * xz) / (lx * ly * lz) * d[:, 2],
+                                    1.0 / ly * d[:, 1] - yz / (ly * lz) * d[:, 2], 1.0 / lz * d[:, 2]])
+        return d / np.diag(self.cell) if self.aligned else d @ self.inverse
 
     # ---- periodicity
     def wrap(self, x: np.ndarray, image: np.ndarray) -> None:

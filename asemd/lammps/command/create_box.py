@@ -41,7 +41,7 @@ def run(session, args):
                           dimension=scene.dimension, step=scene.step, **fresh(scene.atom_style, 0))
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
-    scene.system.box = _widened(scene.system.box)
+    scene.system.box = widened(scene.system.box)
 
 
 def _box(scene, region) -> Box:
@@ -63,7 +63,7 @@ def _box(scene, region) -> Box:
     return Box.from_lammps(lo, hi, tilt, scene.boundary, triclinic)
 
 
-def _widened(box: Box) -> Box:
+def widened(box: Box) -> Box:
     """The box with every shrink-wrapped face (s) moved out by its margin: atoms on the face are inside."""
     margin = MARGIN * (box.hi - box.lo)
     lo = box.lo - margin * [b[0] == "s" for b in box.boundary]
