@@ -11,7 +11,8 @@ from asemd import modifiers
 from asemd import words as read
 from asemd.errors import InputError, nearest
 from asemd.pairing import PairTerm, check_complete, make_terms, reach
-from asemd.style import Style, exists, find, plain_name
+from asemd.registry import exists, find, plain_name
+from asemd.style import Style
 from asemd.topology import ATOMS
 
 CATEGORIES = (*ATOMS, "pair")

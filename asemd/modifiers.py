@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from asemd import words as read
 from asemd.errors import InputError, nearest
-from asemd.style import plain_name
+from asemd.registry import plain_name
 
 if TYPE_CHECKING:
     from asemd.forcefield import Interactions

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from asemd.errors import InputError, nearest
-from asemd.style import find, plain_name
+from asemd.registry import find, plain_name
 
 if TYPE_CHECKING:
     from asemd.forcefield import Interactions

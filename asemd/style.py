@@ -1,4 +1,4 @@
-r"""The registry: one style is one small file, found by its LAMMPS name.
+r"""What a style is: one small file, found by its LAMMPS name (`find`).
 
 ``bond_style harmonic/shift/cut`` lives in ``asemd/bond/harmonic_shift_cut.py``; nothing else has to be edited to add a style.
 
@@ -29,12 +29,8 @@ Function bodies are compiled: only arithmetic, ``if``, and functions of ``math``
 from __future__ import annotations
 
 import copy
-import importlib
-import importlib.util
 import inspect
 import math
-import pkgutil
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -43,8 +39,11 @@ from typing import Any
 
 import numpy as np
 
-from asemd.errors import InputError, nearest
+from asemd.errors import InputError
+from asemd.registry import exists, find, module_of, names, register
 
+__all__ = ["Packed", "Parameter", "Style", "ZeroStyle", "angle", "bond", "dihedral", "exists", "find", "improper", "module_of", "names",
+           "radians", "register", "units_of"]
 VECTORS = ("ax", "ay", "az", "bx", "by", "bz", "cx", "cy", "cz")
 COORDINATES = {
     "bond": ("r", "rate", "reference"),
@@ -54,13 +53,6 @@ COORDINATES = {
     "pair": ("r", "r2"),
 }
 RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
-ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
-_FINITE = "acts on particles of finite size with an orientation and torques, which asemd does not have yet: run this script with LAMMPS"
-# (category, name) -> why a style of LAMMPS is refused
-REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
-    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script "
-                            "with LAMMPS"}
-_registry: dict[tuple[str, str], Style] = {}
 
 
 @dataclass(frozen=True)
@@ -299,11 +291,6 @@ class ZeroStyle(Style):
         return {} if "nocoeff" in settings else super().parse_coeff(words, settings)
 
 
-def register(style: Style) -> Style:
-    _registry[style.category, style.name] = style
-    return style
-
-
 def _bonded(category: str, name: str, options: Mapping[str, Any]):
     cls = options.pop("cls", Style)
 
@@ -331,109 +318,3 @@ def dihedral(name: str, **options):
 def improper(name: str, **options):
     """Register ``f(phi | chi | omega, ...) -> E, dE/d...`` as improper style `name`."""
     return _bonded("improper", name, options)
-
-
-# -------------------------------------------------------------- registry ---
-
-def module_of(category: str, name: str) -> str:
-    """The module of a style or command follows from its LAMMPS name."""
-    return f"asemd.{category}." + re.sub(r"[^0-9a-zA-Z]", "_", name)
-
-
-def names(category: str) -> list[str]:
-    """LAMMPS names of all styles of a category that exist (imports them)."""
-    package = importlib.import_module(f"asemd.{category}")
-    for m in pkgutil.iter_modules(package.__path__):
-        importlib.import_module(f"asemd.{category}.{m.name}")
-    return sorted(n for c, n in _registry if c == category)
-
-
-def plain_name(name: str) -> str:
-    """A style's name without LAMMPS's accelerator suffixes."""
-    for suffix in ACCELERATED:
-        name = name.removesuffix(suffix)
-    return name
-
-
-def exists(category: str, name: str) -> bool:
-    """Whether there is a style of that name; imports its one file."""
-    if not re.match(r"[A-Za-z]", name):
-        return False
-    module = module_of(category, name)
-    if (category, name) not in _registry and importlib.util.find_spec(module) is not None:
-        importlib.import_module(module)
-    return (category, name) in _registry
-
-
-def find(category: str, name: str) -> Style:
-    """The style of that LAMMPS name; imports its one file.
-
-    Raises
-    ------
-    InputError
-        Unknown style; the message offers the nearest match.
-    """
-    name = plain_name(name)
-    if (category, name) not in _registry:
-        module = module_of(category, name)
-        try:
-            importlib.import_module(module)
-        except ModuleNotFoundError as e:
-            if e.name != module:
-                raise
-        if (category, name) not in _registry:
-            raise unknown(category, name)
-    return _registry[category, name]
-
-
-def unknown(category: str, name: str) -> InputError:
-    """The error for a style that is not there: why it is refused, or the nearest match."""
-    if (category, plain_name(name)) in REFUSED:
-        return InputError(f"{category}_style {name} {REFUSED[category, plain_name(name)]}")
-    return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
-
-
-def class_of(category: str, name: str, base: type) -> type:
-    """The class of a fix, compute, dump ... of that LAMMPS name; imports its one file.
-
-    Raises
-    ------
-    InputError
-        Unknown style; the message offers the nearest match.
-    """
-    name = plain_name(name)
-    module = module_of(category, name)
-    try:
-        found = _styled(importlib.import_module(module), base)
-    except ModuleNotFoundError as e:
-        if e.name != module:
-            raise
-        found = None
-    if found is None or found.style != name:
-        raise InputError(f"unknown {category} style {name!r}{nearest(name, class_names(category, base))}")
-    return found
-
-
-def class_names(category: str, base: type) -> list[str]:
-    """LAMMPS names of all classes of a category that exist (imports them)."""
-    package = importlib.import_module(f"asemd.{category}")
-    found = (_styled(importlib.import_module(f"asemd.{category}.{m.name}"), base) for m in pkgutil.iter_modules(package.__path__))
-    return sorted(c.style for c in found if c)
-
-
-def class_called(category: str, name: str, base: type) -> type:
-    """The class with that Python name: `TempCSVR` of the style ``temp/csvr``, for a package's ``__getattr__``."""
-    if not name.startswith("_"):
-        package = importlib.import_module(f"asemd.{category}")
-        for m in pkgutil.iter_modules(package.__path__):
-            if m.name.replace("_", "") == name.lower():
-                found = _styled(importlib.import_module(f"asemd.{category}.{m.name}"), base)
-                if found and found.__name__ == name:
-                    return found
-    raise AttributeError(f"asemd.{category} has no class {name}")
-
-
-def _styled(module, base: type) -> type | None:
-    """The style class that a module defines."""
-    own = (c for c in vars(module).values() if isinstance(c, type) and issubclass(c, base) and c.__module__ == module.__name__)
-    return next((c for c in own if c.style), None)

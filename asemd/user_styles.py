@@ -7,7 +7,7 @@ import sys
 import traceback
 from pathlib import Path
 
-from asemd import style
+from asemd import registry
 from asemd.errors import InputError, Where
 
 
@@ -32,7 +32,7 @@ def import_file(path: str) -> None:
     if spec is None or spec.loader is None:
         raise InputError(f"--import {path}: the name of a Python file must end with .py")
     module = importlib.util.module_from_spec(spec)
-    known = dict(style._registry)
+    known = dict(registry.known)
     sys.modules[title] = module           # classes of the file find their module there
     sys.path.insert(0, str(file.resolve().parent))
     try:
@@ -46,11 +46,11 @@ def import_file(path: str) -> None:
                          Where(path, line, text[line - 1].strip() if line <= len(text) else "")) from None
     finally:
         sys.path.remove(str(file.resolve().parent))
-    for key, own in list(style._registry.items()):
-        if getattr(own.function, "__module__", "") != title or importlib.util.find_spec(style.module_of(*key)) is None:
+    for key, own in list(registry.known.items()):
+        if getattr(own.function, "__module__", "") != title or importlib.util.find_spec(registry.module_of(*key)) is None:
             continue
-        importlib.import_module(style.module_of(*key))      # does nothing if that was done before
-        taken = style._registry[key] if style._registry[key] is not own else known.get(key)
-        style._registry[key] = taken or own
+        importlib.import_module(registry.module_of(*key))      # does nothing if that was done before
+        taken = registry.known[key] if registry.known[key] is not own else known.get(key)
+        registry.known[key] = taken or own
         if taken and getattr(taken.function, "__module__", "") != title:
             raise InputError(f"--import {path}: asemd has a {key[0]} style {key[1]} already: give yours another name")

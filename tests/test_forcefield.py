@@ -4,6 +4,7 @@ from __future__ import annotations
 import copy
 import importlib
 import pickle
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import numpy as np
@@ -343,7 +344,8 @@ def test_wrong_build(given, message):
 # ------------------------------------------------------------------------------ commands ---
 
 def command(name, text, scene):
-    importlib.import_module(f"asemd.lammps.command.{name}").run(SimpleNamespace(scene=scene), text.split())
+    session = SimpleNamespace(scene=scene, passing_warnings=nullcontext, variables=SimpleNamespace(value=None))
+    importlib.import_module(f"asemd.lammps.command.{name}").run(session, text.split())
 
 
 def test_commands():

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.style import class_called, class_of
+from asemd.registry import class_called, class_of
 
 
 class Compute:

@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.style import class_called, class_of
+from asemd.registry import class_called, class_of
 
 if TYPE_CHECKING:
     from asemd.loop import Loop

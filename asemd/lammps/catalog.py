@@ -3,13 +3,12 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-import re
 from functools import cache
 
-from asemd import atom_style, style
+from asemd import atom_style, registry
 from asemd.errors import InputError, nearest
 from asemd.lammps.names import COMMANDS
-from asemd.style import ACCELERATED, module_of
+from asemd.registry import file_of, module_of, plain_name
 
 FORCE_FIELD = ("bond", "angle", "dihedral", "improper", "pair")
 PACKAGES = {"command": "asemd.lammps.command",
@@ -27,17 +26,6 @@ def files(category: str) -> frozenset[str]:
     return frozenset(m.name for m in pkgutil.iter_modules(package.__path__))
 
 
-def _file(name: str) -> str:
-    return re.sub(r"[^0-9a-zA-Z]", "_", name)
-
-
-def plain(name: str) -> str:
-    """The style's name without an accelerator suffix."""
-    for suffix in ACCELERATED:
-        name = name.removesuffix(suffix)
-    return name
-
-
 def exists(category: str, name: str) -> bool:
     """Whether there is a style (or command) of that name; imports the one file it would be in."""
     if category == "atom":
@@ -47,14 +35,14 @@ def exists(category: str, name: str) -> bool:
     if category in FORCE_FIELD and (name in WRAPPERS or (category, name) == ("pair", "hybrid/overlay")):
         return True
     if category in FORCE_FIELD:
-        return style.exists(category, plain(name))      # also one that the user has defined
-    if category not in PACKAGES or not name or _file(plain(name)) not in files(category):
+        return registry.exists(category, plain_name(name))      # also one that the user has defined
+    if category not in PACKAGES or not name or file_of(plain_name(name)) not in files(category):
         return False
     if category == "command":
         return "/" not in name
     if category == "minimize":
         return not name.startswith("_")
-    return any(c.style == plain(name) for c in _classes(importlib.import_module(module_of(category, plain(name)))))
+    return any(c.style == plain_name(name) for c in _classes(importlib.import_module(module_of(category, plain_name(name)))))
 
 
 @cache
@@ -68,7 +56,7 @@ def names(category: str) -> tuple[str, ...]:
         return tuple(sorted(files(category)))
     if category in FORCE_FIELD:
         own = {"hybrid/overlay"} if category == "pair" else set()
-        return tuple(sorted({*style.names(category), *WRAPPERS, *own}))
+        return tuple(sorted({*registry.names(category), *WRAPPERS, *own}))
     if category == "minimize":
         return tuple(sorted(n for n in files(category) if not n.startswith("_")))
     found = set()
@@ -90,10 +78,10 @@ def load(category: str, name: str) -> type:
     InputError
         Unknown style; offers the nearest match.
     """
-    module = module_of(category, plain(name))
+    module = module_of(category, plain_name(name))
     if module.rpartition(".")[2] in files(category):
         for found in _classes(importlib.import_module(module)):
-            if found.style == plain(name):
+            if found.style == plain_name(name):
                 return found
     raise unknown(category, name)
 
@@ -105,5 +93,5 @@ def unknown(category: str, name: str) -> InputError:
             return InputError(f"command {name} of LAMMPS is not supported yet: remove it, or run this script with LAMMPS")
         return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
     if category in FORCE_FIELD:
-        return style.unknown(category, name)
+        return registry.unknown(category, name)
     return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import asemd
-from asemd import style
+from asemd import registry
 from asemd.errors import InputError, nearest
 from asemd.lammps import catalog
 from asemd.text_table import Table
@@ -41,7 +41,7 @@ PARTIAL = {
     ("fix", "langevin"): "no gjf, omega, angmom",
 }
 # names that are read but do nothing useful yet
-REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify", **style.REFUSED}
+REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify", **registry.REFUSED}
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 from asemd.errors import InputError
 from asemd.lammps import catalog
+from asemd.registry import plain_name
 from asemd.words import take
 
 
 def run(session, args):
     take(args, 1, "atom_style")
-    style = catalog.plain(args[0])
+    style = plain_name(args[0])
     if not catalog.exists("atom", style):
         raise catalog.unknown("atom", args[0])
     if style == "hybrid":
@@ -20,7 +21,7 @@ def run(session, args):
 
 def hybrid(words: list[str]) -> str:
     """The styles behind ``hybrid``, each once, as one name."""
-    names = [catalog.plain(w) for w in words]
+    names = [plain_name(w) for w in words]
     if not names:
         raise InputError("atom_style hybrid needs the names of its sub-styles")
     for name in names:

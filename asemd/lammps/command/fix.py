@@ -5,6 +5,7 @@ import re
 
 from asemd.errors import InputError
 from asemd.lammps import catalog, restart
+from asemd.registry import plain_name
 from asemd.words import take
 
 
@@ -16,7 +17,7 @@ def run(session, args):
         raise InputError(f"fix: ID {id!r} must have only letters, numbers and underscores")
     scene.groups.mask(group, f"fix {id}")
     old = scene.fixes.get(id)
-    if old is not None and old.style != catalog.plain(style):
+    if old is not None and old.style != plain_name(style):
         raise InputError(f"fix {id} exists with style {old.style}: unfix it before it becomes {style}")
     new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
     new.id = id

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from asemd.errors import InputError, nearest
-from asemd.style import plain_name
+from asemd.registry import plain_name
 
 PERIODIC = ("ewald", "ewald/disp", "ewald/dipole", "pppm", "pppm/cg", "pppm/disp", "pppm/tip4p", "pppm/disp/tip4p", "pppm/stagger",
             "pppm/dipole")

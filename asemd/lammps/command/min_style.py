@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 from asemd.lammps import catalog
+from asemd.registry import plain_name
 from asemd.words import take
 
 
 def run(session, args):
     session.scene.need_system("min_style")
-    style = catalog.plain(take(args, 1, "min_style")[0])
+    style = plain_name(take(args, 1, "min_style")[0])
     if not catalog.exists("minimize", style):
         raise catalog.unknown("minimize", args[0])
     session.scene.min_style = style

@@ -1,0 +1,136 @@
+"""The registry of styles: each is found by its LAMMPS name, in the file of that name."""
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import pkgutil
+import re
+from typing import TYPE_CHECKING
+
+from asemd.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from asemd.style import Style
+
+ACCELERATED = ("/opt", "/omp", "/intel", "/kk", "/gpu")
+_FINITE = "acts on particles of finite size with an orientation and torques, which asemd does not have yet: run this script with LAMMPS"
+# (category, name) -> why a style of LAMMPS is refused
+REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
+    ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script "
+                            "with LAMMPS"}
+known: dict[tuple[str, str], Style] = {}      # by category and name
+
+
+def register(style: Style) -> Style:
+    """Make a force-field style known by its name."""
+    known[style.category, style.name] = style
+    return style
+
+
+def file_of(name: str) -> str:
+    """The name of the file of a style or command, without its ending."""
+    return re.sub(r"[^0-9a-zA-Z]", "_", name)
+
+
+def module_of(category: str, name: str) -> str:
+    """The module of a style or command follows from its LAMMPS name."""
+    return f"asemd.{category}.{file_of(name)}"
+
+
+def names(category: str) -> list[str]:
+    """LAMMPS names of all styles of a category that exist (imports them)."""
+    package = importlib.import_module(f"asemd.{category}")
+    for m in pkgutil.iter_modules(package.__path__):
+        importlib.import_module(f"asemd.{category}.{m.name}")
+    return sorted(n for c, n in known if c == category)
+
+
+def plain_name(name: str) -> str:
+    """A style's name without LAMMPS's accelerator suffixes."""
+    for suffix in ACCELERATED:
+        name = name.removesuffix(suffix)
+    return name
+
+
+def exists(category: str, name: str) -> bool:
+    """Whether there is a style of that name; imports its one file."""
+    if not re.match(r"[A-Za-z]", name):
+        return False
+    module = module_of(category, name)
+    if (category, name) not in known and importlib.util.find_spec(module) is not None:
+        importlib.import_module(module)
+    return (category, name) in known
+
+
+def find(category: str, name: str) -> Style:
+    """The style of that LAMMPS name; imports its one file.
+
+    Raises
+    ------
+    InputError
+        Unknown style; the message offers the nearest match.
+    """
+    name = plain_name(name)
+    if (category, name) not in known:
+        module = module_of(category, name)
+        try:
+            importlib.import_module(module)
+        except ModuleNotFoundError as e:
+            if e.name != module:
+                raise
+        if (category, name) not in known:
+            raise unknown(category, name)
+    return known[category, name]
+
+
+def unknown(category: str, name: str) -> InputError:
+    """The error for a style that is not there: why it is refused, or the nearest match."""
+    if (category, plain_name(name)) in REFUSED:
+        return InputError(f"{category}_style {name} {REFUSED[category, plain_name(name)]}")
+    return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
+
+
+def class_of(category: str, name: str, base: type) -> type:
+    """The class of a fix, compute, dump ... of that LAMMPS name; imports its one file.
+
+    Raises
+    ------
+    InputError
+        Unknown style; the message offers the nearest match.
+    """
+    name = plain_name(name)
+    module = module_of(category, name)
+    try:
+        found = _styled(importlib.import_module(module), base)
+    except ModuleNotFoundError as e:
+        if e.name != module:
+            raise
+        found = None
+    if found is None or found.style != name:
+        raise InputError(f"unknown {category} style {name!r}{nearest(name, class_names(category, base))}")
+    return found
+
+
+def class_names(category: str, base: type) -> list[str]:
+    """LAMMPS names of all classes of a category that exist (imports them)."""
+    package = importlib.import_module(f"asemd.{category}")
+    found = (_styled(importlib.import_module(f"asemd.{category}.{m.name}"), base) for m in pkgutil.iter_modules(package.__path__))
+    return sorted(c.style for c in found if c)
+
+
+def class_called(category: str, name: str, base: type) -> type:
+    """The class with that Python name: `TempCSVR` of the style ``temp/csvr``, for a package's ``__getattr__``."""
+    if not name.startswith("_"):
+        package = importlib.import_module(f"asemd.{category}")
+        for m in pkgutil.iter_modules(package.__path__):
+            if m.name.replace("_", "") == name.lower():
+                found = _styled(importlib.import_module(f"asemd.{category}.{m.name}"), base)
+                if found and found.__name__ == name:
+                    return found
+    raise AttributeError(f"asemd.{category} has no class {name}")
+
+
+def _styled(module, base: type) -> type | None:
+    """The style class that a module defines."""
+    own = (c for c in vars(module).values() if isinstance(c, type) and issubclass(c, base) and c.__module__ == module.__name__)
+    return next((c for c in own if c.style), None)
