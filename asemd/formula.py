@@ -1,7 +1,8 @@
 """The formula language of variables, evaluated with what a `Provider` hands in.
 
 Source: the LAMMPS manual page of ``variable``; operators, functions and rounding as the program has them
-(unary minus binds tighter than ``^``, everything groups to the left, ``round`` is ``floor(x + 1/2)``).
+(unary minus binds tighter than ``^``, everything groups to the left, ``round`` is ``floor(x + 1/2)``). Functions that take names
+instead of numbers are in `asemd.formula_names`.
 """
 from __future__ import annotations
 
@@ -12,13 +13,15 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from asemd.errors import InputError, nearest
-from asemd.formula_functions import BINARY, GROUP, MATH, REDUCE, STEP, Clock, Value, each
+from asemd.formula_functions import BINARY, GROUP, MATH, STEP, Clock, Value, each, whole
+from asemd.formula_names import NAMED
 
 if TYPE_CHECKING:
     from asemd.variable import Variables
 
 CONSTANTS = {"PI": math.pi, "yes": 1.0, "on": 1.0, "true": 1.0, "no": 0.0, "off": 0.0, "false": 0.0}
 ATOM_VECTORS = ("id", "mass", "type", "mol", "radius", "q", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz")
+LARGEST_SEED = 2**31 - 1
 VERSION = 20250722.0       # the LAMMPS version whose input language this is
 TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)"
                    r"|(?P<op>==|!=|<=|>=|&&|\|\||\|\^|[-+*/%^!<>()\[\],:]))")
@@ -31,24 +34,41 @@ class Provider(Protocol):
     def reference(self, kind: str, id: str, index: list[int]) -> float: ...
     def per_atom(self, kind: str, id: str, column: int | None) -> np.ndarray: ...
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray: ...
-    def is_per_atom(self, kind: str, id: str) -> bool: ...
+    def has(self, kind: str, id: str, what: str) -> bool: ...
     def atoms(self, name: str) -> np.ndarray: ...
     def row(self, atom_id: int) -> int: ...
     def group(self, name: str) -> np.ndarray: ...
     def region(self, name: str) -> np.ndarray: ...
     def group_function(self, name: str, mask: np.ndarray, word: str | None) -> float: ...
     def clock(self) -> Clock: ...
-    def exists(self, category: str, name: str) -> bool: ...
+    def defined(self, category: str, name: str) -> bool: ...
+    def available(self, category: str, name: str) -> bool: ...
+    def active(self, category: str, name: str) -> bool: ...
+    def setting(self, name: str) -> int: ...
+    def type_of(self, kind: str, label: str) -> int | None: ...
+    def python(self, function: str, values: list[float] | None) -> str: ...
 
 
 class Parser:
-    """Recursive descent over one formula; the depth of a rule is its precedence."""
+    """Recursive descent over one formula; the depth of a rule is its precedence.
 
-    def __init__(self, variables: Variables, formula: str, per_atom: bool):
-        self.variables, self.formula, self.wants_atoms = variables, formula, per_atom
+    Parameters
+    ----------
+    variables : Variables
+    formula : str
+    style : str
+        ``equal`` for one number, ``atom`` for one per atom, ``vector`` for several; arrays of the other kind are refused.
+    """
+
+    def __init__(self, variables: Variables, formula: str, style: str = "equal"):
+        self.variables, self.formula, self.style = variables, formula, style
         self.at, self.kind, self.token = 0, "", ""
         self.start = 0
         self.advance()
+
+    @property
+    def wants_atoms(self) -> bool:
+        return self.style == "atom"
 
     @property
     def provider(self) -> Provider:
@@ -78,8 +98,8 @@ class Parser:
         value = self.binary(0)
         if self.kind != "end":
             raise InputError(f"invalid formula {self.formula!r}: unexpected {self.token!r}")
-        if isinstance(value, np.ndarray) and not self.wants_atoms:
-            raise InputError(f"formula {self.formula!r} gives one value per atom where one number is needed")
+        if isinstance(value, np.ndarray) and self.style == "equal":
+            raise InputError(f"formula {self.formula!r} gives several values where one number is needed")
         return value
 
     def binary(self, level: int) -> Value:
@@ -93,13 +113,13 @@ class Parser:
         return value
 
     def unary(self) -> Value:
-        if self.kind == "op" and self.token in "-!+":
+        if self.kind == "op" and self.token in "-!":
             sign = self.token
             self.advance()
             value = self.unary()
             if sign == "!":
                 return each(lambda a: float(a == 0.0), value)
-            return 0.0 - value if sign == "-" else value
+            return 0.0 - value
         return self.primary()
 
     def primary(self) -> Value:
@@ -119,7 +139,7 @@ class Parser:
         self.advance()
         if self.kind == "op" and self.token == "(":
             return self.call(name)
-        if name[:2] in ("c_", "f_", "v_"):
+        if name[:2] in ("c_", "f_", "v_", "C_", "F_"):
             return self.reference(name[0], name[2:])
         if name in CONSTANTS:
             return CONSTANTS[name]
@@ -128,7 +148,9 @@ class Parser:
         if name in ATOM_VECTORS:
             index = self.index()
             values = self.provider.atoms(name)
-            return float(values[self.provider.row(index)]) if index is not None else values
+            if index is None:
+                return self.atom_values(values, name)
+            return float(values[self.provider.row(index)])
         return float(self.provider.thermo(name))
 
     def index(self) -> int | None:
@@ -139,36 +161,59 @@ class Parser:
         if self.kind == "number" and self.token.isdigit():
             value = int(self.token)
         elif self.kind == "name" and self.token.startswith("v_"):
-            value = int(self.variables.number(self.token[2:]))
+            value = whole(self.variables.number(self.token[2:]), f"index {self.token}")
         else:
             raise InputError(f"invalid formula {self.formula!r}: an index must be a whole number or v_name")
+        if value <= 0:
+            raise InputError(f"invalid formula {self.formula!r}: an index must be positive")
         self.advance()
         self.take("]")
         return value
 
+    def atom_values(self, values: np.ndarray, name: str) -> np.ndarray:
+        """One value per atom, where the formula may have them."""
+        if not self.wants_atoms:
+            needed = "one number is" if self.style == "equal" else "a vector that belongs to no atom is"
+            raise InputError(f"{name} gives one value per atom where {needed} needed")
+        return values
+
     def reference(self, kind: str, id: str) -> Value:
+        """``c_ID``, ``f_ID`` and ``v_name`` with up to two indices; a capital C or F asks for the values of one atom."""
         index = [i for i in (self.index(), self.index()) if i is not None]
+        shown = f"{kind}_{id}{''.join(f'[{i}]' for i in index)}"
         if kind == "v":
             return self.variable(id, index)
-        p = self.provider
-        if not p.is_per_atom(kind, id):
-            return float(p.reference(kind, id, index))
-        if self.wants_atoms and len(index) < 2:
-            return p.per_atom(kind, id, index[0] if index else None)
-        if not index:
-            raise InputError(f"{kind}_{id} gives one value per atom where one number is needed")
-        return float(p.per_atom(kind, id, index[1] if len(index) == 2 else None)[p.row(index[0])])
+        p, capital, kind = self.provider, kind.isupper(), kind.lower()
+        count = len(index)
+        if not capital:
+            if self.style == "vector" and count < 2 and p.has(kind, id, ("vector", "array")[count]):
+                return p.vector(kind, id, index[0] if index else None)
+            if self.style == "vector" and count == 1:
+                raise InputError(f"{shown}: in a vector an index means a column of a global array, which {kind}_{id} does not have")
+            if p.has(kind, id, ("scalar", "vector", "array")[count]):
+                return float(p.reference(kind, id, index))
+            if p.has(kind, id, "per_atom") and (not index or (self.wants_atoms and count == 1)):
+                return self.atom_values(p.per_atom(kind, id, index[0] if index else None), shown)
+        if not index or not p.has(kind, id, "per_atom"):
+            return float(p.reference(kind, id, index))      # which says what is missing
+        return float(p.per_atom(kind, id, index[1] if count == 2 else None)[p.row(index[0])])
 
     def variable(self, name: str, index: list[int]) -> Value:
-        variable = self.variables.find(name)
-        if variable.style != "atom":
-            if index:
-                raise InputError(f"v_{name}[{index[0]}]: variable {name} of style {variable.style} has no elements")
-            return self.variables.number(name)
-        if index or self.wants_atoms:
+        style = self.variables.find(name).style
+        if style in ("atom", "atomfile"):
+            if not index and self.style != "atom":
+                raise InputError(f"variable {name} has style {style} where one number is needed")
             values = self.variables.per_atom(name, self.provider.atoms("id").size)
             return float(values[self.provider.row(index[0])]) if index else values
-        raise InputError(f"variable {name} has style atom where one number is needed")
+        if style == "vector":
+            if index:
+                return self.variables.element(name, index[0])
+            if self.style != "vector":
+                raise InputError(f"variable {name} has style vector where {'a number' if self.style == 'equal' else 'atoms'} must be")
+            return self.variables.vector(name)
+        if index:
+            raise InputError(f"v_{name}[{index[0]}]: variable {name} of style {style} has no elements")
+        return self.variables.number(name)
 
     def words(self) -> list[str]:
         """The plain words between the parentheses of a function that takes names."""
@@ -203,15 +248,11 @@ class Parser:
             return self.noise(name, self.counted(name, 3))
         if name in GROUP:
             return self.group(name, self.words())
-        if name in REDUCE:
-            return self.reduce(name, self.words())
-        if name in ("gmask", "rmask", "grmask"):
-            return self.masks(name, self.words())
-        if name in ("is_defined", "is_available"):
-            words = self.words()
-            self.arguments(name, words, 2)
-            return float(self.provider.exists(words[0], words[1]))
-        known = [*MATH, *STEP, *GROUP, *REDUCE, "random", "normal", "gmask", "rmask", "grmask", "is_defined", "is_available"]
+        if name in NAMED:
+            return NAMED[name](self, name, self.words())
+        if name.startswith("py_"):
+            return self.variables.python(name[3:], self.values())
+        known = [*MATH, *STEP, *GROUP, *NAMED, "random", "normal"]
         raise InputError(f"unknown function {name}() in formula {self.formula!r}{nearest(name, known)}")
 
     def arguments(self, name: str, given: list, count: int) -> list:
@@ -226,6 +267,8 @@ class Parser:
         a, b, seed = given
         if isinstance(seed, np.ndarray):
             raise InputError(f"{name}(): the seed must be one number")
+        if not abs(seed) <= LARGEST_SEED:
+            raise InputError(f"{name}(): {seed:g} is no seed")
         source = self.variables.random("atom" if self.wants_atoms else "equal", int(seed))
         if name == "normal":
             return each(lambda mean, sigma: mean + sigma * source.gaussian(), *self.spread(a, b))
@@ -245,20 +288,3 @@ class Parser:
         if len(words) > base:
             mask = mask & self.provider.region(words[-1])
         return self.provider.group_function(name, mask, words[1] if GROUP[name] else None)
-
-    def reduce(self, name: str, words: list[str]) -> float:
-        self.arguments(name, words, 1)
-        match = re.fullmatch(r"([cf])_(\w+)(?:\[(\d+)\])?", words[0])
-        if not match:
-            raise InputError(f"{name}() takes c_ID, c_ID[N], f_ID or f_ID[N], got {words[0]}")
-        values = np.asarray(self.provider.vector(match[1], match[2], int(match[3]) if match[3] else None), float)
-        if not values.size:
-            raise InputError(f"{name}({words[0]}): the vector is empty")
-        return float(REDUCE[name](values))
-
-    def masks(self, name: str, words: list[str]) -> np.ndarray:
-        self.arguments(name, words, 2 if name == "grmask" else 1)
-        if not self.wants_atoms:
-            raise InputError(f"{name}() can only be used in an atom-style variable")
-        mask = self.provider.region(words[-1]) if name != "gmask" else True
-        return np.asarray(mask & self.provider.group(words[0]) if name != "rmask" else mask, float)

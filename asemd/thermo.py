@@ -170,7 +170,7 @@ def value_of(moment: Moment, kind: str, id: str, index: list[int]) -> float:
         No such compute, fix, variable or element.
     """
     if kind == "v":
-        return moment.number(id)
+        return moment.number(id, *index)
     if kind == "f":
         fix = moment.fix(id)
         if len(index) == 2:

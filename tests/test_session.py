@@ -97,7 +97,7 @@ def test_undefined_variable(session):
     ("echo loud", "none screen"),
     ("if 1 > 2 then", "then"), ("run_style respa 2 2", "not supported"), ("fix 1 all langevin 1 1 1 1", "exists with style nve"),
     ("print a b", "quotes"),
-    ("variable v world 1 2", "not supported"), ("include nofile", "cannot open"), ("print 'a", "quote"),
+    ("variable v world 1 2", "one partition"), ("include nofile", "cannot open"), ("print 'a", "quote"),
 ])
 def test_bad_commands(session, command, message):
     with pytest.raises(InputError, match=message):

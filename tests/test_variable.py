@@ -30,8 +30,8 @@ class Provider:
     def row(self, atom_id):
         return {5: 0, 6: 1, 7: 2}[atom_id]
 
-    def is_per_atom(self, kind, id):
-        return id == "pa"
+    def has(self, kind, id, what):
+        return what == "per_atom" if id == "pa" else what != "per_atom"
 
     def per_atom(self, kind, id, column):
         return np.array([10.0, 20.0, 30.0])
@@ -51,7 +51,7 @@ class Provider:
     def group_function(self, name, mask, word):
         return float(mask.sum()) if name == "count" else {"x": 1.0, "y": 2.0}[word]
 
-    def exists(self, category, name):
+    def defined(self, category, name):
         return (category, name) == ("compute", "pa")
 
 
@@ -142,7 +142,7 @@ def test_definitions(variables):
     variables.define("e", "delete", [])
     assert "e" not in variables.table
     with pytest.raises(InputError, match="unknown or not supported"):
-        variables.define("w", "world", ["1"])
+        variables.define("w", "worlds", ["1"])
     with pytest.raises(InputError, match="letters"):
         variables.define("a-b", "equal", ["1"])
 

@@ -126,7 +126,7 @@ class Dump(Modify):
                 self.variables.find(source)
             else:
                 provider = self.variables.provider
-                if not provider.exists("compute" if name[0] == "c" else "fix", source) or not provider.is_per_atom(name[0], source):
+                if not provider.defined("compute" if name[0] == "c" else "fix", source) or not provider.has(name[0], source, "per_atom"):
                     raise InputError(f"dump {self.style}: {name} does not name values per atom")
 
     @property

@@ -55,6 +55,13 @@ class Lammps(AtomArrays):
         if switches.input:
             self.file(switches.input)
 
+    @classmethod
+    def of(cls, session) -> Lammps:
+        """The methods of this class for a session that is there already."""
+        found = cls.__new__(cls)
+        found.session, found.closed = session, True       # whoever made the session closes it
+        return found
+
     def __enter__(self) -> Lammps:
         return self
 
@@ -235,10 +242,12 @@ class Lammps(AtomArrays):
         """Value of a variable: number, text, or (n,) array for style atom (zero outside the group)."""
         variables = self.session.variables
         style = variables.find(name).style
-        if style == "atom":
+        if style in ("atom", "atomfile"):
             values = variables.per_atom(name, self.get_natoms())
             return np.where(self.scene.groups.mask(group), values, 0.0) if group else values
-        return variables.number(name) if style in ("equal", "internal") else variables.value(name)
+        if style == "vector":
+            return variables.vector(name)
+        return variables.number(name) if style in ("equal", "internal", "timer") else variables.value(name)
 
     def set_variable(self, name: str, value) -> int:
         """Set a string-style variable; 0, or -1 if there is none."""

@@ -1,16 +1,15 @@
 """What the formulas of variables see of a session: thermo keywords, computes, fixes, atoms, groups."""
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from asemd import thermo, units
 from asemd.errors import InputError, nearest
 from asemd.formula_functions import Clock
-from asemd.lammps import catalog
+from asemd.lammps import features
 
 AXES = {"x": 0, "y": 1, "z": 2}
+LONGEST = 10**6     # elements of the vector of a fix that does not say how many it has
 TENSOR = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 
@@ -40,10 +39,12 @@ class Providers:
     def reference(self, kind: str, id: str, index: list[int]) -> float:
         return thermo.value_of(self.session.moment, kind, id, index)
 
-    def is_per_atom(self, kind: str, id: str) -> bool:
-        """Whether a compute or fix gives values per atom rather than global ones."""
-        found = self.source(kind, id)
-        return type(found).per_atom is not _base_per_atom(kind) if hasattr(type(found), "per_atom") else False
+    def has(self, kind: str, id: str, what: str) -> bool:
+        """Whether a compute or fix gives ``scalar``, ``vector``, ``array`` or ``per_atom`` values."""
+        from asemd.compute import Compute
+        from asemd.fix import Fix
+        found, base = type(self.source(kind, id)), Compute if kind == "c" else Fix
+        return getattr(found, what, None) is not getattr(base, what, None)
 
     def source(self, kind: str, id: str):
         table, what = (self.scene.computes, "compute") if kind == "c" else (self.scene.fixes, "fix")
@@ -109,15 +110,16 @@ class Providers:
         return width
 
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray:
+        """A global vector, or a column (from 1) of a global array."""
         source = self.source(kind, id)
         if kind == "f":
-            size = getattr(source, "size", None)
-            if size is None or column is not None:
-                raise InputError(f"fix {id} (style {source.style}) has no global vector of known length")
-            return np.array([source.vector(i) for i in range(1, size + 1)])
+            return fix_vector(source, column)
         if column is None:
-            return self.session.moment.vector(id)
-        return np.asarray(self.session.moment.array(id))[:, column - 1]
+            return np.asarray(self.session.moment.vector(id))
+        values = np.asarray(self.session.moment.array(id))
+        if not 1 <= column <= values.shape[1]:
+            raise InputError(f"c_{id}[{column}]: the array has {values.shape[1]} columns")
+        return values[:, column - 1]
 
     def atoms(self, name: str) -> np.ndarray:
         s = self.system
@@ -154,12 +156,23 @@ class Providers:
         p = self.session.moment.progress
         return Clock(self.scene.step, p.first, max(p.last, p.first), self.scene.dt, self.session.running)
 
-    def exists(self, category: str, name: str) -> bool:
-        tables = {"compute": self.scene.computes, "fix": self.scene.fixes, "group": self.scene.groups, "region": self.scene.regions,
-                  "dump": self.scene.dumps, "variable": self.session.variables.table}
-        if category in tables:
-            return name in tables[category]
-        return category != "feature" and catalog.exists(category, name)
+    def defined(self, category: str, name: str) -> bool:
+        return features.defined(self.session, category, name)
+
+    def available(self, category: str, name: str) -> bool:
+        return features.available(category, name)
+
+    def active(self, category: str, name: str) -> bool:
+        return features.active(self.scene, category, name)
+
+    def setting(self, name: str) -> int:
+        return features.setting(self.session, name)
+
+    def type_of(self, kind: str, label: str) -> int | None:
+        return features.type_of(self.system, kind, label)
+
+    def python(self, function: str, values: list[float] | None) -> str:
+        return self.session.python.call(function, values)
 
     def group_function(self, name: str, mask: np.ndarray, word: str | None) -> float:
         """The value of ``xcm(group,x)`` and its relatives over the atoms of `mask`."""
@@ -187,9 +200,19 @@ def _no_charge(system):
     raise InputError(f"charge(): atom style {system.atom_style} has no charges")
 
 
-def _base_per_atom(kind: str) -> Callable | None:
-    from asemd.compute import Compute
-    return Compute.per_atom if kind == "c" else None
+def fix_vector(fix, column: int | None) -> np.ndarray:
+    """All elements of the global vector of a fix, or of a column of its array: those up to the first that it does not have."""
+    values: list[float] = []
+    size = getattr(fix, "size", None) or LONGEST
+    while len(values) < size:
+        try:
+            k = len(values) + 1
+            values.append(float(fix.vector(k) if column is None else fix.array(k, column)))
+        except (InputError, IndexError):
+            if not values:
+                raise
+            break
+    return np.array(values)
 
 
 class Body:

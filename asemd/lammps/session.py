@@ -12,6 +12,7 @@ from asemd.errors import AsemdError, InputError, InputWarning, Where
 from asemd.lammps import catalog, lex, script
 from asemd.lammps.log import Log, to_stdout
 from asemd.lammps.providers import Providers
+from asemd.lammps.python_functions import PythonFunctions
 from asemd.lammps.script import Command
 from asemd.lammps.switches import Switches
 from asemd.moment import Moment, Progress
@@ -66,6 +67,7 @@ class Session:
         self.variables = Variables(Providers(self))
         for name, values in self.switches.variables:
             self.variables.define(name, "index", values)
+        self.python = PythonFunctions(self)
         self.loop: Any = None
         self.last_thermo: dict[str, Any] = {}
         self.last_words: list[str] = []
@@ -218,6 +220,11 @@ class Session:
         """Note that `what` was defined by the command that is being executed."""
         if self._position:
             self.places[what] = self._position
+
+    def refuse_if_safe(self, command: str) -> None:
+        """Raise `InputError` for what a script from a stranger must not do."""
+        if self.switches.safe:
+            raise InputError(f"{command} is refused by --safe: it could do anything to this computer")
 
     # ---------------------------------------------------------------- state ---
 

@@ -37,6 +37,7 @@ class Switches:
     precision: str = "double"
     cap: int | None = None         # limit on the steps of every run and minimisation
     nocite: bool = False
+    safe: bool = False              # refuse what a script from a stranger must not do
 
 
 def parse(words: Sequence[str]) -> Switches:

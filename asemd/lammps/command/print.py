@@ -9,7 +9,7 @@ KEYWORDS = ("file", "append", "screen", "universe")
 
 def run(session, args):
     text = session.substitute(take(args, 1, "print")[0])
-    screen, words = True, list(args[1:])
+    screen, universe, words = True, False, list(args[1:])
     while words:
         key = words.pop(0)
         if key not in KEYWORDS:
@@ -19,7 +19,7 @@ def run(session, args):
         if key == "screen":
             screen = yes_no(value, "print screen")
         elif key == "universe":
-            yes_no(value, "print universe")     # there is one partition
+            universe = yes_no(value, "print universe")
         elif not session.passive:
             try:
                 with open(value, "w" if key == "file" else "a", encoding="utf-8") as f:
@@ -27,4 +27,6 @@ def run(session, args):
             except OSError as e:
                 raise InputError(f"print: cannot write {value}: {e.strerror}") from None
     if screen:
+        session.print(text)
+    if universe:        # there is one partition, whose log is also that of the universe
         session.print(text)
