@@ -371,6 +371,10 @@ class Loop:
         e = self.engine
         e.k.load(self.system.x, self.system.v, self.system.x, e.state.x, e.state.v, e.state.row, e.ns, False)
 
+    def end_of_step(self) -> None:
+        """What fixes do when a step is over, for steps that are not made by the loop."""
+        self._hook("end_of_step")
+
     def finish(self) -> None:
         """End of a run: results of fixes are read back, the system is in sync."""
         for f in self.fixes:
