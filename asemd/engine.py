@@ -6,6 +6,7 @@ import time
 import numpy as np
 from numba import config
 
+from asemd import atom_shares
 from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
@@ -203,7 +204,7 @@ class Engine:
             hide = None if self.expanded or self.sparse else partners
             self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel)
             if self.expanded:
-                self._mark(*self.list.expand(k, s, self.reach), self.list.shifts)
+                self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             if self.sparse:
                 nobody = (np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32))
                 self.rows = self.list.rows(k, s, self.ns, partners[:2] if partners is not None else nobody, self.parallel)
@@ -213,11 +214,11 @@ class Engine:
                 k.special_pairs(weighted, kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
         elif self.mode == "plain":
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
-            self._mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
+            self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
         self.moved[:] = 0.0
         for t in self.terms:
             t.rebuild(self)
-        self._arguments = None
+        self.thread_arguments = None
         self.builds += 1
         self.timings["Neigh"] += time.perf_counter() - began
 
@@ -243,7 +244,7 @@ class Engine:
                             f"[{box.lo[a]:g}, {box.hi[a]:g}] through a fixed boundary; use a shrink-wrapped boundary, a wall, "
                             "or a shorter time step", np.sort(rows[lost]))
 
-    def _mark(self, i, j, code, shifts) -> None:
+    def mark(self, i, j, code, shifts) -> None:
         """Keep a plain list, special pairs and exclusions marked."""
         s = self.state
         self.plain = self.exclusions.mark(self.k, s.x, s.row, i, j, code, shifts, self.cell, self.periodic)
@@ -258,9 +259,9 @@ class Engine:
 
     def arguments(self, tid: int) -> tuple:
         """Arguments of all terms for a thread."""
-        if self._arguments is None:
-            self._arguments = [tuple(t.arguments(self, i) for t in self.terms) for i in range(self.threads)]
-        return self._arguments[tid]
+        if self.thread_arguments is None:
+            self.thread_arguments = [tuple(t.arguments(self, i) for t in self.terms) for i in range(self.threads)]
+        return self.thread_arguments[tid]
 
     # ---- forces -------------------------------------------------------------------------------------------------------------------------
     def forces(self, energy: bool = True) -> None:
@@ -343,35 +344,7 @@ class Engine:
 
     def per_atom(self, result: Result) -> Result:
         """Add each atom's share of energy and virial to `result`; runs the per-atom kernels, once."""
-        n, capacity = self.system.n, self.state.x.shape[1]
-        if self.mode == "cluster" and not self.expanded:
-            self._mark(*self.list.expand(self.k, self.state, self.cutoff), self.list.shifts)
-        keep = (self.acc.copy(), self.buffers.copy())
-        self.atom_energy, self.atom_virial = np.zeros((self.threads, capacity)), np.zeros((self.threads, 6, capacity))
-        rows, slots = self.state.row[:self.ns], np.flatnonzero(self.state.row[:self.ns] >= 0)
-        for t in self.terms:
-            if isinstance(t, PairListTerm) and t.pairs == "special":
-                continue
-            if isinstance(t, (PairTerm, PairRowsTerm)):
-                t, index = PairListTerm(t.style, t.tables, t.style.parts, "all"), t.index
-                t.index = index
-                t.rebuild(self)
-            self.atom_energy[:] = 0.0
-            self.atom_virial[:] = 0.0
-            f = t.kernel(True, True)
-            for tid in range(self.threads):
-                f(*t.arguments(self, tid))
-            e, v = np.zeros(n), np.zeros((n, 6))
-            e[rows[slots]] = self.atom_energy.sum(0)[slots]
-            v[rows[slots]] = self.atom_virial.sum(0)[:, slots].T
-            result.energies_of[t.category] = result.energies_of.get(t.category, 0.0) + e
-            result.virials_of[t.category] = result.virials_of.get(t.category, 0.0) + v
-        self.acc[:], self.buffers[:] = keep
-        self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
-        self._arguments = None
-        result.energies = sum(result.energies_of.values(), np.zeros(n))
-        result.virials = sum(result.virials_of.values(), np.zeros((n, 6)))
-        return result
+        return atom_shares.add(self, result)
 
     def move(self, x: np.ndarray) -> None:
         """Forces at other positions of the same atoms in the same cell; keeps the list while nobody has moved by half the skin.

@@ -1,0 +1,48 @@
+"""Each atom's share of energy and virial, from kernels that are run for it."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asemd.result import Result
+from asemd.term import PairListTerm, PairRowsTerm, PairTerm
+
+if TYPE_CHECKING:
+    from asemd.engine import Engine
+
+
+def add(engine: Engine, result: Result) -> Result:
+    """Add `energies`, `virials` and their parts by category to the result of the engine's last evaluation.
+
+    The kernels for shares write energies and forces again, so these are put back as they were.
+    """
+    n, capacity = engine.system.n, engine.state.x.shape[1]
+    if engine.mode == "cluster" and not engine.expanded:
+        engine.mark(*engine.list.expand(engine.k, engine.state, engine.cutoff), engine.list.shifts)
+    keep = (engine.acc.copy(), engine.buffers.copy())
+    engine.atom_energy, engine.atom_virial = np.zeros((engine.threads, capacity)), np.zeros((engine.threads, 6, capacity))
+    rows, slots = engine.state.row[:engine.ns], np.flatnonzero(engine.state.row[:engine.ns] >= 0)
+    for t in engine.terms:
+        if isinstance(t, PairListTerm) and t.pairs == "special":
+            continue
+        if isinstance(t, (PairTerm, PairRowsTerm)):
+            t, index = PairListTerm(t.style, t.tables, t.style.parts, "all"), t.index
+            t.index = index
+            t.rebuild(engine)
+        engine.atom_energy[:] = 0.0
+        engine.atom_virial[:] = 0.0
+        f = t.kernel(True, True)
+        for tid in range(engine.threads):
+            f(*t.arguments(engine, tid))
+        e, v = np.zeros(n), np.zeros((n, 6))
+        e[rows[slots]] = engine.atom_energy.sum(0)[slots]
+        v[rows[slots]] = engine.atom_virial.sum(0)[:, slots].T
+        result.energies_of[t.category] = result.energies_of.get(t.category, 0.0) + e
+        result.virials_of[t.category] = result.virials_of.get(t.category, 0.0) + v
+    engine.acc[:], engine.buffers[:] = keep
+    engine.atom_energy, engine.atom_virial = np.zeros((engine.threads, 1)), np.zeros((engine.threads, 6, 1))
+    engine.thread_arguments = None
+    result.energies = sum(result.energies_of.values(), np.zeros(n))
+    result.virials = sum(result.virials_of.values(), np.zeros((n, 6)))
+    return result
