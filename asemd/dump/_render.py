@@ -13,8 +13,8 @@ from scipy.ndimage import gaussian_filter
 FAR = -1e30
 GAMMA = 2.2
 # direction towards the light, brightness
-LIGHTS = ((np.array([-0.45, -0.65, 0.75]), 0.75), (np.array([0.70, -0.10, 0.60]), 0.22), (np.array([0.10, 0.90, 0.30]), 0.10))
-AMBIENT = 0.16
+LIGHTS = ((np.array([-0.45, -0.65, 0.75]), 0.85), (np.array([0.70, -0.10, 0.60]), 0.22), (np.array([0.10, 0.90, 0.30]), 0.10))
+AMBIENT = 0.20
 
 
 @dataclass
@@ -50,7 +50,7 @@ class Look:
     background: np.ndarray
     shiny: float = 1.0
     occlusion: float = 0.0
-    fading: float = 0.45
+    fading: float = 0.4
     samples: int = 2
 
 

@@ -261,7 +261,9 @@ class Image(Dump):
         round_ = [np.concatenate([a, a]) if not self.atoms else np.concatenate([a[len(bars[0]):]] * 2) for a in (thick, paint)]
         objects = Objects(place(np.concatenate([view.x[shown], ends])), 0.5 * scale * np.concatenate([diameters[shown], round_[0]]),
                           np.concatenate([colours[shown], round_[1]]), place(start), place(end), 0.5 * scale * thick, paint)
-        return render(self.width, self.height, objects, Look(np.array(self.background), self.shiny, self.occlusion, samples=self.samples))
+        fading = 0.4 if np.mean(self.background) < 0.5 else 0.2     # a bright background swallows more
+        look = Look(np.array(self.background), self.shiny, self.occlusion, fading, self.samples)
+        return render(self.width, self.height, objects, look)
 
     def write_view(self, snapshot, step, view):
         from PIL import Image as Picture
