@@ -137,6 +137,9 @@ class Driver:
     def run(self) -> None:
         """Setup, steps, summary."""
         session, plan, scene = self.session, self.plan, self.scene
+        if session.dry:
+            session.drive(self)
+            return
         begin = scene.step
         loop = session.loop
         if plan.pre or loop is None:
@@ -191,33 +194,36 @@ class Driver:
     def _advance(self, begin: int, end: int) -> None:
         session, loop = self.session, self.session.loop
         rate, step = 0.0, begin
-        while step < end and not session.interrupted:
+        stopping = False
+        while step < end and not stopping:
             target = min(end, self._next_output(step))
             while step < target and not session.interrupted:
                 left = target - step
                 chunk = left if not session.watched else max(1, min(left, int(rate * CHUNK) if rate else 20))
-                if chunk == left:
-                    needs = self._needs(target, end)
-                    loop.advance(chunk, virial=True, energies="energies" in needs, virials="virials" in needs)
-                else:
-                    loop.advance(chunk, virial=False)
+                try:
+                    if chunk == left:
+                        needs = self._needs(target, end)
+                        loop.advance(chunk, virial=True, energies="energies" in needs, virials="virials" in needs)
+                    else:
+                        loop.advance(chunk, virial=False)
+                except KeyboardInterrupt:
+                    self.scene.step = loop.step
+                    restart.write_due(session, loop.step, checkpoint.renew(loop), all_of_them=True)
+                    raise
                 step += chunk
                 self.scene.step = step
                 rate = (step - begin) / max(time.perf_counter() - self.progress.started - self.output_seconds, 1e-9)
                 self._watch("update", step - begin)
             started = time.perf_counter()
-            saving = restart.due(session, step) or (session.interrupted and bool(self.scene.restarts))
-            early = session.interrupted and step < target       # between outputs energies are not computed
-            going_on = step < end or session.interrupted        # the next run begins afresh by itself
+            stopping = session.interrupted      # it may change at any moment
+            saving = restart.due(session, step) or (stopping and bool(self.scene.restarts))
+            early = stopping and step < target          # between outputs energies are not computed
+            going_on = step < end or stopping           # otherwise the next run begins afresh by itself
             alone = checkpoint.renew(loop) if early or (saving and going_on) else None
-            if early:
-                self._provide(step, step, fresh=True)
-                self._output(step, ends=True, dumps=True)
-            else:
-                self._provide(step, end, fresh=alone is not None)
-                self._output(step, ends=step == end or session.interrupted, dumps=session.interrupted)
+            self._provide(step, step if early else end, fresh=alone is not None)
+            self._output(step, ends=step == end or stopping, dumps=stopping)
             if saving:
-                restart.write_due(session, step, alone, all_of_them=session.interrupted)
+                restart.write_due(session, step, alone, all_of_them=stopping)
                 self.afresh = not going_on
             self.output_seconds += time.perf_counter() - started
 

@@ -124,7 +124,7 @@ def load(path: str) -> dict[str, Any]:
                 raise InputError(f"read_restart: {path} is {'no restart file' if start else 'empty'}: write_restart of asemd makes them")
             return _members(f, path)
     except (zipfile.BadZipFile, EOFError, KeyError, ValueError) as e:
-        raise InputError(f"read_restart: {path} is truncated or damaged ({' '.join(str(e).split())}): use an earlier restart file") from None
+        raise InputError(f"read_restart: {path} is truncated or damaged: use an earlier restart file ({e})") from None
     except OSError as e:
         raise InputError(f"read_restart: cannot open {path}: {e.strerror or e}") from None
 
