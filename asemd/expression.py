@@ -1,13 +1,14 @@
 """Formulas of the lepton styles: parsed, differentiated by one variable and written as source that compiles.
 
 The language is that of LAMMPS's lepton styles: ``+ - * / ^`` (``^`` groups to the right and binds tighter than the minus sign, which
-binds tighter than ``*``), functions, and definitions of intermediate values after semicolons. A formula keeps its shape, so the digits
-that its author saved stay saved (see `asemd.calculus`); whole powers become products. Constants become arguments of the function, so
-that formulas which differ only in numbers share one piece of code. Source: manual pages of bond_style lepton and pair_style lepton.
+binds tighter than ``*``), functions, and definitions of intermediate values after semicolons. The parser writes a program for
+`asemd.calculus`. Constants become arguments of the function, so that formulas which differ only in numbers share one piece of code.
+Source: manual pages of bond_style lepton and pair_style lepton.
 """
 from __future__ import annotations
 
 import math
+import operator
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,20 +16,65 @@ from functools import lru_cache
 
 import numpy as np
 
-from asemd.calculus import FUNCTIONS, OPERATIONS, Graph, Node, zbl
+from asemd.calculus import source_of
 from asemd.errors import InputError, nearest
 
 TOKEN = re.compile(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])")
 VARIABLE = re.compile(r"(?<![A-Za-z0-9_])v_(\w+)")
 ZBL = ("zbl energy", "zbl length")     # constants of the function zbl; it exists where they are given
 ARGUMENT = "x"      # the variable in the written source
+FUNCTIONS = dict.fromkeys("sqrt exp log sin cos sec csc tan cot asin acos atan sinh cosh tanh erf erfc step delta square cube recip abs "
+                          "floor ceil".split(), 1) | {"atan2": 2, "min": 2, "max": 2, "select": 3}      # and their numbers of arguments
+ARITHMETIC = {"add": operator.add, "sub": operator.sub, "mul": operator.mul, "div": np.divide, "neg": operator.neg, "pow": np.power}
+
+
+@dataclass(eq=False)
+class Node:
+    """A part of a formula: a `word` of the program, or (also) a constant `value`; `given`: the value may be another one later."""
+
+    word: str = ""
+    value: float | None = None
+    given: bool = False
+
+
+class Program:
+    """The operations of one formula in order, and the constants ``c0``, ``c1``, ... that they name."""
+
+    def __init__(self):
+        self.lines: dict[str, str] = {}     # operation: its word
+        self.constants: list[float] = []
+
+    def word(self, node: Node) -> str:
+        """What operations call the node; 1 stays 1, for ``1 - cos(x)`` and the like."""
+        if not node.word and node.value in (1.0, -1.0) and not node.given:
+            node.word = f"{node.value:.0f}"
+        if not node.word:
+            node.word = f"c{len(self.constants)}"
+            self.constants.append(node.value)
+        return node.word
+
+    def do(self, name: str, *args: Node) -> Node:
+        if name in ARITHMETIC and all(a.value is not None for a in args):
+            with np.errstate(all="ignore"):
+                value = float(ARITHMETIC[name](*(np.float64(a.value) for a in args)))
+            return Node(value=value, given=any(a.given for a in args))
+        words = [self.word(a) for a in args[:1]]
+        exponent = args[1].value if name == "pow" else None
+        if exponent is not None:        # exponents belong to the code
+            words.append(str(int(exponent)) if exponent == int(exponent) and abs(exponent) < 1000.0 else repr(exponent))
+            if abs(exponent) == 0.5:
+                root = self.do("sqrt", args[0])
+                return root if exponent > 0.0 else self.do("div", Node(value=1.0), root)
+        else:
+            words += [self.word(a) for a in args[1:]]
+        return Node(self.lines.setdefault(" ".join([name, *words]), f"t{len(self.lines)}"))
 
 
 class Parser:
     """Recursive descent over one formula without blanks; `start` is where it begins in `text`, `given` has values of names like v_k."""
 
-    def __init__(self, graph: Graph, text: str, start: int, names: Mapping[str, Node], late: set[str], given: Mapping[str, float]):
-        self.graph, self.text, self.names, self.late, self.given = graph, text, names, late, given
+    def __init__(self, program: Program, text: str, start: int, names: Mapping[str, Node], late: set[str], given: Mapping[str, float]):
+        self.do, self.text, self.names, self.late, self.given = program.do, text, names, late, given
         self.at, self.end = start, text.find(";", start) % (len(text) + 1)
         self.kind = self.token = ""
         self.advance()
@@ -58,29 +104,29 @@ class Parser:
     def sum(self) -> Node:
         node = self.product()
         while self.token and self.token in "+-":
-            operation = self.graph.add if self.token == "+" else self.graph.sub
+            operation = "add" if self.token == "+" else "sub"
             self.advance()
-            node = operation(node, self.product())
+            node = self.do(operation, node, self.product())
         return node
 
     def product(self) -> Node:
         node = self.signed()
         while self.token and self.token in "*/":
-            operation = self.graph.mul if self.token == "*" else self.graph.div
+            operation = "mul" if self.token == "*" else "div"
             self.advance()
-            node = operation(node, self.signed())
+            node = self.do(operation, node, self.signed())
         return node
 
     def signed(self) -> Node:
         if self.token == "-":
             self.advance()
-            return self.graph.neg(self.signed())
+            return self.do("neg", self.signed())
         negative = self.given.get(self.token, 0.0) < 0.0     # v_k^2 with k = -3 reads as -3^2
         node = self.primary()
         if self.token == "^":
             self.advance()
-            node = self.graph.power(node, self.signed())
-        return self.graph.neg(node) if negative else node
+            node = self.do("pow", node, self.signed())
+        return self.do("neg", node) if negative else node
 
     def primary(self) -> Node:
         token, begin = self.token, self.begin
@@ -88,7 +134,7 @@ class Parser:
             self.advance()
             if math.isinf(float(token)):
                 raise self.wrong(f"the number {token} is too large", begin)
-            return self.graph.number(float(token), begin)
+            return Node(value=float(token))
         if self.kind == "name":
             self.advance()
             return self.call(token, begin) if self.token == "(" else self.name(token, begin)
@@ -108,7 +154,7 @@ class Parser:
 
     def name(self, name: str, begin: int) -> Node:
         if name in self.given:
-            return self.graph.number(abs(self.given[name]), name)
+            return Node(value=abs(self.given[name]), given=True)
         if name in self.names:
             return self.names[name]
         if name in self.late:
@@ -121,7 +167,7 @@ class Parser:
         raise self.wrong(f"unknown name {name}{nearest(name, known)}", begin)
 
     def call(self, name: str, begin: int) -> Node:
-        functions = FUNCTIONS if ZBL[0] not in self.given else {**FUNCTIONS, "zbl": (3, self.zbl)}
+        functions = FUNCTIONS if ZBL[0] not in self.given else {**FUNCTIONS, "zbl": 3}
         if name not in functions:
             raise self.wrong(f"unknown function {name}{nearest(name, functions)}", begin)
         bracket, args = self.begin, []
@@ -129,13 +175,12 @@ class Parser:
             self.advance()
             args.append(self.sum())
         self.close(bracket)
-        count, make = functions[name]
+        count = functions[name]
         if len(args) != count:
             raise self.wrong(f"{name} needs {count} argument{'s' * (count != 1)}, got {len(args)}", begin)
-        return make(self.graph, *args)
-
-    def zbl(self, graph: Graph, *args: Node) -> Node:
-        return zbl(graph, *args, *(graph.number(self.given[name], name) for name in ZBL))
+        if name == "recip":
+            return self.do("div", Node(value=1.0), *args)
+        return self.do(name, *args, *(Node(value=self.given[k], given=True) for k in ZBL if name == "zbl"))
 
 
 def condense(text: str) -> str:
@@ -143,10 +188,10 @@ def condense(text: str) -> str:
     return re.sub(r"[\s'\"]", "", text)
 
 
-def parse(text: str, variable: str, given: Mapping[str, float]) -> tuple[Graph, Node]:
-    """The graph of a condensed expression and the node that is its value; `given` are the values of variables, ``{"v_k": 2.0}``."""
-    graph = Graph()
-    names: dict[str, Node] = {variable: graph.make("variable")}
+def parse(text: str, variable: str, given: Mapping[str, float]) -> Program:
+    """The program of a condensed expression, whose last line is its value; `given` are the values of variables, ``{"v_k": 2.0}``."""
+    program = Program()
+    names: dict[str, Node] = {variable: Node(ARGUMENT)}
     starts = [m.end() for m in re.finditer(";", text)]
     late = {text[s:].split("=")[0] for s in starts}
     try:
@@ -157,9 +202,12 @@ def parse(text: str, variable: str, given: Mapping[str, float]) -> tuple[Graph, 
             name, equals, _ = definition.partition("=")
             if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name):
                 raise InputError(f"expression {text!r}: after a semicolon comes a definition such as k=2, got {definition!r}")
-            names[name] = Parser(graph, text, start + len(name) + 1, names, late, given).formula()
+            names[name] = Parser(program, text, start + len(name) + 1, names, late, given).formula()
             late.discard(name)
-        return graph, Parser(graph, text, 0, names, late, given).formula()
+        # a formula that is one number or the variable has a program too
+        value = program.word(Parser(program, text, 0, names, late, given).formula())
+        program.lines[f"same {value}"] = ""
+        return program
     except RecursionError:
         raise InputError(f"expression {text!r} is nested too deeply") from None
 
@@ -222,33 +270,13 @@ def differentiate(text: str, variable: str, given: tuple[tuple[str, float], ...]
     InputError
         The expression cannot be read; the message says what is wrong where.
     """
-    graph, energy = parse(text, variable, dict(given))
-    slope = graph.slope(energy)
-    words: dict[Node, str] = {}
-    temporaries: dict[str, str] = {}
-    constants: list[float] = []
-
-    def keep(expression: str) -> str:
-        return temporaries.setdefault(expression, f"t{len(temporaries)}")
-
-    def whole_power(base: str, n: int) -> str:
-        if n == 1:
-            return base
-        half = whole_power(base, n // 2)
-        even = keep(f"{half} * {half}")
-        return keep(f"{even} * {base}") if n % 2 else even
-
-    for n in graph.under(energy, slope):
-        if n.op == "variable":
-            words[n] = ARGUMENT
-        elif n.op == "number":
-            if n.origin is None or n.value in (0.0, 1.0, -1.0) and not isinstance(n.origin, str):
-                words[n] = repr(n.value)
-            else:
-                words[n] = f"p{len(constants)}"
-                constants.append(n.value)
-        elif n.op == "ipow":
-            words[n] = whole_power(words[n.args[0]], int(n.args[1].value))
-        else:
-            words[n] = keep(OPERATIONS[n.op].text.format(*(words[a] for a in n.args)))
-    return Compiled(tuple(f"{name} = {text}" for text, name in temporaries.items()), words[energy], words[slope], tuple(constants))
+    program = parse(text, variable, dict(given))
+    try:
+        source = source_of(tuple(program.lines))
+    except RecursionError:
+        raise InputError(f"expression {text!r} is nested too deeply") from None
+    names = ", ".join(f"c{k}" for k in range(len(program.constants)))
+    lines = f"def constants({names}):\n    return ({''.join(f'{c}, ' for c in source.constants)})\n"
+    with np.errstate(all="ignore"):
+        values = compiled_function("constants", lines)(*map(np.float64, program.constants))
+    return Compiled(source.lines, source.energy, source.slope, tuple(map(float, values)))

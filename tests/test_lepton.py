@@ -2,6 +2,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 
 import mpmath
 import numpy as np
@@ -10,6 +13,7 @@ from both import asemd, assert_same, lammps
 from wheel import ask
 
 from asemd import style as registry
+from asemd.calculus import source_of
 from asemd.errors import InputError
 from asemd.expression import condense, differentiate, parse
 from asemd.kernels import bonded
@@ -91,6 +95,7 @@ EXACT = {
     "k*(r-0.25)^2;k=500.0": lambda x: 500 * (x - mpmath.mpf("0.25")) ** 2,
     "d*(1-exp(-a*r))^2;d=3.5;a=2.25": lambda x: mpmath.mpf("3.5") * (1 - mpmath.exp(-mpmath.mpf("2.25") * x)) ** 2,
     "-0.5*k*s^2*log(1-(r/s)^2);k=30;s=1.5": lambda x: -mpmath.mpf("33.75") * mpmath.log(1 - (x / mpmath.mpf("1.5")) ** 2),
+    "-0.5*k*s^2*log((1-r/s)*(1+r/s));k=30;s=1.5": lambda x: -mpmath.mpf("33.75") * mpmath.log(1 - (x / mpmath.mpf("1.5")) ** 2),
     "k*(1-cos(r))^2;k=2": lambda x: 2 * (1 - mpmath.cos(x)) ** 2,
     "k*tanh(4*r);k=2": lambda x: 2 * mpmath.tanh(4 * x),
     "log(1+r)^2": lambda x: mpmath.log(1 + x) ** 2,
@@ -108,6 +113,47 @@ def test_derivative_keeps_its_digits(text):
             slope, bend = (mpmath.diff(EXACT[text], mpmath.mpf(x), n) for n in (1, 2))
             bar = mpmath.mpf(2) ** -53 * (abs(bend * x) + 2 * abs(slope))
             assert abs(force + slope) < 8 * bar, (text, x, float(abs(force + slope) / bar))
+
+
+@pytest.mark.parametrize(("text", "want"), [
+    ("exp(r)-1", math.expm1), ("1-exp(-r)", lambda x: -math.expm1(-x)), ("log(1-r)", lambda x: math.log1p(-x)),
+    ("log(1-(2*r)^2)", lambda x: math.log1p(-4 * x * x)), ("1-erf(r)", math.erfc),
+    ("1-cos(r)", lambda x: 2 * math.sin(x / 2) ** 2), ("cos(r)-1", lambda x: -2 * math.sin(x / 2) ** 2)])
+def test_energy_keeps_its_digits(text, want):
+    for x in (1e-9, 1e-3, 0.3):
+        assert differentiate(text, "r").value(x) == pytest.approx(want(x), rel=4e-16)
+
+
+# ------------------------------------------------------------------ what sympy made is kept ---
+
+def test_known_formulas_do_without_sympy(tmp_path):
+    code = """if True:
+        import sys
+        from asemd.expression import differentiate
+        print(differentiate("k*r^2*exp(-k);k=3.5", "r"))
+        print(differentiate("k*r^2*exp(-k);k=4.5", "r").code == differentiate("k*r^2*exp(-k);k=3.5", "r").code)
+        print("sympy" in sys.modules)
+    """
+    out = [subprocess.run([sys.executable, "-c", code], env=os.environ | {"ASEMD_CACHE_DIR": str(tmp_path), "PYTHONHASHSEED": str(seed)},
+                          capture_output=True, text=True, check=True).stdout.splitlines() for seed in (1, 2)]
+    assert out[0][:2] == out[1][:2] and out[0][1:] == ["True", "True"] and out[1][2] == "False"
+    assert len(list(tmp_path.glob("expressions/*.json"))) == 1
+
+
+def test_a_spoilt_or_read_only_cache_is_no_harm(tmp_path, monkeypatch):
+    monkeypatch.setenv("ASEMD_CACHE_DIR", str(tmp_path))
+    want = source_of.__wrapped__(("mul x c0",))
+    file, = tmp_path.glob("expressions/*.json")
+    for text in ("", "[1]", "{}"):
+        file.write_text(text)
+        assert source_of.__wrapped__(("mul x c0",)) == want
+    monkeypatch.setenv("ASEMD_CACHE_DIR", str(file / "below"))
+    assert source_of.__wrapped__(("mul x c0",)) == want
+
+
+@pytest.mark.parametrize("text", ["1/(r-r)", "sqrt(-r^2)", "log(-1-r^2)", "1/0+r", "(-1)^0.5*r", "asin(2)+r"])
+def test_nowhere_defined(text):
+    assert not math.isfinite(differentiate(text, "r").value(0.5))
 
 
 # ------------------------------------------------------------------ one piece of code for many types ---
@@ -294,7 +340,7 @@ def test_settings():
 
 
 def test_long_sums_and_shared_definitions_are_no_burden():
-    graph, _ = parse("+".join(f"r^{k % 7}" for k in range(2000)), "r", {})
-    assert len(graph.nodes) < 5000
+    program = parse("+".join(f"r^{k % 7}" for k in range(2000)), "r", {})
+    assert len(program.lines) < 5000
     chain = "a0;" + ";".join(f"a{k}=a{k + 1}*a{k + 1}" for k in range(60)) + ";a60=r/r"
     assert math.isclose(differentiate(chain, "r").value(0.5), 1.0)

@@ -25,6 +25,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from asemd.cache_folder import cache_folder
+
 PACKAGE = "asemd_kernels"
 FAST = "{'contract', 'reassoc', 'nsz', 'arcp'}"
 LIMIT_BYTES = 512 * 2**20
@@ -35,12 +37,7 @@ def cache_dir() -> Path:
     """The folder of generated modules: ``ASEMD_CACHE_DIR``, else the user's cache folder, else (unwritable) a temporary one."""
     global _dir
     if _dir is None or not _dir.is_dir():
-        wanted = os.environ.get("ASEMD_CACHE_DIR")
-        if not wanted:
-            home = os.environ.get("XDG_CACHE_HOME") or (os.environ.get("LOCALAPPDATA") if os.name == "nt" else None) \
-                or (Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache"))
-            wanted = Path(home) / "asemd"
-        path = Path(wanted) / PACKAGE
+        path = cache_folder() / PACKAGE
         try:
             path.mkdir(parents=True, exist_ok=True)
             with tempfile.NamedTemporaryFile(dir=path):
