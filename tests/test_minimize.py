@@ -73,6 +73,9 @@ CASES = {
     "cg norm inf": ("cg", "0 1e-3 1000 1000", "norm inf dmax 0.01", True, 0.005, 1),
     "cg backtrack": ("cg", "0 1e-6 20 10000", "line backtrack", True, 0.005, 1),
     "sd": ("sd", "1e-6 1e-8 100 10000", "", True, 0.005, 1),
+    "quickmin": ("quickmin", "0 1e-6 150 10000", "", True, 0.005, 1),
+    "quickmin energy": ("quickmin", "1e-3 0 1000 50", "norm max dmax 0.01", True, 0.005, 1),
+    "quickmin long step": ("quickmin", "0 1e-4 60 5000", "", False, 0.05, 4),
     "fire": ("fire", "0 1e-6 1000 10000", "", True, 0.005, 1),
     "fire energy": ("fire", "1e-6 0 1000 5000", "norm max halfstepback no initialdelay no", True, 0.005, 1),
     "fire verlet": ("fire", "0 1e-3 1000 10000", "integrator verlet", False, 0.005, 1),
@@ -197,7 +200,7 @@ def test_callback_and_interruption():
     def stop(iteration, x, v, energy, forces):
         calls.append(iteration)
         return iteration == 5
-    for style in ("cg", "sd", "fire"):
+    for style in ("cg", "sd", "fire", "quickmin"):
         calls.clear()
         result = minimized(style, "0 1e-12 100 10000", callback=stop)
         assert calls == [1, 2, 3, 4, 5] and result.criterion == "interrupted" and result.iterations == 5 and not result.converged

@@ -35,6 +35,8 @@ FORMS = {
     "image": "set group g image 1 -2 NULL\nset atom 4 image NULL NULL 3",
     "fraction": "set type 1 type/fraction 3 0.3 12345\nset group all type/fraction 2 0.5 99",
     "fraction all": "set group all type/fraction 2 1.0 7",
+    "ratio": "set type 1 type/ratio 3 0.3 12345\nset group all type/ratio 2 0.5 99",
+    "subset": "set type 1 type/subset 3 17 12345\nset region left type/subset 2 1 99",
     "none": "set atom 9999 x 1",
 }
 
@@ -70,7 +72,7 @@ def test_bonded_types():
     ("set atom 1 type 4", "valid range 1 to 3"), ("set type 4 x 1", "valid range"), ("set atom 1 typ 1", "did you mean type"),
     ("set atm 1 type 1", "did you mean atom"), ("set atom 1", "keyword"), ("set atom 1 x", "1 value"), ("set atom 1 x y", "number"),
     ("set atom 1 x nan", "finite"), ("set group nope x 1", "unknown group"), ("set region nope x 1", "unknown region"),
-    ("set atom 1 diameter 2", "not supported"), ("set atom 1 type/fraction 2 1.5 1", "from 0 to 1"),
+    ("set atom 1 diameter 2", "no diameter"), ("set atom 1 type/fraction 2 1.5 1", "from 0 to 1"),
     ("set atom 1 type/fraction 2 0.5 0", "seed"), ("set atom 1 mass 2", "mass command"), ("set atom 1 mol -1", "negative"),
     ("set atom 1 charge v_nope", "undefined"), ("set atom x type 1", "range"), ("set group all type v_even", "valid range"),
 ])
@@ -87,3 +89,42 @@ def test_properties_the_style_does_not_have():
             asemd(script + words)
     with pytest.raises(InputError, match="not periodic"):
         asemd("boundary f p p\n" + script + "image 1 0 0")
+
+
+SPHERES = """
+units lj
+atom_style sphere
+lattice fcc 0.8442
+region b block 0 2 0 2 0 2
+create_box 1 b
+create_atoms 1 box
+variable w atom id*0.1
+set atom 3*9 diameter 0.8
+set group all density 2.5 omega 1.5 v_w -0.2
+"""
+DISCS = SPHERES.replace("units lj", "units lj\ndimension 2").replace("fcc 0.8442", "hex 0.7").replace("0 2 0 2 0 2", "0 4 0 4 -0.5 0.5")
+DISCS += "set atom 4* density/disc 0.7\n"
+
+
+@pytest.mark.parametrize("script", [SPHERES, DISCS])
+def test_spheres(script):
+    ask = pytest.importorskip("wheel").ask
+    answer = ask("""
+lmp = start()
+for line in given["lines"]:
+    lmp.command(line)
+answer = {name: by_id(lmp, name) for name in ("rmass", "radius", "omega")}
+lmp.close()""", lines=script.splitlines())
+    system = asemd(script).scene.system
+    for name, ours in (("rmass", system.rmass), ("radius", system.extra["radius"]), ("omega", system.extra["omega"])):
+        assert abs(ours - answer[name]).max() < 1e-14, name
+
+
+@pytest.mark.parametrize("line, message", [
+    ("set group all type/ratio 2 1.5 7", "0 to 1"), ("set group all type/subset 2 109 7", "109 of 108"),
+    ("set group all type/subset 2 -1 7", "negative"),
+    ("set group all type/subset 2 5 0", "seed"), ("set group all omega 1 2 3", "no angular"), ("set group all omega 1 2", "3 values"),
+])
+def test_mistakes_of_new_keywords(line, message):
+    with pytest.raises(InputError, match=message):
+        asemd(ATOMS).execute(line)

@@ -30,8 +30,7 @@ PARTIAL = {
     ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
     ("command", "region"): "no moving regions, no variable radius",
     ("command", "run_style"): "only verlet",
-    ("command", "set"): "type type/fraction mol x y z vx vy vz charge dipole dipole/random diameter density mass image and types of bonds "
-                        "to impropers",
+    ("command", "set"): "keywords of the atom styles listed under atom",
     ("command", "special_bonds"): "no one/five",
     ("command", "thermo_modify"): "no triclinic/general",
     ("command", "write_data"): "no triclinic/general",

@@ -1,4 +1,4 @@
-r"""Energy minimisers on a plain function of positions. One minimiser, one file: ``cg``, ``sd``, ``fire``.
+r"""Energy minimisers on a plain function of positions. One minimiser, one file: ``cg``, ``sd``, ``fire``, ``quickmin``.
 
 A minimiser is a class with one static method::
 

@@ -5,12 +5,15 @@ import numpy as np
 
 from asemd.atom_style import volume
 from asemd.errors import InputError, nearest
+from asemd.marsaglia import Marsaglia
 from asemd.random import position_seeds, uniform_at
 from asemd.words import bounds, number, take, whole
 
 LARGEST = 2**62     # no id is above
-KEYWORDS = {"type": 1, "type/fraction": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1, "charge": 1, "mass": 1, "image": 3,
-            "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1, "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
+KEYWORDS = {"type": 1, "type/fraction": 3, "type/ratio": 3, "type/subset": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1,
+            "charge": 1, "mass": 1, "image": 3,
+            "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1,
+            "density/disc": 1, "omega": 3, "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
 
 
 def run(session, args):
@@ -64,9 +67,13 @@ class Setter:
             return self._items(key, values[0])
         if key == "type/fraction":
             return self._fraction(values)
+        if key in ("type/ratio", "type/subset"):
+            return self._subset(key, values)
+        if key == "omega":
+            return self._omega(values)
         if key in ("dipole", "dipole/random"):
             return self._dipole(key, values)
-        if key in ("diameter", "density"):
+        if key in ("diameter", "density", "density/disc"):
             return self._sphere(key, values[0])
         if key == "image":
             return self._image(values)
@@ -126,6 +133,28 @@ class Setter:
         self.system.type[chosen] = kind
         return len(chosen)
 
+    def _subset(self, key: str, values: list[str]) -> int:
+        """An exact number of the atoms, or an exact part of them."""
+        kind = self._type(values[0], "atom", self.system.counts["ntypes"])
+        amount = number(values[1], self.what) if key == "type/ratio" else whole(values[1], self.what)
+        if amount < 0 or (key == "type/ratio" and amount > 1.0):
+            limits = "the part must be from 0 to 1" if key == "type/ratio" else "the number must not be negative"
+            raise InputError(f"{self.what}: {limits}, got {values[1]}")
+        seed = whole(values[2], f"{self.what}: seed")
+        if not 0 < seed <= 900_000_000:
+            raise InputError(f"{self.what}: the seed must be from 1 to 900000000, got {values[2]}")
+        count = int(amount * len(self.rows)) if key == "type/ratio" else amount
+        if count > len(self.rows):
+            raise InputError(f"{self.what}: {count} of {len(self.rows)} selected atoms are wanted")
+        self.system.type[self.rows[Marsaglia(seed).subset(len(self.rows), count)]] = kind
+        return count
+
+    def _omega(self, values: list[str]) -> int:
+        if "omega" not in self.system.extra:
+            raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no angular velocities")
+        self.system.extra["omega"][self.rows] = np.column_stack([self._values(word) for word in values])
+        return len(self.rows)
+
     def _dipole(self, key: str, values: list[str]) -> int:
         if "mu" not in self.system.extra:
             raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no dipoles")
@@ -147,10 +176,15 @@ class Setter:
         extra, new = self.system.extra, self._values(word)
         if "radius" not in extra:
             raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no {key}")
-        if (new < 0.0).any() or (key == "density" and (new == 0.0).any()):
-            raise InputError(f"{self.what}: a {key} must be {'positive' if key == 'density' else '0 or more'}, got {word}")
+        if (new < 0.0).any() or (key != "diameter" and (new == 0.0).any()):
+            raise InputError(f"{self.what}: a {key} must be {'0 or more' if key == 'diameter' else 'positive'}, got {word}")
         if key == "diameter":
             extra["radius"][self.rows] = 0.5 * new
+        elif key == "density/disc":
+            if self.system.dimension == 3:
+                raise InputError(f"{self.what} is for 2d simulations only: use density")
+            radius = extra["radius"][self.rows]
+            self.system.rmass[self.rows] = new * np.where(radius > 0.0, np.pi * radius**2, 1.0)
         else:
             self.system.rmass[self.rows] = new * volume(extra["radius"][self.rows])
         return len(self.rows)
