@@ -5,7 +5,7 @@ Sections are parsed in bulk; only when that fails are their lines looked at one 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -47,7 +47,7 @@ class DataFile:
 
 def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
               dimension: int = 3, extra: dict[str, int] | None = None, onto: System | None = None,
-              shift: Sequence[float] = (0.0, 0.0, 0.0)) -> DataFile:
+              shift: Sequence[float] = (0.0, 0.0, 0.0), progress: Callable[[int, int], None] | None = None) -> DataFile:
     """Read a data file (``.gz``: compressed).
 
     Parameters
@@ -60,6 +60,8 @@ def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "ful
         What the atoms will be added to: its box is extended by that of the file.
     shift : (3,) float
         Added to coordinates and box bounds.
+    progress : callable, optional
+        Told from time to time how many lines are read, and how many there are.
 
     Returns
     -------
@@ -77,17 +79,18 @@ def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "ful
     """
     if not atom_styles.known(atom_style):
         raise InputError(f"read_data: atom_style {atom_style} is not supported; use one of {' '.join(atom_styles.NAMES)}")
-    return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float)).read()
+    return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float), progress).read()
 
 
 class _Reader(DataText):
     """The values of one file, section by section."""
 
-    def __init__(self, path, units, atom_style, boundary, dimension, extra, onto, shift):
+    def __init__(self, path, units, atom_style, boundary, dimension, extra, onto, shift, progress):
         super().__init__(path, atom_style)
         self.units, self.boundary, self.dimension = units, boundary, dimension
         self.extra, self.onto, self.shift = extra, onto, shift
         self.labels: dict[str, dict[int, str]] = {}
+        self.told = progress and (lambda line: progress(line, len(self.lines)))
 
     # ---- the whole file
     def read(self) -> DataFile:
@@ -153,7 +156,7 @@ class _Reader(DataText):
         s = self.sections[section]
         try:
             values, where = parse_table(self.lines, s.first, s.last, columns, {c: KIND_OF[c] for c in (*columns, *optional)}, optional,
-                                        self.labels.get(kind, {}))
+                                        self.labels.get(kind, {}), self.told)
         except InputError as e:
             style = f" (atom_style {self.atom_style})" if section == "Atoms" else ""
             raise self.fail(f"{section} section: {e.message}{style}", e.line) from None

@@ -3,19 +3,20 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.data_lines import BLOCK, Lines
 
 WHOLE = re.compile(r"[+-]?\d+")
 REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
 
 
-def parse_table(lines: Sequence[str], first: int, last: int, columns: Sequence[str], kinds: Mapping[str, str], optional: Sequence[str],
-                labels: Mapping[int, str]) -> tuple[dict[str, np.ndarray], Callable[[int], int]]:
+def parse_table(lines: Lines, first: int, last: int, columns: Sequence[str], kinds: Mapping[str, str], optional: Sequence[str],
+                labels: Mapping[int, str], done: Callable[[int], None] | None = None) -> tuple[dict[str, np.ndarray], Callable[[int], int]]:
     """The columns of ``lines[first:last]``; blank lines and comments (``#``) do not count.
 
     Parameters
@@ -26,6 +27,8 @@ def parse_table(lines: Sequence[str], first: int, last: int, columns: Sequence[s
         Column -> ``real``, or ``type`` (a number or a label), or any other word for whole numbers.
     labels : mapping
         Type -> label.
+    done : callable, optional
+        Told from time to time how many lines are read.
 
     Returns
     -------
@@ -51,11 +54,18 @@ def parse_table(lines: Sequence[str], first: int, last: int, columns: Sequence[s
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")       # numpy would read 1.0 as a whole number
-            table = np.loadtxt(lines[start:last], dtype=dtype, comments="#", ndmin=1)
+            table = np.loadtxt(_each(lines, start, last, done), dtype=dtype, comments="#", ndmin=1)
         values = {c: np.ascontiguousarray(table[c]) for c in columns}
     except (ValueError, DeprecationWarning, OverflowError):
         values = _slowly(lines, content(), columns, kinds, optional, labels)
     return values, lambda row: content()[row]
+
+
+def _each(lines, first: int, last: int, done) -> Iterator[str]:
+    for k, block in enumerate(lines.blocks(first, last)):
+        yield from block
+        if done is not None:
+            done(min(last, first + (k + 1) * BLOCK))
 
 
 def _slowly(lines, rows, columns, kinds, optional, labels) -> dict[str, np.ndarray]:

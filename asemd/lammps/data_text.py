@@ -1,10 +1,8 @@
 """The outline of a LAMMPS data file: its lines, the header, where each section begins and ends, and whether both belong together."""
 from __future__ import annotations
 
-import gzip
 import os
 import warnings
-import zlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,25 +10,7 @@ import numpy as np
 from asemd.atom_style import bonded
 from asemd.errors import InputError, InputWarning, Where, nearest
 from asemd.lammps.data_format import COEFFS, HEADER, LABELS, REAL_HEADER, SECTIONS, TOPOLOGY, UNSUPPORTED
-
-
-def _lines(path: str | os.PathLike) -> list[str]:
-    path = os.fspath(path)
-    try:
-        with (gzip.open if path.endswith(".gz") else open)(path, "rb") as f:
-            raw = f.read()
-    except FileNotFoundError:
-        raise InputError(f"read_data: file {path} not found") from None
-    except (EOFError, zlib.error, gzip.BadGzipFile) as e:
-        raise InputError(f"read_data: {path} is not a complete gzip file: {e}") from None
-    except OSError as e:
-        raise InputError(f"read_data: cannot read {path}: {e.strerror or e}") from None
-    if b"\0" in raw:
-        raise InputError(f"read_data: {path} is not a text file")
-    text = raw.decode("utf-8-sig", "replace").replace("\r\n", "\n").replace("\r", "\n")
-    if not text.strip():
-        raise InputError(f"read_data: {path} is empty")
-    return text.split("\n")
+from asemd.lammps.data_lines import read_lines
 
 
 @dataclass
@@ -47,14 +27,14 @@ class DataText:
 
     Attributes
     ----------
-    lines : list of str
+    lines : Lines
     header : dict
         Header line -> its numbers; `header_line` has the index of the line.
     sections : dict of str to Section
     """
 
     def __init__(self, path: str | os.PathLike, atom_style: str):
-        self.path, self.lines, self.atom_style = os.fspath(path), _lines(path), atom_style
+        self.path, self.lines, self.atom_style = os.fspath(path), read_lines(path), atom_style
         self.header: dict[str, list[float]] = {}
         self.header_line: dict[str, int] = {}
         self.sections: dict[str, Section] = {}
@@ -100,7 +80,7 @@ class DataText:
     def read_sections(self, start: int) -> None:
         """Find the headings."""
         current = None
-        for i in (k for k in range(start, len(self.lines)) if self.lines[k].lstrip()[:1].isalpha()):
+        for i in self.lines.beginning_with_letters(start).tolist():
             text, _, hint = self.lines[i].partition("#")
             name = " ".join(text.split())
             if name not in SECTIONS:

@@ -4,22 +4,24 @@ from __future__ import annotations
 import gzip
 import os
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
 from asemd import atom_style as atom_styles
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
-from asemd.lammps.data_format import COEFFS, LABELS, TOPOLOGY
+from asemd.lammps.data_format import COEFFS, IMAGE, LABELS, TOPOLOGY
 from asemd.system import LABELLED, System
 
+BLOCK = 1 << 14     # lines that are written together
 MARKS = {category: {mark: name for name, (c, mark) in COEFFS.items() if c == category and mark}
          for category in ("angle", "dihedral", "improper")}
 
 
 def write_data(path: str | os.PathLike, system: System, interactions: Interactions | None = None, *, pair: str = "ii",
-               types: str = "numeric", labels: bool = True) -> None:
+               types: str = "numeric", labels: bool = True,
+               progress: Callable[[int, int], None] | None = None) -> None:
     """Write a data file; a path ending in ``.gz`` is compressed.
 
     Parameters
@@ -34,6 +36,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         ``numeric``, or ``labels``: type labels instead of numbers in Masses, Atoms, Bonds, ...
     labels : bool
         Whether sections of type labels are written.
+    progress : callable, optional
+        Told from time to time how many lines are written, and how many there are.
 
     Raises
     ------
@@ -51,11 +55,13 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
     if types == "labels" and not labels:
         raise InputError("write_data: types labels needs the sections of type labels")
-    text = "\n".join(_file(_lammps_frame(system), interactions, pair, types, labels)) + "\n"
+    parts = _file(_lammps_frame(system), interactions, pair, types, labels, progress)
     path = os.fspath(path)
     try:
         with (gzip.open if path.endswith(".gz") else open)(path, "wt", encoding="utf-8") as f:
-            f.write(text)
+            for part in parts:
+                f.write(part)
+                f.write("\n")
     except OSError as e:
         raise InputError(f"write_data: cannot write {path}: {e.strerror or e}") from None
 
@@ -71,7 +77,7 @@ def _lammps_frame(system: System) -> System:
     return out
 
 
-def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool) -> Iterator[str]:
+def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool, progress) -> Iterator[str]:
     units = "" if s.units == "ase" else f", units = {s.units}"
     yield f"LAMMPS data file written by asemd, timestep = {s.step}{units}"
     yield ""
@@ -97,16 +103,18 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         yield from _section("Masses", (f"{names['atom'][t]} {m!r}" for t, m in enumerate(s.mass[1:].tolist(), 1)))
     if interactions is not None:
         yield from _coefficients(interactions, s, pair)
+    told = _Told(progress, 2 * s.n + sum(len(atoms) for _, atoms, _ in s.topology))
     if s.n:
-        yield from _section(f"Atoms # {s.atom_style.split()[0]}", _atoms(s, names["atom"]))
+        yield from _section(f"Atoms # {s.atom_style.split()[0]}", _table(_atoms(s), {"type": names["atom"]}, told))
         v = np.hstack([s.v, s.extra["omega"]]) if atom_styles.has(s.atom_style, "diameter") else s.v
-        yield from _section("Velocities", (f"{i} {' '.join(map(repr, values))}" for i, values in zip(s.id.tolist(), v.tolist())))
+        yield from _section("Velocities", _table({"id": s.id, **dict(enumerate(v.T))}, {}, told))
     for section, kind in TOPOLOGY.items():
         atoms, item_types = s.topology.items(kind)
-        atoms, item_types = atoms[item_types != 0], np.abs(item_types[item_types != 0])     # turned off ones as if they were on
+        on = item_types != 0
+        atoms, item_types = atoms[on], np.abs(item_types[on])       # turned off ones as if they were on
         if len(atoms):
-            yield from _section(section, (f"{k} {names[kind][t]} {' '.join(map(str, ids))}" for k, (t, ids) in
-                                          enumerate(zip(item_types.tolist(), s.id[atoms].tolist()), 1)))
+            columns = {"number": np.arange(1, len(atoms) + 1), "type": item_types, **dict(enumerate(s.id[atoms].T))}
+            yield from _section(section, _table(columns, {"type": names[kind]}, told))
 
 
 def _count(s: System, kind: str) -> int:
@@ -120,15 +128,36 @@ def _section(heading: str, lines: Iterable[str]) -> Iterator[str]:
     yield from lines
 
 
-def _atoms(s: System, names: dict[int, str]) -> Iterator[str]:
-    known = {"id": s.id, "molecule": s.molecule, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T))}
+class _Told:
+    """Counts lines for the one who waits."""
+
+    def __init__(self, progress, total: int):
+        self.progress, self.total, self.done = progress, total, 0
+
+    def add(self, lines: int) -> None:
+        self.done += lines
+        if self.progress is not None:
+            self.progress(self.done, self.total)
+
+
+def _table(columns: dict[object, np.ndarray], names: dict[str, dict[int, str]], told: _Told) -> Iterator[str]:
+    """Rows of numbers, many lines at a time; real numbers with all their digits, `names` instead of the numbers of some columns."""
+    form = " ".join("%s" if c in names else "%r" for c in columns)
+    n = len(next(iter(columns.values())))
+    for k in range(0, n, BLOCK):
+        block = [values[k:k + BLOCK].tolist() for values in columns.values()]
+        block = [[names[c][t] for t in values] if c in names else values for c, values in zip(columns, block)]
+        yield "\n".join([form % row for row in zip(*block)])
+        told.add(len(block[0]))
+
+
+def _atoms(s: System) -> dict[str, np.ndarray]:
+    known = {"id": s.id, "molecule": s.molecule, "type": s.type, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T))}
     if "mu" in s.extra:
         known |= dict(zip(atom_styles.DIPOLE, s.extra["mu"].T))
     if "radius" in s.extra:
         known |= {"diameter": 2.0 * s.extra["radius"], "density": s.atom_masses() / atom_styles.volume(s.extra["radius"])}
-    columns = [[names[t] for t in s.type.tolist()] if c == "type" else map(repr, known[c].tolist())
-               for c in atom_styles.columns(s.atom_style)]
-    return map(" ".join, zip(*columns, *(map(str, flags) for flags in s.image.T.tolist())))
+    return {c: known[c] for c in atom_styles.columns(s.atom_style)} | dict(zip(IMAGE, s.image.T))
 
 
 def _coefficients(interactions: Interactions, s: System, pair: str) -> Iterator[str]:

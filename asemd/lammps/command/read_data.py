@@ -41,9 +41,9 @@ def run(session, args):
     if old is None and options.add:
         raise InputError("read_data add: there is no simulation box to add to")
     session.print("Reading data file ...")
-    with warnings.catch_warnings(record=True) as caught:
+    with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
         warnings.simplefilter("always", InputWarning)
-        data = read_data(path, scene.units, scene.atom_style, scene.boundary, scene.dimension, options.extra, old, options.shift)
+        data = read_data(path, scene.units, scene.atom_style, scene.boundary, scene.dimension, options.extra, old, options.shift, progress)
     for warning in caught:
         session.warn(str(warning.message))
     if old is None:

@@ -30,8 +30,8 @@ def run(session, args):
             raise InputError("write_data triclinic/general is not supported: the file has LAMMPS's frame")
         elif key != "nofix":       # no fix of asemd writes to data files
             raise InputError(f"write_data: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
-    with warnings.catch_warnings(record=True) as caught:
+    with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
         warnings.simplefilter("always", InputWarning)
-        write_data(path, system, scene.interactions if coeffs else None, **options)
+        write_data(path, system, scene.interactions if coeffs else None, progress=progress, **options)
     for warning in caught:
         session.warn(str(warning.message))
