@@ -23,6 +23,7 @@ COMMANDS: dict[str, str] = {
     "plan": "asemd.cli_inspect:plan",
     "styles": "asemd.cli_inspect:styles",
     "doctor": "asemd.cli_inspect:doctor",
+    "convert": "asemd.cli_convert:convert",
 }
 INTERRUPTED = 130
 
@@ -76,7 +77,7 @@ def take_switches(words: list[str]) -> tuple[list[str], Switches]:
     """Split a command line into what typer reads and LAMMPS's own switches."""
     rest: list[str] = []
     taken: list[str] = []
-    names = {*lammps_switches.SHORT, *lammps_switches.SHORT.values(), "compat"}
+    names = {*lammps_switches.SHORT, *lammps_switches.KNOWN}
     i = 0
     while i < len(words):
         end = i + 1
@@ -122,9 +123,11 @@ def run(context: typer.Context,
         log: Annotated[str | None, typer.Option(help="Log file, none for none.")] = None,
         quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing; the log is written all the same.")] = False,
         compat: Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")] = None,
+        dry: Annotated[bool, typer.Option("--dry", help="Read and bind all commands, report all problems, compute nothing.")] = False,
+        safe: Annotated[bool, typer.Option("--safe", help="For scripts from strangers: no shell, no python, no writing outside.")] = False,
         import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
         ) -> int:
-    """Run a LAMMPS input script (LAMMPS's -var -in -log -echo -screen -nocite -sf -pk are accepted)."""
+    """Run a LAMMPS input script (- is standard input; LAMMPS's switches such as -var -in -log -echo -screen -sf are accepted)."""
     from asemd.lammps.session import Session, Stop
     options: Switches = context.obj or Switches()
     options.threads, options.cap = threads, steps_cap
@@ -135,8 +138,14 @@ def run(context: typer.Context,
         options.log = log
     import_files(import_)
     path = script or options.input
-    if path is None:
-        raise InputError("asemd run needs a script: asemd run in.file (give the script before -var, or with -in)")
+    if path is None and not options.convert:
+        raise InputError("asemd run needs a script: asemd run in.file, or - for standard input (give it before -var, or with -in)")
+    options.safe = safe
+    if safe:
+        from asemd.lammps.safety import guard
+        guard(os.getcwd())
+    if dry:
+        return rehearse(path, options)
     if quiet:
         options.screen = "none"
     watcher = make_watcher(options.screen is not None)
@@ -146,7 +155,10 @@ def run(context: typer.Context,
     with interruptible(session), warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)       # printed as WARNING already
         try:
-            session.file(path)
+            if options.convert:
+                session.commands("\n".join(options.convert))
+            else:
+                session.file(path)
         except Stop as stop:
             status = stop.status
         except KeyboardInterrupt:
@@ -161,6 +173,22 @@ def run(context: typer.Context,
             raise
     session.close()
     return complain("interrupted", INTERRUPTED) if status == INTERRUPTED else status
+
+
+def rehearse(path: str | None, options: Switches) -> int:
+    """``--dry``: print every problem of a script; returns the exit status."""
+    from asemd.lammps.dry import DrySession
+    if path is None:
+        raise InputError("--dry needs a script")
+    session = DrySession(options)
+    session.rehearse(path)
+    for note in session.notes:
+        print(f"WARNING: {note}")
+    for problem in session.problems:
+        complain(str(problem))
+    count = len(session.problems)
+    print(f"{path}: {count} problem{'s' * (count != 1)}" if count else f"{path}: no problems found")
+    return 1 if count else 0
 
 
 def import_files(paths: Sequence[str] | None) -> None:
@@ -203,11 +231,11 @@ class Watcher:
         sys.stdout.write(text)
         sys.stdout.flush()
 
-    def start(self, steps: int) -> None:
-        """A run of that many steps begins."""
+    def start(self, steps: int, unit: str = "steps") -> None:
+        """Something of that many steps (or lines of a file) begins."""
 
     def update(self, done: int) -> None:
-        """That many steps are done."""
+        """That many are done."""
 
     def stop(self) -> None:
         """The run is over."""
@@ -228,10 +256,11 @@ class Bar(Watcher):
         else:
             self.console.print(text, end="")
 
-    def start(self, steps: int) -> None:
+    def start(self, steps: int, unit: str = "steps") -> None:
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
         if steps > 0:
-            self.progress = Progress(BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[rate]} steps/s"), TimeRemainingColumn(),
+            rate = TextColumn("{task.fields[rate]} " + f"{unit}/s")
+            self.progress = Progress(BarColumn(), TaskProgressColumn(), rate, TimeRemainingColumn(),
                                      console=self.console, transient=True)
             self.task = self.progress.add_task("run", total=steps, rate="-")
             self.progress.start()

@@ -48,6 +48,10 @@ class InputError(AsemdError):
         return self
 
 
+class NotYet(InputError):
+    """A quantity that is known once a run has begun."""
+
+
 class InputWarning(UserWarning):
     """Something in the input that is probably not meant; the run goes on."""
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from asemd.errors import InputError, nearest
+from asemd.errors import InputError, NotYet, nearest
 
 
 @dataclass
@@ -53,7 +53,7 @@ class Moment:
     @property
     def snapshot(self):
         if self._snapshot is None:
-            raise InputError("energies, forces and computes are not known before the first run: use run 0")
+            raise NotYet("energies, forces and computes are not known before the first run: use run 0")
         return self._snapshot
 
     def _get(self, kind: str, id: str) -> Any:
@@ -63,7 +63,7 @@ class Moment:
             compute, snapshot = self.scene.computes[id], self.snapshot
             for need in compute.needs & {"energies", "virials"}:
                 if getattr(snapshot.result, need) is None:
-                    raise InputError(f"compute {id} was not evaluated on step {snapshot.step}: run 0 first, or use it in thermo or a dump")
+                    raise NotYet(f"compute {id} was not evaluated on step {snapshot.step}: run 0 first, or use it in thermo or a dump")
             self._cache[kind, id] = getattr(compute, kind)(snapshot)
         return self._cache[kind, id]
 

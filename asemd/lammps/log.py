@@ -30,6 +30,7 @@ class Log:
     def __init__(self, path: str | None = None, screen: Callable[[str], None] | None = None, echo: str = "log"):
         self.screen, self.file, self.path = screen, None, None
         self.set_echo(echo)
+        self.unbuffered = False
         self.started = time.time()
         self.warnings, self.max_warnings = 0, 100
         if path and path != "none":
@@ -67,6 +68,8 @@ class Log:
     def to_file(self, text: str) -> None:
         if self.file:
             self.file.write(text)
+            if self.unbuffered:
+                self.file.flush()
 
     def to_screen(self, text: str) -> None:
         if self.screen:

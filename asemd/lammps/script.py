@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -48,7 +49,7 @@ class Problems(InputError):
 
 
 def read(path: str | os.PathLike) -> list[Command]:
-    """The commands of a script file, blank lines included.
+    """The commands of a script file, or of standard input for ``-``; blank lines are included.
 
     Raises
     ------
@@ -56,10 +57,13 @@ def read(path: str | os.PathLike) -> list[Command]:
         The file cannot be read.
     """
     try:
-        with open(path, encoding="utf-8-sig", errors="replace") as f:      # a byte order mark is no word
-            text = f.read()
-    except OSError as e:
-        raise InputError(f"cannot open input script {os.fspath(path)}: {e.strerror}") from None
+        if path == "-":
+            text = sys.stdin.read()
+        else:
+            with open(path, encoding="utf-8-sig", errors="replace") as f:      # a byte order mark is no word
+                text = f.read()
+    except (OSError, ValueError) as e:
+        raise InputError(f"cannot open input script {os.fspath(path)}: {getattr(e, 'strerror', None) or e}") from None
     return parse(text, os.fspath(path))
 
 

@@ -20,6 +20,7 @@ from asemd.scene import Scene
 from asemd.variable import Variables
 
 NESTING = 16
+LARGE = 200_000     # lines of a file that take so long that a progress bar is shown
 BEFORE_BOX = ("units", "boundary", "atom_style", "dimension", "processors", "package")
 ACTIONS = ("run", "minimize", "rerun")
 
@@ -56,6 +57,8 @@ class Session:
         Set it to True to end the current run after the segment it is in.
     """
 
+    dry = False      # whether runs are only checked
+
     def __init__(self, scene: Scene | None = None, switches: Switches | None = None,
                  screen: Callable[[str], None] | None = None, passive: bool = False):
         self.switches = switches or Switches()
@@ -64,6 +67,7 @@ class Session:
         if screen is None and self.switches.screen != "none" and not passive:
             screen = to_stdout if self.switches.screen is None else _to_file(self.switches.screen)
         self.log = Log(None if passive else self.switches.log, None if passive else screen, self.switches.echo)
+        self.log.unbuffered = self.switches.nonbuf
         self.variables = Variables(Providers(self))
         for name, values in self.switches.variables:
             self.variables.define(name, "index", values)
@@ -139,7 +143,7 @@ class Session:
             raise catalog.unknown("command", name)
         if name in BEFORE_BOX and self.scene.system is not None:
             raise InputError(f"{name} command after simulation box is defined: move it before read_data or create_box")
-        if self.passive and name in ACTIONS:
+        if self.passive and name in ACTIONS and not self.dry:
             self.scene.need_system(name)
             raise Stop
         importlib.import_module(f"asemd.lammps.command.{name}").run(self, list(args))
@@ -197,6 +201,24 @@ class Session:
     def watched(self) -> bool:
         """Whether somebody looks at the progress of runs."""
         return self.observer is not None
+
+    @contextmanager
+    def progress(self, unit: str):
+        """A function of how much is done and of how much, which shows a bar where there is a terminal; nothing for small files."""
+        observer, begun = self.observer, False
+
+        def tell(done: int, total: int) -> None:
+            nonlocal begun
+            if total >= LARGE:
+                if not begun:
+                    begun = True
+                    observer.start(total, unit)
+                observer.update(done)
+        try:
+            yield tell if observer is not None else None
+        finally:
+            if begun:
+                observer.stop()
 
     def close_loop(self) -> None:
         """Forget the loop of the last run."""

@@ -6,8 +6,15 @@ from dataclasses import dataclass, field
 
 from asemd.errors import InputError, nearest
 
-SHORT = {"v": "var", "l": "log", "sc": "screen", "e": "echo", "nc": "nocite", "i": "in", "sf": "suffix", "pk": "package"}
-KNOWN = ("var", "log", "screen", "echo", "nocite", "in", "suffix", "package", "compat", "threads", "precision", "cap")
+SHORT = {"v": "var", "l": "log", "sc": "screen", "e": "echo", "nc": "nocite", "i": "in", "sf": "suffix", "pk": "package", "c": "cite",
+         "k": "kokkos", "nb": "nonbuf", "p": "partition", "pl": "plog", "ps": "pscreen", "r2data": "restart2data", "r2dump": "restart2dump",
+         "sr": "skiprun"}
+# switch -> least and largest number of values
+KNOWN: dict[str, tuple[int, int | None]] = {
+    "var": (2, None), "log": (1, 1), "screen": (1, 1), "echo": (1, 1), "nocite": (0, 0), "cite": (1, 1), "in": (1, 1), "suffix": (1, 3),
+    "package": (1, None), "kokkos": (1, None), "nonbuf": (0, 0), "partition": (1, None), "plog": (1, 1), "pscreen": (1, 1),
+    "skiprun": (0, 0), "restart2data": (2, None), "restart2dump": (4, None),
+    "compat": (1, 1), "threads": (1, 1), "precision": (1, 1), "cap": (1, 1)}
 
 
 @dataclass
@@ -21,6 +28,8 @@ class Switches:
     variables : list of (name, values)
     suffix : str
         Accepted and without effect: asemd has one implementation of each style.
+    nonbuf : bool
+        Write the log at once, line by line.
     compat : str
         ``lammps``: follow LAMMPS where its forces are not the gradient of its energy.
     """
@@ -37,6 +46,8 @@ class Switches:
     precision: str = "double"
     cap: int | None = None         # limit on the steps of every run and minimisation
     nocite: bool = False
+    nonbuf: bool = False
+    convert: list[str] = field(default_factory=list)    # commands that -restart2data and -restart2dump stand for
     safe: bool = False              # refuse what a script from a stranger must not do
 
 
@@ -70,24 +81,26 @@ def is_switch(word: str) -> bool:
 
 
 def _apply(out: Switches, name: str, word: str, values: list[str]) -> None:
-    if name == "nocite":
-        count = (0, 0)
-    elif name == "var":
-        count = (2, None)
-    elif name == "package":
-        count = (1, None)
-    else:
-        count = (1, 2 if name == "suffix" else 1)
-    if len(values) < count[0] or (count[1] is not None and len(values) > count[1]):
-        raise InputError(f"switch {word} needs {'a name and at least one value' if name == 'var' else 'one value'}, got {len(values)}")
+    least, most = KNOWN[name]
+    if len(values) < least or (most is not None and len(values) > most):
+        need = {0: "takes no value", 1: "needs one value", 2: "needs a name and at least one value"}.get(least, f"needs {least} values")
+        raise InputError(f"switch {word} {need}, got {len(values)}")
     if name == "var":
         out.variables.append((values[0], values[1:]))
     elif name == "package":
         out.package.append(" ".join(values))
     elif name == "suffix":
         out.suffix = " ".join(values)
-    elif name == "nocite":
-        out.nocite = True
+    elif name in ("nocite", "nonbuf"):
+        setattr(out, name, True)
+    elif name == "skiprun":
+        out.cap = 0
+    elif name in ("restart2data", "restart2dump"):
+        out.convert = _conversion(name, values)
+    elif name in ("partition", "kokkos"):
+        _refuse_parallel(name, word, values)
+    elif name in ("cite", "plog", "pscreen"):
+        return      # logs of partitions, of which there is one, and of citations, of which there are none
     elif name == "threads":
         out.threads = whole(values[0], word)
     elif name == "cap":
@@ -100,6 +113,24 @@ def _apply(out: Switches, name: str, word: str, values: list[str]) -> None:
         out.echo = one_of(values[0], ("none", "screen", "log", "both"), word)
     else:
         setattr(out, "input" if name == "in" else name, values[0])
+
+
+def _conversion(name: str, values: list[str]) -> list[str]:
+    """``-restart2data file [remap] out words...`` and ``-restart2dump file [remap] group style out words...`` as commands."""
+    remap = values[1] == "remap"
+    rest = values[1 + remap:]
+    command = "write_data" if name == "restart2data" else "write_dump"
+    if not rest:
+        raise InputError(f"switch -{name} needs a restart file and the words of {command}")
+    return [f"read_restart {values[0]}" + " remap" * remap, f"{command} {' '.join(rest)}"]
+
+
+def _refuse_parallel(name: str, word: str, values: list[str]) -> None:
+    if name == "kokkos":
+        if values[0] not in ("off", "no", "false"):
+            raise InputError(f"switch {word}: there is no Kokkos here, use {word} off or leave it away")
+    elif values not in (["1"], ["1x1"]):
+        raise InputError(f"switch {word} {' '.join(values)}: asemd runs one partition on one process, give 1 or start asemd once for each")
 
 
 def whole(word: str, switch: str) -> int:

@@ -58,6 +58,9 @@ class Minimization(Driver):
     def run(self) -> None:
         from asemd.loop import Loop
         session, scene, begin = self.session, self.scene, self.scene.step
+        if session.dry:
+            session.drive(self)
+            return
         check(session)
         restart.check_folders(session)
         restart.first_run(session)

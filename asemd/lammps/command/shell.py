@@ -11,6 +11,7 @@ from asemd.words import take
 
 
 def run(session, args):
+    session.refuse_if_safe("shell")
     words = [session.substitute(w) for w in take(args, 1, "shell") and args]
     if session.passive:
         return

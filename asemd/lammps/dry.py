@@ -1,0 +1,139 @@
+"""``asemd run --dry``: execute everything of a script but its runs and what it writes, and gather all problems with their places."""
+from __future__ import annotations
+
+import os
+import re
+
+from asemd.errors import AsemdError, InputError, NotYet, Where
+from asemd.lammps import script
+from asemd.lammps.driver import Driver, check
+from asemd.lammps.script import Command
+from asemd.lammps.session import NESTING, Jump, Session, Stop
+from asemd.thermo import parse_reference
+
+WRITERS = ("angle_write", "bond_write", "dihedral_write", "pair_write", "restart", "rerun", "write_coeff", "write_data", "write_dump",
+           "write_restart")
+NAMING = ("compute", "dump", "fix", "group", "molecule", "python", "region", "variable")      # commands that define a name
+BOX = ("create_box", "read_data", "read_restart", "read_dump")
+ROUNDS = 2      # how often a jump is followed from one line
+
+
+class DrySession(Session):
+    """Reads and binds every command, runs nothing, writes nothing.
+
+    Attributes
+    ----------
+    problems : list of InputError
+        Each has its place. Problems that follow from others are left out.
+    notes : list of str
+        Warnings.
+    """
+
+    dry = True
+
+    def __init__(self, switches=None):
+        super().__init__(switches=switches, passive=True)
+        self.problems: list[InputError] = []
+        self.notes: list[str] = []
+        self.log.warn = lambda message: self.notes.append(message) if message not in self.notes else None
+        self._doubtful: set[tuple[str, str]] = set()      # kind and name whose definitions failed, or could not be evaluated
+        self._no_box = False
+        self._jumps: dict[Where, int] = {}
+
+    def rehearse(self, path: str | os.PathLike) -> None:
+        """Go through a script once."""
+        try:
+            self.file(path)
+        except Stop:
+            self.label = None
+        except InputError as e:
+            self._add(e)
+        self.problems.sort(key=lambda p: (p.where.file != os.fspath(path), p.where.file, p.where.line) if p.where else (False, "", 0))
+
+    def file(self, path: str | os.PathLike) -> None:
+        commands = script.read(path)
+        errors, _ = script.check(commands)
+        broken = {e.where for e in errors}
+        for e in errors:
+            self._add(e)
+        if self._depth >= NESTING:
+            raise InputError(f"include: scripts nested deeper than {NESTING}")
+        for command in commands:
+            if command.where in broken:
+                self._doubt(command)
+        self._depth += 1
+        try:
+            self._run([Command("", c.where) if c.where in broken else c for c in commands], os.fspath(path))
+        except InputError as e:
+            self._add(e)
+        finally:
+            self._depth -= 1
+
+    def execute(self, command: str | Command) -> None:
+        if isinstance(command, str):
+            command = Command(command, self._position or Where("", 1, command))
+        try:
+            super().execute(command)
+        except Jump:
+            self._jumps[command.where] = self._jumps.get(command.where, 0) + 1
+            if self._jumps[command.where] <= ROUNDS:
+                raise
+        except NotYet:
+            self._doubt(command)
+        except InputError as e:
+            self._add(e)
+            self._doubt(command)
+        except AsemdError as e:
+            self._add(InputError(str(e)))
+            self._doubt(command)
+
+    def call(self, name: str, args) -> None:
+        if name == "python" and args:
+            self._doubtful.add(("function", args[0]))
+        elif name in WRITERS:
+            self.scene.need_system(name)
+        else:
+            super().call(name, args)
+
+    def drive(self, driver: Driver) -> None:
+        """What is left of a run: the checks before it, and the references of its output."""
+        try:
+            check(self)
+        except InputError as e:
+            self._add(e.at(self._position))
+        for word in driver.words:
+            try:
+                self._bind(word)
+            except NotYet:
+                continue        # known once the run has begun
+            except InputError as e:
+                self._add(InputError(f"thermo_style: column {word}: {e.message}", self._position))
+        self.scene.step += driver.plan.steps
+
+    def _bind(self, word: str) -> None:
+        """Look whether what a thermo column refers to is there."""
+        kind, id, index = parse_reference(word) or ("", "", [])
+        if kind == "v":
+            self.variables.number(id, *index)
+        elif kind:
+            self.variables.provider.source(kind, id)
+
+    def _add(self, problem: InputError) -> None:
+        message = problem.message
+        follows = self._no_box and "simulation box" in message
+        for kind, name in self._doubtful:
+            follows = follows or re.search(rf"\b({kind} '?|{kind[0]}_){re.escape(name)}(?![\w-])", message)
+        same = any((p.message, p.where) == (message, problem.where) for p in self.problems)
+        if not follows and not same:
+            self.problems.extend(getattr(problem, "problems", [problem]))
+
+    def _doubt(self, command: Command) -> None:
+        """Remember what this command did not define."""
+        try:
+            words = command.words
+        except InputError:
+            return
+        if words and words[0] in BOX:
+            self._no_box = self._no_box or self.scene.system is None
+        if words and words[0] in NAMING and len(words) > 1:
+            self._doubtful.add((words[0], words[1]))
