@@ -1,6 +1,7 @@
 """The scene: everything a script has said so far, as plain data that can be pickled, copied and written back."""
 from __future__ import annotations
 
+import importlib
 from collections.abc import Iterator, MutableMapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -143,6 +144,7 @@ class Scene:
     regions: dict[str, Any] = field(default_factory=dict)
     molecules: dict[str, Any] = field(default_factory=dict)      # templates: lists of asemd.molecule.Molecule
     seeds: dict[str, int] = field(default_factory=dict)
+    respa: Any = None       # asemd.respa.Levels of run_style respa
     map_style: str | None = None
     newton: tuple[bool, bool] = (True, True)
     time_base: tuple[float, int] = (0.0, 0)     # simulation time at the step where the timestep last changed
@@ -210,6 +212,10 @@ class Scene:
             exclude.append((kind, *words) if kind == "type" else (kind, *(self.groups.mask(w, "neigh_modify exclude") for w in words)))
         return replace(self.neighbor, exclude=exclude, threads=self.threads, precision=self.precision, lost=self.thermo.lost,
                        lost_bond=self.thermo.lost_bond)
+
+    def to_lammps(self, folder, name: str = "scene"):
+        """Write ``in.NAME`` and ``data.NAME``, see `asemd.lammps.convert.to_lammps`; returns the path of the script."""
+        return importlib.import_module("asemd.lammps.convert").to_lammps(self, folder, name)     # of a higher floor, as commands are
 
     def to_atoms(self):
         """`asemd.system.Atoms` in order of id, with the force field as calculator."""

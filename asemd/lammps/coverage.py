@@ -29,7 +29,7 @@ PARTIAL = {
     ("command", "pair_modify"): "no special for sub-styles",
     ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
     ("command", "region"): "no moving regions, no variable radius",
-    ("command", "run_style"): "only verlet",
+    ("command", "run_style"): "verlet; respa with pairs on one level (no inner, middle, outer, hybrid)",
     ("command", "set"): "keywords of the atom styles listed under atom",
     ("command", "special_bonds"): "no one/five",
     ("command", "thermo_modify"): "no triclinic/general",

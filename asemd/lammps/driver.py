@@ -144,13 +144,15 @@ class Driver:
         loop = session.loop
         if plan.pre or loop is None:
             from asemd.loop import Loop
+            from asemd.respa import RespaLoop
             check(session)
             check_integration(session)
             restart.check_folders(session)
             state = restart.first_run(session)
             session.close_loop()
-            loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(),
-                                       [*scene.fixes.values(), *live_coefficients(session)], scene.groups, scene.dt, step=begin)
+            parts = (scene.system, scene.interactions, scene.settings(), [*scene.fixes.values(), *live_coefficients(session)],
+                     scene.groups, scene.dt)
+            loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
             loop.warn = session.log.warn
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
