@@ -61,6 +61,7 @@ class Pressure(Compute):
     """
 
     style = "pressure"
+    size = 6        # elements of the vector
     needs = frozenset({"virial"})
 
     def __init__(self, group: str = "all", temperature: Temp | str | None = "default", terms=None):

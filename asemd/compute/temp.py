@@ -30,6 +30,7 @@ class Temp(Compute):
     """
 
     style = "temp"
+    size = 6        # elements of the vector
 
     def __init__(self, group: str = "all", extra_dof: float | None = None):
         super().__init__(group)

@@ -109,6 +109,18 @@ class Providers:
             raise InputError(f"{kind}_{id}: {'compute' if kind == 'c' else 'fix'} {id} (style {source.style}) has no local values")
         return width
 
+    def vector_length(self, kind: str, id: str) -> int:
+        """How many elements the global vector of a compute (c), fix (f) or vector-style variable (v) has."""
+        if kind == "v":
+            return len(self.session.variables.vector(id))
+        source = self.source(kind, id)
+        size = getattr(source, "size", None)
+        if size is None and kind == "c":
+            size = len(self.session.moment.vector(id))
+        if not size:
+            raise InputError(f"{kind}_{id}[*]: the length of the vector is not known, write the elements out: {kind}_{id}[1] {kind}_{id}[2]")
+        return size
+
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray:
         """A global vector, or a column (from 1) of a global array."""
         source = self.source(kind, id)

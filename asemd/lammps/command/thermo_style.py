@@ -1,16 +1,22 @@
 """``thermo_style style keywords...``"""
 from __future__ import annotations
 
+import re
+
 from asemd.errors import InputError, nearest
 from asemd.thermo import Thermo, parse_reference
 from asemd.words import take
+
+
+RANGE = re.compile(r"([cfv])_(\w+)\[(\d*)\*(\d*)\]")
 
 
 def run(session, args):
     scene = session.scene
     scene.need_system("thermo_style")
     take(args, 1, "thermo_style")
-    for word in args[1:]:
+    words = [name for word in args[1:] for name in _expanded(session, word)]
+    for word in words:
         reference = parse_reference(word)
         table = {"c": scene.computes, "f": scene.fixes}.get(reference[0]) if reference else None
         if table is not None and reference[1] not in table:
@@ -18,6 +24,15 @@ def run(session, args):
             raise InputError(f"thermo_style: there is no {kind} {id}{nearest(id, table)}")
     before = scene.thermo
     lost = before != Thermo(before.style, before.words, before.every, before.style if before.style in ("multi", "yaml") else "one")
-    before.set_style(args[0], args[1:])
+    before.set_style(args[0], words)
     if lost:
         session.warn("new thermo_style command, previous thermo_modify settings are lost")
+
+
+def _expanded(session, word: str) -> list[str]:
+    """``c_ID[*]`` as all elements of the vector."""
+    found = RANGE.fullmatch(word)
+    if not found:
+        return [word]
+    kind, id, first, last = found.groups()
+    return [f"{kind}_{id}[{k}]" for k in range(int(first or 1), int(last or session.variables.provider.vector_length(kind, id)) + 1)]
