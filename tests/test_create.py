@@ -72,6 +72,10 @@ CASES = {
     "delete group": FCC + "group g id 1:100:3\ndelete_atoms group g",
     "delete keep ids": FCC + "group g id 1:100:3\ndelete_atoms group g compress no",
     "delete variable": FCC + "variable far atom x>3\ndelete_atoms variable far",
+    **{f"delete random {words}": FCC + "region h block INF INF INF 2 INF INF\ngroup g id 1:200:2\ndelete_atoms random " + words
+       for words in (
+        "fraction 0.3 yes g h 71", "fraction 0.3 no g h 71", "count 10 no g h 71", "count 1000 no g h 71", "count 10 yes all NULL 5",
+        "fraction 0.5 no all NULL 77", "fraction 0.3 yes all NULL 7 compress no")},
     "overlap": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR + "delete_atoms overlap 0.5 all all",
     "overlap groups": FCC + "create_atoms 2 random 100 991 NULL\n" + PAIR
     + "group a type 1\ngroup b type 2\ndelete_atoms overlap 0.7 b all",
@@ -83,6 +87,7 @@ def theirs():
     return lammps(CASES)
 
 
+@pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
 @pytest.mark.parametrize("name", CASES)
 def test_same_atoms_as_lammps(theirs, name):
     assert_same(asemd(CASES[name]), theirs[name], x=1e-14 if name == "displace rotate" else 0.0)
@@ -149,7 +154,10 @@ def test_groups_follow_the_atoms():
     ("displace_atoms non move 1 1 1", "unknown group"), ("displace_atoms all rotate 0 0 0 0 0 0 10", "axis"),
     ("displace_atoms all ramp x 0 1 y 2 1", "below"), ("displace_atoms all move 1 1 1 unit box", "unknown keyword"),
     ("delete_atoms group g", "unknown group"), ("delete_atoms group all mol yes", "no molecules"),
-    ("delete_atoms overlap 0 all all", "positive"), ("delete_atoms porosity b 0.1 1", "not supported"),
+    ("delete_atoms overlap 0 all all", "positive"), ("delete_atoms porosity b 1.1 1", "0 to 1"),
+    ("delete_atoms random count 1000 yes all NULL 3", "exceeds number"),
+    ("delete_atoms random frac 0.1 yes all NULL 3", "did you mean fraction"),
+    ("delete_atoms random count 3 yes all NULL 0", "seed"), ("delete_atoms random count 3 yes all", "6 values"),
     ("delete_atoms group all compress maybe", "yes or no"),
 ])
 def test_mistakes(line, message):
@@ -203,3 +211,9 @@ def test_delete_molecules_and_bonds():
     session.execute("group h id 5")
     session.execute("delete_atoms group h mol yes compress no")
     assert sorted(session.scene.system.id) == [1, 3] and session.scene.system.topology.is_empty
+
+
+def test_porosity_is_the_older_name_of_random():
+    scripts = ("porosity b 0.3 17", "porosity all b 0.3 17", "random fraction 0.3 no all b 17")
+    first, *others = (asemd(FCC + "delete_atoms " + words).scene.system.x for words in scripts)
+    assert 150 < len(first) < 200 and all(np.array_equal(first, x) for x in others)

@@ -13,6 +13,7 @@ from asemd.registry import file_of, module_of, plain_name
 FORCE_FIELD = ("bond", "angle", "dihedral", "improper", "pair")
 PACKAGES = {"command": "asemd.lammps.command",
             **{c: f"asemd.{c}" for c in (*FORCE_FIELD, "kspace", "fix", "compute", "dump", "region", "minimize")}}
+INTEGRATE = ("respa", "verlet")
 WRAPPERS = ("none", "hybrid")       # styles that are made of others, or of nothing
 
 
@@ -31,7 +32,7 @@ def exists(category: str, name: str) -> bool:
     if category == "atom":
         return name in atom_style.NAMES
     if category == "integrate":
-        return name == "verlet"
+        return name in INTEGRATE
     if category in FORCE_FIELD and (name in WRAPPERS or (category, name) == ("pair", "hybrid/overlay")):
         return True
     if category in FORCE_FIELD:
@@ -51,7 +52,7 @@ def names(category: str) -> tuple[str, ...]:
     if category == "atom":
         return tuple(sorted(atom_style.NAMES))
     if category == "integrate":
-        return ("verlet",)
+        return INTEGRATE
     if category == "command":
         return tuple(sorted(files(category)))
     if category in FORCE_FIELD:

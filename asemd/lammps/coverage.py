@@ -34,6 +34,7 @@ PARTIAL = {
     ("command", "special_bonds"): "no one/five",
     ("command", "thermo_modify"): "no triclinic/general",
     ("command", "write_data"): "no triclinic/general",
+    ("run_style", "respa"): "pairs on one level; fixes nve, langevin and forces from outside",
     ("atom", "dipole"): "no fix turns the dipoles",
     ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
     ("dump", "local"): "no local values of fixes",

@@ -4,10 +4,11 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.marsaglia import Marsaglia
 from asemd.topology import KINDS
-from asemd.words import number, take, yes_no
+from asemd.words import choice, number, take, whole, yes_no
 
-ARGUMENTS = {"group": 1, "region": 1, "overlap": 3, "variable": 1}
+ARGUMENTS = {"group": 1, "region": 1, "overlap": 3, "variable": 1, "random": 6, "porosity": 4}
 
 
 def run(session, args):
@@ -19,7 +20,7 @@ def run(session, args):
         raise InputError(f"delete_atoms: style {style!r} is unknown or not supported{nearest(style, ARGUMENTS)}; "
                          f"there are {' '.join(ARGUMENTS)}")
     what = f"delete_atoms {style}"
-    values = take(args[1:], ARGUMENTS[style], what)
+    values = take(args[1:], 3 if style == "porosity" and _is_number(args[2:3]) else ARGUMENTS[style], what)
     options = {"compress": True, "bond": False, "mol": False, "condense": False}
     words = args[1 + len(values):]
     while words:
@@ -61,10 +62,53 @@ def _chosen(session, system, style: str, values: list[str], what: str) -> np.nda
         return scene.region(values[0], what).inside(system.x)
     if style == "variable":
         return session.variables.per_atom(values[0].removeprefix("v_"), system.n) != 0.0
+    if style in ("random", "porosity"):
+        return _random(session, system, values if style == "random" else _as_random(values), what)
     cutoff = number(values[0], f"{what}: cutoff")
     if cutoff <= 0.0:
         raise InputError(f"{what}: the cutoff must be positive, got {values[0]}")
     return _overlapping(scene, system, cutoff, scene.groups.mask(values[1], what), scene.groups.mask(values[2], what))
+
+
+def _is_number(words: list[str]) -> bool:
+    try:
+        return bool(words) and float(words[0]) == float(words[0])
+    except ValueError:
+        return False
+
+
+def _as_random(values: list[str]) -> list[str]:
+    """The words of ``porosity [group] region fraction seed``, older LAMMPS's name, as those of ``random``."""
+    group, region, fraction, seed = values if len(values) == 4 else ("all", *values)
+    return ["fraction", fraction, "no", group, region, seed]
+
+
+def _random(session, system, values: list[str], what: str) -> np.ndarray:
+    """``fraction|count amount exact group region seed``."""
+    kind = choice(values[0], ("fraction", "count"), what)
+    amount = number(values[1], what) if kind == "fraction" else whole(values[1], what)
+    exact = yes_no(values[2], what)
+    if amount < 0 or (kind == "fraction" and amount > 1.0):
+        raise InputError(f"{what}: the fraction must be from 0 to 1, got {values[1]}" if kind == "fraction" else
+                         f"{what}: the number of atoms must not be negative, got {values[1]}")
+    able = session.scene.groups.mask(values[3], what).copy()
+    if values[4] != "NULL":
+        able &= session.scene.region(values[4], what).inside(system.x)
+    seed = whole(values[5], f"{what}: seed")
+    if not 0 < seed <= 900_000_000:
+        raise InputError(f"{what}: the seed must be from 1 to 900000000, got {values[5]}")
+    generator, rows, gone = Marsaglia(seed), np.flatnonzero(able), np.zeros(system.n, bool)
+    if kind == "fraction" and not exact:
+        gone[rows] = [generator.uniform() <= amount for _ in rows]
+        return gone
+    count = int(amount * len(rows)) if kind == "fraction" else amount
+    if count > len(rows):
+        message = f"{what}: count of {count} exceeds number of eligible atoms {len(rows)}"
+        if exact:
+            raise InputError(message)
+        session.warn(message)
+    gone[rows[generator.subset(len(rows), min(count, len(rows)))]] = True
+    return gone
 
 
 def _overlapping(scene, system, cutoff: float, first: np.ndarray, second: np.ndarray) -> np.ndarray:
