@@ -30,15 +30,26 @@ region q prism 0.5 2 0.6 3 0.3 2 0.3 0.2 0.1
 region h plane 2 2 2 1 1 0.3 side out
 region e block 1 EDGE INF 2 0 1.5 units box
 region n intersect 2 u e
+variable a equal 1.3
+variable t equal 0.5
+region v sphere v_a 2 v_a v_a
+region m block 0 2 v_t 2 0 v_a move v_a NULL v_t
+region r block 0 2 0 2 0 2 units box rotate v_t 1 1 1 1 2 1 move v_a v_a NULL side out
+region l ellipsoid 2 2 2 v_a v_t 2
+region w union 2 m l
+"""
+MOVES = """
+variable d equal step*0.01
+region g block 0 0.8 INF INF INF INF move v_d NULL NULL
 """
 
 
 @pytest.fixture(scope="module")
 def theirs():
-    return lammps({r: BOX + f"create_atoms 1 region {r}" for r in "bscouikqhen"})
+    return lammps({r: BOX + f"create_atoms 1 region {r}" for r in "bscouikqhenvmrlw"})
 
 
-@pytest.mark.parametrize("region", "bscouikqhen")
+@pytest.mark.parametrize("region", "bscouikqhenvmrlw")
 def test_same_lattice_points_as_lammps(theirs, region):
     assert_same(asemd(BOX + f"create_atoms 1 region {region}"), theirs[region])
 
@@ -75,12 +86,29 @@ def test_union_and_intersection_with_sides():
     assert Union([a, b]).extent() is None and np.array_equal(Intersect([a, b]).extent()[1], [2, 2, 2])
 
 
+def test_a_moving_region_is_another_one_on_another_step():
+    session = asemd(BOX + MOVES + "create_atoms 1 region b")
+    counts = []
+    for step in (0, 80, 160):
+        session.execute(f"reset_timestep {step}")
+        counts.append(session.variables.evaluate("count(all,g)"))
+    x = session.scene.system.x[:, 0]
+    a = 3.52
+    assert counts == [float(((x >= d) & (x <= d + 0.8 * a)).sum()) for d in (0.0, 0.8, 1.6)]
+    assert session.scene.regions["g"].extent() is None and session.scene.regions["w"].varies
+
+
+def test_open_faces_make_every_point_belong():
+    session = asemd("region o block 0 1 0 1 0 1 units box open 1")
+    assert session.scene.regions["o"].inside(POINTS).all()
+
+
 @pytest.mark.parametrize("words, message", [
     ("r blok 0 1 0 1 0 1", "did you mean block"), ("r block 0 1 0 1 0", "6 values"), ("r block 1 0 0 1 0 1", "above"),
     ("r block 0 1 0 1 0 x", "number"), ("r block INF 1 0 1 0 1", "not defined yet"), ("r sphere 0 0 0 -1", "negative"),
-    ("r sphere 0 0 0 v_r", "variable"), ("r cylinder w 0 0 1 0 1", "expected one of x y z"), ("r plane 0 0 0 0 0 0", "normal"),
-    ("r union 2 a b", "unknown region"), ("r union 1 a", "two"), ("r block 0 1 0 1 0 1 move v_a NULL NULL", "not supported"),
-    ("r block 0 1 0 1 0 1 open 1", "not supported"), ("r block 0 1 0 1 0 1 side up", "in out"),
+    ("r sphere 0 0 0 v_r", "undefined variable r"), ("r cylinder w 0 0 1 0 1", "expected one of x y z"), ("r plane 0 0 0 0 0 0", "normal"),
+    ("r union 2 a b", "unknown region"), ("r union 1 a", "two"), ("r block 0 1 0 1 0 1 move v_a NULL NULL", "undefined variable a"),
+    ("r block 0 1 0 1 0 1 open 7", "1 to 6"), ("r block 0 1 0 1 0 1 side up", "in out"),
     ("r block 0 1 0 1 0 1 foo 1", "unknown keyword"), ("r delete", "no such region"),
 ])
 def test_mistakes(words, message):

@@ -1,16 +1,21 @@
 r"""Regions of space. One region style, one file; each is a class with ``inside(x)``.
 
 Points on the boundary are inside the geometry: they belong to ``side in`` and not to ``side out``. Regions are not wrapped across periodic
-boundaries.
+boundaries. Where a number may be a variable, the region is read again whenever it is used; a region that moves takes points back by its
+displacement and then by its rotation.
 """
 from __future__ import annotations
 
-from typing import ClassVar
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
-from asemd.errors import InputError
-from asemd.words import BIG, choice, number, take
+from asemd.errors import InputError, nearest
+from asemd.region.motion import Motion, move, rotate
+from asemd.words import BIG, choice, number, take, whole
+
+FACES = 6
 
 
 class Region:
@@ -25,9 +30,22 @@ class Region:
     style: ClassVar[str] = ""
     arguments: ClassVar[int] = 0
     id: str = ""
+    motion: Motion | None = None
+    open_faces: tuple[int, ...] = ()
+    source: Source | None = None
 
     def __init__(self, side: str = "in"):
         self.side = side
+
+    @property
+    def varies(self) -> bool:
+        """Whether the region may be another one on another step."""
+        return self.motion is not None or self.source is not None
+
+    def renew(self) -> None:
+        """Take the values that its variables have now."""
+        if self.source is not None:
+            vars(self).update(vars(self.source.read(type(self), self.side)))
 
     def contains(self, x: np.ndarray) -> np.ndarray:
         """Whether points are inside the geometry, whatever the side: (n, 3) -> (n,) bool."""
@@ -49,12 +67,16 @@ class Region:
         -------
         (n,) bool array
         """
-        found = self.contains(np.asarray(x, dtype=float))
+        x = np.asarray(x, dtype=float)
+        if self.open_faces:     # LAMMPS counts every point as one of a region with open faces
+            return np.ones(len(x), bool)
+        self.renew()
+        found = self.contains(x if self.motion is None else self.motion.undo(x))
         return found if self.side == "in" else ~found
 
     def extent(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """`bounds` of the region itself: None for ``side out``."""
-        return self.bounds() if self.side == "in" else None
+        """`bounds` of the region itself: None for ``side out`` and for regions that vary."""
+        return self.bounds() if self.side == "in" and not self.varies else None
 
     @classmethod
     def from_lammps(cls, words: list[str], session) -> Region:
@@ -66,11 +88,18 @@ class Region:
             Wrong number of words, unknown or unsupported keyword, impossible geometry.
         """
         take(words, cls.arguments, f"region {cls.style}")
-        lattice, side = options(words[cls.arguments:], cls.style)
+        given = options(words[cls.arguments:], cls.style, session)
         spacings = np.ones(3)
-        if lattice and session.scene.lattice is not None:
+        if given.lattice and session.scene.lattice is not None:
             spacings = session.scene.lattice.spacings
-        return cls.parse(words[:cls.arguments], spacings, side, session)
+        source = Source(words[:cls.arguments], spacings, session)
+        region = source.read(cls, given.side)
+        if any(w.startswith("v_") for w in source.words):
+            region.source = source
+        if given.motion is not None:
+            region.motion = given.motion.scaled(spacings)
+        region.open_faces = given.open_faces
+        return region
 
     @classmethod
     def parse(cls, words: list[str], spacings: np.ndarray, side: str, session) -> Region:
@@ -78,22 +107,56 @@ class Region:
         raise NotImplementedError
 
 
-def options(words: list[str], style: str) -> tuple[bool, str]:
-    """The trailing keywords: whether lengths are in lattice units, and the side."""
-    lattice, side = True, "in"
+@dataclass
+class Source:
+    """The words of a region's geometry, and the session that knows their variables."""
+
+    words: list[str]
+    spacings: np.ndarray
+    session: Any
+
+    def read(self, style: type[Region], side: str) -> Region:
+        """The region that the words describe now."""
+        values = [repr(self.session.variables.number(w[2:])) if w.startswith("v_") else w for w in self.words]
+        return style.parse(values, self.spacings, side, self.session)
+
+
+@dataclass
+class Options:
+    """The trailing keywords of a region."""
+
+    lattice: bool = True
+    side: str = "in"
+    motion: Motion | None = None
+    open_faces: tuple[int, ...] = ()
+
+
+def options(words: list[str], style: str, session) -> Options:
+    """Read the trailing keywords ``side``, ``units``, ``move``, ``rotate`` and ``open``."""
+    out = Options()
     while words:
         key, what = words[0], f"region {style} {words[0]}"
-        if key in ("move", "rotate", "open"):
-            raise InputError(f"{what} is not supported: use a fixed region with closed faces")
-        if key not in ("side", "units"):
-            raise InputError(f"region {style}: unknown keyword {key!r}, there are side and units")
-        value = take(words[1:], 1, what)[0]
+        if key not in KEYWORDS:
+            raise InputError(f"region {style}: unknown keyword {key!r}{nearest(key, KEYWORDS)}, there are {' '.join(KEYWORDS)}")
+        values = take(words[1:], KEYWORDS[key], what)
         if key == "side":
-            side = choice(value, ("in", "out"), what)
+            out.side = choice(values[0], ("in", "out"), what)
+        elif key == "units":
+            out.lattice = choice(values[0], ("lattice", "box"), what) == "lattice"
+        elif key == "open":
+            face = whole(values[0], what)
+            if not 1 <= face <= FACES:
+                raise InputError(f"{what}: face {face} is outside the valid range 1 to {FACES}")
+            out.open_faces = (*out.open_faces, face)
         else:
-            lattice = choice(value, ("lattice", "box"), what) == "lattice"
-        words = words[2:]
-    return lattice, side
+            out.motion = out.motion or Motion(session.variables.number)
+            (move if key == "move" else rotate)(out.motion, values, what)
+        words = words[1 + KEYWORDS[key]:]
+    return out
+
+
+# keyword -> number of values
+KEYWORDS = {"side": 1, "units": 1, "move": 3, "rotate": 7, "open": 1}
 
 
 def limit(word: str, axis: int, upper: bool, spacing: float, session, what: str) -> float:
@@ -124,8 +187,6 @@ def limits(words: list[str], axes, spacings, session, what: str) -> tuple[np.nda
 
 def radius(word: str, spacing: float, what: str) -> float:
     """A radius, not negative."""
-    if word.startswith("v_"):
-        raise InputError(f"{what}: a variable radius is not supported, give a number")
     value = number(word, what) * spacing
     if value < 0.0:
         raise InputError(f"{what}: radius must not be negative, got {word}")

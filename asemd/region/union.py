@@ -34,4 +34,13 @@ class Union(Region):
         if n < 2:
             raise InputError(f"{what} needs two regions at least, got {n}")
         regions = [session.scene.region(name, what) for name in take(words[1:], n, what)]
-        return cls(regions, side=options(words[1 + n:], cls.style)[1])
+        given = options(words[1 + n:], cls.style, session)
+        if given.motion is not None:
+            raise InputError(f"{what} cannot move or rotate: let its regions do so")
+        region = cls(regions, side=given.side)
+        region.open_faces = given.open_faces
+        return region
+
+    @property
+    def varies(self):
+        return any(r.varies for r in self.regions)
