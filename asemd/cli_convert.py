@@ -1,0 +1,33 @@
+"""The command ``asemd convert``: the same scene in another form."""
+from __future__ import annotations
+
+import warnings
+from typing import Annotated
+
+import typer
+
+from asemd.errors import InputError, InputWarning
+from asemd.lammps.switches import Switches, one_of
+
+
+def convert(context: typer.Context,
+            script: Annotated[str | None, typer.Argument(help="LAMMPS input script.")] = None,
+            to: Annotated[str, typer.Option(help="lammps, python, ase or data.")] = "lammps",
+            output: Annotated[str | None, typer.Option("--output", "-o", help="Folder (lammps, python) or file (ase, data).")] = None,
+            ) -> int:
+    """Write a script, as it stands before its first run, as LAMMPS script with data file, ASE script, ASE file or data file."""
+    from asemd.lammps.convert import FORMS
+    from asemd.lammps.convert import convert as write
+    switches: Switches = context.obj or Switches()
+    form = one_of(to, FORMS, "--to")
+    path = script or switches.input
+    if path is None:
+        raise InputError("asemd convert needs a script: asemd convert in.file --to lammps")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", InputWarning)
+        written = write(path, form, output, switches)
+    for warning in caught:
+        print(f"WARNING: {warning.message}")
+    print(f"wrote {written}")
+    return 0
+

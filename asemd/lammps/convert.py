@@ -1,0 +1,217 @@
+"""A script as it stands before its first run, in other forms: a plain LAMMPS script with a data file, a Python script, ASE's files."""
+from __future__ import annotations
+
+import os
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from asemd import units as unit_styles
+from asemd.errors import InputError, InputWarning
+from asemd.lammps import export
+from asemd.lammps.data_write import write_data
+from asemd.lammps.session import ACTIONS, Session, Stop
+from asemd.lammps.switches import Switches
+from asemd.scene import Scene
+
+FORMS = ("lammps", "python", "ase", "data")
+# commands that hold until they are changed and are neither atoms nor interactions: kept as they were given, variables replaced
+KEPT = frozenset("""fix fix_modify unfix compute compute_modify uncompute variable region lattice thermo thermo_style thermo_modify timestep
+                    run_style min_style min_modify""".split())
+
+
+class Reader(Session):
+    """Reads a script up to its first run and notes the commands of `KEPT`.
+
+    Attributes
+    ----------
+    kept : list of str
+    action : str
+        The run or minimize command that was reached; empty if the script has none.
+    """
+
+    def __init__(self, switches: Switches | None = None):
+        self.kept: list[str] = []
+        self.action = ""
+        super().__init__(switches=switches, passive=True)
+
+    def call(self, name, args):
+        if name in ACTIONS:
+            self.action = " ".join([name, *map(export.quoted, args)])
+        super().call(name, args)
+        if name in KEPT:
+            self.kept.append(" ".join([name, *map(export.quoted, args)]))
+
+
+def read(path: str | os.PathLike, switches: Switches | None = None) -> Reader:
+    """The script, executed up to its first run.
+
+    Raises
+    ------
+    InputError
+        It has a mistake, or defines no atoms.
+    """
+    session = Reader(switches)
+    try:
+        session.file(path)
+    except Stop:
+        session.label = None
+    session.scene.need_system("convert")
+    return session
+
+
+def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more: list[str] | None = None) -> Path:
+    """Write a scene as ``in.NAME`` and ``data.NAME``; the script reads the data file from the working directory.
+
+    Parameters
+    ----------
+    scene : Scene
+    folder : path
+        Made if it does not exist.
+    name : str
+    more : list of str, optional
+        Commands after the force field instead of the scene's own timestep and fixes.
+
+    Returns
+    -------
+    Path
+        The script.
+
+    Raises
+    ------
+    InputError
+        What a data file cannot hold; fixes whose arguments name regions, computes or variables; a folder that cannot be written.
+    """
+    folder, system = Path(folder), scene.need_system("to_lammps")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lines = export.commands(system, scene.interactions, scene.settings(), folder / f"data.{name}")
+        first = next(k for k, line in enumerate(lines) if line.startswith("read_data "))
+        lines[first] = f"read_data data.{name}"
+        if scene.newton != (True, True):
+            lines.insert(1, "newton " + " ".join("on" if on else "off" for on in scene.newton))
+        path = folder / f"in.{name}"
+        path.write_text("\n".join([*lines, *_scene_lines(scene), *(_fixes(scene) if more is None else more)]) + "\n", encoding="utf-8")
+    except OSError as e:
+        raise InputError(f"cannot write {folder}: {e.strerror or e}") from None
+    return path
+
+
+def _scene_lines(scene: Scene) -> list[str]:
+    """Neighbour settings, groups and the step."""
+    n, ids = scene.neighbor, scene.system.id
+    out = [f"neigh_modify every {n.every} delay {n.delay} check {'yes' if n.check else 'no'}"]
+    for name, mask in scene.groups.items():
+        if name != "all":
+            out.append(f"group {name} id {export.id_ranges(ids[mask])}" if mask.any() else f"group {name} empty")
+    return [*out, *([f"reset_timestep {scene.step}"] if scene.step else [])]
+
+
+def _fixes(scene: Scene) -> list[str]:
+    out = [f"timestep {scene.dt!r}"]
+    for fix in scene.fixes.values():
+        words = [str(w) for w in fix.to_lammps()]
+        for word in words:
+            if word[:2] in ("v_", "c_", "f_") or word == "region":
+                raise InputError(f"to_lammps: fix {fix.id} (style {fix.style}) uses {word}, which only the script knows: use asemd convert")
+        out.append(" ".join(["fix", fix.id, fix.group, fix.style, *map(export.quoted, words)]))
+    return out
+
+
+def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
+    """Write ``NAME.py``, which runs the scene under ASE, beside ``in.NAME`` and ``data.NAME`` with the force field.
+
+    Returns
+    -------
+    Path
+        The Python script.
+
+    Raises
+    ------
+    InputError
+        As `to_lammps`; fixes that only a script can make.
+    """
+    scene = session.scene
+    _fixes(scene)
+    to_lammps(scene, folder, name, [])
+    words = session.action.split()
+    steps = int(words[1]) if words[:1] == ["run"] and words[1].isdigit() else 0
+    u, integrates = unit_styles.factor("time", scene.units), any(f.integrates for f in scene.fixes.values())
+    groups = {f.group for f in scene.fixes.values()} - {"all"}
+    lines = [f'"""{scene.system.n} atoms under ASE, written by asemd."""', "import os", "", "import numpy as np", "", "import asemd",
+             "from asemd.fix import find", "", "os.chdir(os.path.dirname(os.path.abspath(__file__)))", f'atoms = asemd.read("in.{name}")',
+             'print("potential energy", atoms.get_potential_energy())']
+    if not integrates:
+        return _written(Path(folder) / f"{name}.py", [*lines[:3], "import asemd", "", *lines[8:]])
+    lines += ["", "groups = {"]
+    lines += [f'    {g!r}: np.isin(atoms.arrays["id"], {np.sort(scene.system.id[scene.groups.mask(g)]).tolist()}),' for g in sorted(groups)]
+    lines += ["}", "fixes = ["]
+    lines += [f"    find({f.style!r}).from_lammps({f.group!r}, {[str(w) for w in f.to_lammps()]!r}, None)," for f in scene.fixes.values()]
+    lines += ["]", f"dynamics = asemd.MolecularDynamics(atoms, timestep={scene.dt * u!r}, fixes=fixes, groups=groups)",
+              f"dynamics.run({steps})", 'print("potential energy", atoms.get_potential_energy(), "temperature", atoms.get_temperature())']
+    return _written(Path(folder) / f"{name}.py", lines)
+
+
+def _written(path: Path, lines: list[str]) -> Path:
+    try:
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    except OSError as e:
+        raise InputError(f"cannot write {path}: {e.strerror or e}") from None
+    return path
+
+
+def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
+    """Write atoms with energy and forces in a format of ASE, by the ending of the file's name; bonds and force field stay behind.
+
+    Raises
+    ------
+    InputError
+        ASE does not know the format, or the file cannot be written.
+    """
+    import ase.io
+    from ase.io.formats import UnknownFileTypeError
+    path = Path(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)       # what is not part of the calculator does not go into the file anyway
+        atoms = scene.to_atoms()
+    atoms.get_forces()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        ase.io.write(path, atoms)
+    except UnknownFileTypeError:
+        raise InputError(f"convert: ASE knows no format for {path.name}: use a name such as {path.stem}.extxyz, .json or .traj") from None
+    except OSError as e:
+        raise InputError(f"cannot write {path}: {e.strerror or e}") from None
+    return path
+
+
+def convert(source: str | os.PathLike, form: str, output: str | os.PathLike | None = None, switches: Switches | None = None) -> Path:
+    """Write a script in another form; returns what was written.
+
+    Parameters
+    ----------
+    source : path
+        A LAMMPS script, executed up to its first run.
+    form : str
+        ``lammps``, ``python``, ``ase`` or ``data``.
+    output : path, optional
+        Folder (lammps, python; by default ``converted``) or file (ase, data).
+    switches : Switches, optional
+    """
+    session = read(source, switches)
+    scene, base = session.scene, os.path.basename(os.fspath(source))
+    name = base[3:] if base.startswith("in.") and len(base) > 3 else Path(base).stem
+    if form == "lammps":
+        return to_lammps(scene, output or "converted", name, [*session.kept, *([session.action] if session.action else [])])
+    if form == "python":
+        return to_python(session, output or "converted", name.replace(".", "_"))
+    if form == "ase":
+        return to_ase(scene, output or f"{name}.extxyz")
+    path = Path(output or f"data.{name}")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", InputWarning)
+        write_data(path, scene.system, scene.interactions)
+    for warning in caught:
+        warnings.warn(str(warning.message), InputWarning, stacklevel=2)
+    return path
