@@ -26,6 +26,10 @@ WIDTH = {"float": 14, "int": 11}
 LENGTHS = frozenset("lhzj")     # C length modifiers, which Python's formats do not need
 
 
+# computes and fixes whose values grow with the system and are divided by the number of atoms (thermo_modify norm), as baths' energies are
+EXTENSIVE = ("pe", "ke", "bond", "angle", "dihedral", "improper", "addforce", "setforce", "nve/limit")
+
+
 # ---------------------------------------------------------------- keywords ---
 
 @dataclass(frozen=True)
@@ -205,7 +209,7 @@ def evaluate(moment: Moment, word: str, norm: bool) -> float:
             raise InputError(f"unknown thermo keyword {word!r}{nearest(word, KEYWORDS)}")
         value = value_of(moment, *reference)
         source = {"c": moment.scene.computes, "f": moment.scene.fixes, "v": {}}[reference[0]].get(reference[1])
-        extensive = bool(getattr(source, "extensive", getattr(source, "style", "") in ("pe", "ke")))
+        extensive = bool(getattr(source, "extensive", getattr(source, "ecouple", False) or getattr(source, "style", "") in EXTENSIVE))
     return value / moment.system.n if norm and extensive and moment.system.n else value
 
 

@@ -49,7 +49,7 @@ def check(session) -> None:
         warnings.simplefilter("always", InputWarning)
         scene.interactions.check_complete(system)
     for warning in caught:
-        session.log.warn(str(warning.message))
+        session.warn(str(warning.message))
     if scene.newton[1]:
         for use in scene.interactions.uses["bond"]:
             settings = use.settings
@@ -62,12 +62,12 @@ def check(session) -> None:
         raise InputError(f"neigh_modify delay {neighbor.delay} must be 0 or a multiple of every {neighbor.every}")
     for kind, atoms, _ in system.topology:
         if len(atoms) and not scene.interactions.uses[kind]:
-            session.log.warn(f"{kind.capitalize()}s are defined but no {kind} style is set: they have no energy")
+            session.warn(f"{kind.capitalize()}s are defined but no {kind} style is set: they have no energy")
     check_extent(session)
     if scene.interactions.style_name("bond") == "fene":
         lj, coul = tuple(scene.interactions.special_lj), tuple(scene.interactions.special_coul)
         if lj != (0.0, 1.0, 1.0) or (system.has_charge and coul != (0.0, 1.0, 1.0)):
-            session.log.warn("bond_style fene should be used with special_bonds lj/coul 0 1 1 (special_bonds fene)")
+            session.warn("bond_style fene should be used with special_bonds lj/coul 0 1 1 (special_bonds fene)")
 
 
 def check_lengths(session) -> None:
@@ -79,7 +79,7 @@ def check_lengths(session) -> None:
             if wrong:
                 key, name, value = wrong[0]
                 types = " ".join(map(str, key)) if isinstance(key, tuple) else key
-                session.log.warn(f"{category}_coeff {types}: {name} of {category} style {use.style.name} is negative: {value:g}")
+                session.warn(f"{category}_coeff {types}: {name} of {category} style {use.style.name} is negative: {value:g}")
 
 
 def check_extent(session) -> None:
@@ -99,7 +99,7 @@ def check_extent(session) -> None:
     half = 0.5 * float(box.lengths[box.periodic].min())
     if STRETCH * span * lengths[longest] > half:
         i, j = system.id[top.bonds[longest]]
-        session.log.warn(f"Bond/angle/dihedral extent > half of periodic box length ({half:g}): the longest bond, {i}-{j}, is "
+        session.warn(f"Bond/angle/dihedral extent > half of periodic box length ({half:g}): the longest bond, {i}-{j}, is "
                          f"{lengths[longest]:.6g} long; closest images may be the wrong ones")
 
 
@@ -115,7 +115,7 @@ def check_integration(session) -> None:
                                  session.places.get(f"fix {id}"))
             movers.append((id, mask))
     if not movers:
-        session.log.warn("no fixes with time integration, atoms won't move")
+        session.warn("no fixes with time integration, atoms won't move")
 
 
 class Driver:
@@ -153,7 +153,7 @@ class Driver:
             parts = (scene.system, scene.interactions, scene.settings(), [*scene.fixes.values(), *live_coefficients(session)],
                      scene.groups, scene.dt)
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
-            loop.warn = session.log.warn
+            loop.warn = session.warn
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
                 checkpoint.resume(loop, state)
@@ -306,7 +306,7 @@ class Driver:
         """With ``thermo_modify lost warn``: say once that atoms are gone."""
         thermo, n = self.scene.thermo, self.scene.system.n
         if thermo.lost == "warn" and n < self.natoms and not thermo.lost_told:
-            self.session.log.warn(f"Lost atoms: original {self.natoms} current {n}")
+            self.session.warn(f"Lost atoms: original {self.natoms} current {n}")
             thermo.lost_told = True
 
     def _watch(self, what: str, *args) -> None:

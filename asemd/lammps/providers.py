@@ -118,7 +118,7 @@ class Providers:
         if size is None and kind == "c":
             size = len(self.session.moment.vector(id))
         if not size:
-            raise InputError(f"{kind}_{id}[*]: the length of the vector is not known, write the elements out: {kind}_{id}[1] {kind}_{id}[2]")
+            raise InputError(f"{kind}_{id}[*]: its length is not known, write the elements out: {kind}_{id}[1] {kind}_{id}[2]")
         return size
 
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray:

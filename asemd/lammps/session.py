@@ -11,6 +11,7 @@ from typing import Any
 from asemd.errors import AsemdError, InputError, InputWarning, Where
 from asemd.lammps import catalog, lex, script
 from asemd.lammps.log import Log, to_stdout
+from asemd.lammps.origin import Origin
 from asemd.lammps.providers import Providers
 from asemd.lammps.python_functions import PythonFunctions
 from asemd.lammps.script import Command
@@ -68,6 +69,7 @@ class Session:
             screen = to_stdout if self.switches.screen is None else _to_file(self.switches.screen)
         self.log = Log(None if passive else self.switches.log, None if passive else screen, self.switches.echo)
         self.log.unbuffered = self.switches.nonbuf
+        self.origin = Origin()
         self.variables = Variables(Providers(self))
         for name, values in self.switches.variables:
             self.variables.define(name, "index", values)
@@ -146,8 +148,11 @@ class Session:
         if self.passive and name in ACTIONS and not self.dry:
             self.scene.need_system(name)
             raise Stop
+        if name in ACTIONS:
+            self.log.to_file(self.origin.line())
         importlib.import_module(f"asemd.lammps.command.{name}").run(self, list(args))
         self.scene.sync_groups()
+        self.origin.note(name, args, self.scene.fixes.get(args[0]) if name == "fix" and args else None)
 
     def commands(self, text: str) -> None:
         """Execute several lines of text."""
@@ -160,6 +165,7 @@ class Session:
     def file(self, path: str | os.PathLike) -> None:
         """Check a script, then execute it."""
         commands = script.read(path)
+        self.origin.read(path)
         errors, doubtful = script.check(list(script.before(commands, ACTIONS)) if self.passive else commands)
         script.raise_problems(errors)
         for problem in doubtful:

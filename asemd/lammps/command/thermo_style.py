@@ -7,7 +7,6 @@ from asemd.errors import InputError, nearest
 from asemd.thermo import Thermo, parse_reference
 from asemd.words import take
 
-
 RANGE = re.compile(r"([cfv])_(\w+)\[(\d*)\*(\d*)\]")
 
 
