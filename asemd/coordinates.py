@@ -22,7 +22,7 @@ def pairs_of(style) -> list[tuple[int, int]]:
         return [(0, 1)]
     if style.category == "angle":
         return [(0, 1), (2, 1)]
-    return [(1, 0), (2, 0), (3, 0)] if first == "omega" else [(0, 1), (1, 2), (3, 2)]
+    return [(0, 1), (1, 2), (3, 2)]
 
 
 def dot(a, b):
@@ -62,31 +62,6 @@ def torsion_gradient(v):
     return np.stack([_one(-length) * a, _one(dot(f, g) / length) * a - _one(dot(h, g) / length) * b, _one(length) * b], axis=1)
 
 
-def _side(v):
-    """Which way omega is counted: -1 where atom 4 leans over to the side of atoms 2 and 3."""
-    u, w, l = v.real[:, 0], v.real[:, 1], v.real[:, 2]
-    return np.where(dot(l, u) / norm(u) + dot(l, w) / norm(w) > 0.0, -1.0, 1.0)
-
-
-def omega(v):
-    n = np.cross(v[:, 0], v[:, 1])
-    n = n / _one(norm(n))
-    return np.arctan2(dot(n, v[:, 2]), _side(v) * norm(np.cross(n, v[:, 2])))
-
-
-def omega_gradient(v):
-    u, w, l = v[:, 0], v[:, 1], v[:, 2]
-    n = np.cross(u, w)
-    area = norm(n)
-    n = n / _one(area)
-    q = np.cross(n, l)
-    height, base, ll = dot(n, l), norm(q), dot(l, l)
-    p, turn = np.cross(q, n) / _one(base), _side(v)
-    lean = turn / area
-    return np.stack([_one(lean * dot(np.cross(w, p), n)) * n, _one(lean * dot(np.cross(p, u), n)) * n,
-                     _one(turn * base / ll) * n - _one(turn * height / ll) * p], axis=1)
-
-
 def _vectors(style) -> dict[str, tuple]:
     """Lengths and angles of a style's chart: name -> the vector, or the two vectors, as weights of the style's vectors."""
     if style.category == "bond":
@@ -107,8 +82,6 @@ def values(style, v: np.ndarray) -> np.ndarray:
             out.append(torsion(v))
         elif name == "chi":
             out.append(np.abs(torsion(v)))
-        elif name == "omega":
-            out.append(omega(v))
         else:
             ends = [np.tensordot(v, np.array(w, float), (1, 0)) for w in _vectors(style)[name]]
             out.append(norm(ends[0]) if len(ends) == 1 else angle_between(*ends))
@@ -126,8 +99,6 @@ def gradients(style, v: np.ndarray) -> np.ndarray:
             g = torsion_gradient(v)
             if name == "chi":
                 g = g * np.where(torsion(v.real) < 0.0, -1.0, 1.0)[:, None, None]
-        elif name == "omega":
-            g = omega_gradient(v)
         else:
             weights = [np.array(w, float) for w in _vectors(style)[name]]
             ends = [np.tensordot(v, w, (1, 0)) for w in weights]

@@ -141,7 +141,7 @@ def _bonded(engine, term: BondedTerm, numerical: bool):
         raise _missing(style.category, style.name)
     loop, pairs = curvature.of_style(style, d2), coordinates.pairs_of(style)
     nc, empty, x = len(style.coordinates), np.zeros(0), engine.system.x
-    angles = [name in ("theta", "phi", "chi", "omega", "theta1", "theta2") for name in style.coordinates]
+    angles = [name in ("theta", "phi", "chi", "theta1", "theta2") for name in style.coordinates]
     for start in range(0, len(term.items), CHUNK):
         atoms, types = term.items[start:start + CHUNK], term.types[start:start + CHUNK]
         v = np.stack([x[atoms[:, i]] - x[atoms[:, j]] for i, j in pairs], axis=1)

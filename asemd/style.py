@@ -11,11 +11,10 @@ A bonded style is a scalar function of internal coordinates and coefficients::
 
 It returns the energy and then the derivative by each internal coordinate it names, in the order of its arguments. Coordinates by category:
 ``r`` (bond); ``theta r12 r32 r13`` (angle, atom 2 in the middle) or ``gamma`` (between the dipole of atom 1 and the vector to atom 2);
-``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with
-trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); one of ``phi chi omega`` (improper). Bonds with a past also take ``rate``,
-dr/dt, and ``reference``, a length that each bond has for itself; they have no derivatives. A style that has no such coordinate
-takes vectors instead, ``ax ay az bx by bz`` and for four atoms ``cx cy cz``: from the atom `centre` (1, 2, ...) to the others in their
-order; it returns the energy and the six or nine derivatives.
+``phi r12 r23 r34 theta1 theta2`` (dihedral; phi in -pi..pi with trans = pi, theta1 is the angle 1-2-3, theta2 the angle 2-3-4); ``phi`` or
+its size ``chi`` (improper). Bonds with a past also take ``rate``, dr/dt, and ``reference``, a length that each bond has for itself; they
+have no derivatives. A style that has no such coordinate takes vectors instead, ``ax ay az bx by bz`` and for four atoms ``cx cy cz``: from
+the atom `centre` (1, 2, ...) to the others in their order; it returns the energy and the six or nine derivatives.
 An energy or derivative that is not finite means "outside the domain" (write ``return math.inf, math.inf``): the kernel reports the item,
 the user gets atom ids and ``domain``. Bodies are strict IEEE: write them so that no digits cancel (a product of sines for a difference of
 cosines, ``(R0 - r) * (R0 + r)`` for a difference of squares) and so that plain Python runs them too (test before dividing by zero).
@@ -49,7 +48,7 @@ COORDINATES = {
     "bond": ("r", "rate", "reference"),
     "angle": ("theta", "r12", "r32", "r13", "gamma", *VECTORS[:6]),
     "dihedral": ("phi", "r12", "r23", "r34", "theta1", "theta2", *VECTORS),
-    "improper": ("phi", "chi", "omega", *VECTORS),
+    "improper": ("phi", "chi", *VECTORS),
     "pair": ("r", "r2"),
 }
 RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
@@ -316,5 +315,5 @@ def dihedral(name: str, **options):
 
 
 def improper(name: str, **options):
-    """Register ``f(phi | chi | omega, ...) -> E, dE/d...`` as improper style `name`."""
+    """Register ``f(phi | chi, ...) -> E, dE/d...`` as improper style `name`."""
     return _bonded("improper", name, options)

@@ -263,6 +263,13 @@ def test_direction_undefined_is_finite(name, words, pairs):
             assert not a.forces.any()                   # neither side is preferred
 
 
+def test_harmonic_in_its_plane_is_pushed_to_neither_side():
+    s = sample("harmonic", "40 35")
+    a = s.run(np.array([[-0.5, 1, 0], [0, 0, 0], [1.4, 0, 0], [1.9, 1.1, 0]]).T)
+    assert not a.bad[0] and not a.forces.any() and not a.acc[2:].any()
+    assert a.acc[0] == pytest.approx(40 * math.radians(35) ** 2, rel=1e-15)
+
+
 @pytest.mark.parametrize("name", ["class2", "umbrella", "fourier", "inversion/harmonic", "ring"])
 def test_an_arm_of_length_zero_is_reported(name):
     style = registry.find("improper", name)

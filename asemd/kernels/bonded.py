@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 
-from asemd.kernels import angle, bond, bond_history, dihedral, dipole, image, improper, vectors
+from asemd.kernels import angle, bond, bond_history, dihedral, dipole, image, vectors
 from asemd.kernels.generate import Builder, plain_source
 from asemd.style import VECTORS, Style
 
@@ -56,7 +56,7 @@ def chart(style: Style) -> tuple[str, ...]:
         return TORSION
     if style.coordinates[0] == "gamma":
         return style.coordinates
-    return ANGLE if style.category == "angle" else style.coordinates[:1]
+    return ANGLE if style.category == "angle" else ("r",)
 
 
 def _loop(style: Style) -> Callable:
@@ -68,7 +68,7 @@ def _loop(style: Style) -> Callable:
         return dipole.dipole
     if style.category == "angle":
         return angle.angle
-    return improper.out_of_plane if style.coordinates == ("omega",) else dihedral.torsion
+    return dihedral.torsion
 
 
 class _WithoutEnergy(ast.NodeTransformer):
@@ -104,8 +104,8 @@ def _adapter(style: Style) -> str:
         past = ", rate=0.0, reference=1.0" if style.history else ""
         return f"def evaluate(r, t, coeff, arrays{past}):\n    return {call}"
     head = f"def evaluate({', '.join(handed)}, t, coeff, arrays):\n"
-    if style.coordinates == ("chi",):      # chi = |phi|
-        return (f"{head}    chi = abs(phi)\n    e, slope = {call}\n"
+    if style.coordinates == ("chi",):      # chi = |phi|; in the plane neither side is the one to be pushed to
+        return (f"{head}    chi = abs(phi)\n    e, slope = {call}\n    if phi == 0.0 and math.isfinite(slope):\n        slope = 0.0\n"
                 f"    return e, slope if phi >= 0.0 else -slope{', 0.0' * (len(handed) - 1)}")
     if handed == style.coordinates:
         return f"{head}    return {call}"
