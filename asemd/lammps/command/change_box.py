@@ -25,11 +25,12 @@ def run(session, args):
     mask = scene.groups.mask(group, "change_box")
     operations, lattice = _operations(words)
     spacings = scene.lattice.spacings if lattice and scene.lattice is not None else np.ones(3)
-    change = Change(session, system.box, system.x[mask], spacings)
+    x, image = system.x.copy(), system.image.copy()
+    system.box.wrap(x, image)       # in the box as it was: atoms may have left it since the last list
+    change = Change(session, system.box.shrink_wrapped(x), x[mask], spacings)
     for name, words in operations:
         change.apply(name, words)
-    x, image, box = system.x.copy(), system.image.copy(), change.box
-    x[mask] = change.x
+    x[mask], box = change.x, change.box
     for k in np.flatnonzero(system.box.periodic & ~box.periodic):
         if image[:, k].any():
             session.warn(f"Resetting image flags for non-periodic dimension {AXES[k]}")
