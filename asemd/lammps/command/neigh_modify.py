@@ -28,8 +28,7 @@ def run(session, args):
         elif key == "check":
             settings.check = yes_no(value, what)
         elif key == "once":
-            if yes_no(value, what):
-                raise InputError("neigh_modify once yes is not supported: leave it out, lists are rebuilt when atoms have moved")
+            session.scene.list_once = yes_no(value, what)
         elif key == "include":
             if value != "all":
                 raise InputError("neigh_modify include is not supported for other groups than all: use neigh_modify exclude group")
