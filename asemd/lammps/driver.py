@@ -150,7 +150,8 @@ class Driver:
             restart.check_folders(session)
             state = restart.first_run(session)
             session.close_loop()
-            parts = (scene.system, scene.interactions, scene.settings(), [*scene.fixes.values(), *live_coefficients(session)],
+            fixes = [*scene.dynamic_groups.values(), *scene.fixes.values(), *live_coefficients(session)]
+            parts = (scene.system, scene.interactions, scene.settings(), fixes,
                      scene.groups, scene.dt)
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
             loop.warn = session.warn

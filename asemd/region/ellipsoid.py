@@ -20,7 +20,7 @@ class Ellipsoid(Region):
     def contains(self, x):
         a, b, c = self.axes
         dx, dy, dz = (x - self.center).T
-        return (b * c * dx) ** 2 + (a * c * dy) ** 2 + (a * b * dz) ** 2 <= (a * b * c) ** 2
+        return (b * c * dx) ** 2 + (a * c * dy) ** 2 + (a * b * dz) ** 2 <= a * a * b * b * c * c
 
     def bounds(self):
         return self.center - self.axes, self.center + self.axes
