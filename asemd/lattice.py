@@ -48,6 +48,8 @@ class Lattice:
         Edge vectors a1, a2, a3 of style custom (rows).
     basis : (m, 3) sequence, optional
         Fractional positions of style custom.
+    general : bool
+        As ``triclinic/general``: the edge vectors of style custom are those of a general triclinic box.
 
     Attributes
     ----------
@@ -69,6 +71,7 @@ class Lattice:
     spacing: tuple[float, float, float] | None = None
     vectors: tuple[tuple[float, float, float], ...] | None = None
     basis: tuple[tuple[float, float, float], ...] = ()
+    general: bool = False
     spacings: np.ndarray = field(init=False)
 
     def __post_init__(self):
@@ -100,7 +103,7 @@ class Lattice:
         if self.spacing is not None:
             self.spacings = np.array(self.spacing, dtype=float) * self.factor
         else:
-            self.spacings = np.ptp(self.to_box(corners), axis=0)
+            self.spacings = np.ptp(self.to_box(corners) @ (self.turn() if self.general else np.eye(3)), axis=0)
 
     def _check(self, edges: np.ndarray) -> None:
         if not len(self.basis):
@@ -124,8 +127,17 @@ class Lattice:
             raise InputError(f"lattice {self.style}: spacings must be positive")
         if np.dot(edges[0], np.cross(edges[1], edges[2])) == 0.0:
             raise InputError(f"lattice {self.style}: the vectors a1, a2, a3 lie in one plane")
+        if self.general and (self.style != "custom" or self.orient != Lattice.orient):
+            raise InputError("lattice triclinic/general needs style custom and the default orientation")
+        if self.general and np.dot(edges[0], np.cross(edges[1], edges[2])) < 0.0:
+            raise InputError("lattice triclinic/general: a1, a2, a3 must be right-handed")
         if self.dimension == 2 and (edges[0, 2] or edges[1, 2] or edges[2, 0] or edges[2, 1]):
             raise InputError(f"lattice {self.style}: in 2d a1 and a2 must lie in the plane and a3 along z")
+
+    def turn(self) -> np.ndarray:
+        """(3, 3): ``x @ turn`` leads from the frame of the edge vectors into the one with a1 along x and a2 in the xy plane."""
+        q, r = np.linalg.qr(self.primitive)
+        return q * np.where(np.diag(r) < 0.0, -1.0, 1.0)
 
     def to_box(self, cells: np.ndarray) -> np.ndarray:
         """Positions in the box of points given in unit cells, (n, 3) -> (n, 3)."""

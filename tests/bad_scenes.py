@@ -595,3 +595,18 @@ line("long loop variable", "variable a loop 1000000000000", "", expect="fine", a
 in_script("dihedral n huge", "dihedral_coeff 1 1.0 1 3 => dihedral_coeff 1 1.0 1 99999999999", "large")
 in_script("sigma negative", "pair_coeff 1 1 1.0 1.0 => pair_coeff 1 1 1.0 -1.0", "sigma;negative;1 1", (), "warning")
 in_script("r0 negative", "bond_coeff 1 250.0 1.0 => bond_coeff 1 250.0 -1.0", "r0;negative", (), "warning")
+
+# ---- commands on boxes, molecules and snapshots
+line("change_box without change", "change_box all", "change_box")
+line("change_box volume first", "change_box all x volume", "volume")
+line("change_box tilt of an upright box", "change_box all xy final 1", "triclinic")
+line("molecule without file", "molecule m", "molecule")
+line("molecule of a missing file", "molecule m nowhere.mol", "nowhere.mol")
+line("create_atoms of a missing molecule", "create_atoms 0 single 1 1 1 mol nobody 5", "nobody")
+line("read_dump of a missing file", "read_dump nowhere 10 x y z", "nowhere")
+line("rerun without dump", "rerun nowhere x y z", "dump")
+line("write_dump of a missing group", "write_dump nobody atom f", "nobody")
+line("reset_atoms of what", "reset_atoms mols", "mol")
+line("respa without factors", "run_style respa 3 2", "factors")
+line("respa in the wrong order", "run_style respa 2 2 bond 2 angle 1", "angle")
+line("partition that is not there", "partition yes 2 run 5", "1 to 1")

@@ -28,6 +28,11 @@ create_box 1 b
 create_atoms 1 box
 mass 1 1
 """
+GENERAL = """
+units metal
+lattice custom 3.0 a1 1 0.2 0.1 a2 -0.3 1.1 0 a3 0.2 0.1 0.9 basis 0 0 0 basis 0.5 0.5 0.5 triclinic/general
+create_box 2 NULL 0 2 -1 1 0 3
+"""
 PAIR = "pair_style lj/cut 2.5\npair_coeff * * 1 1\n"
 
 
@@ -47,6 +52,8 @@ CASES = {
     "oriented": lattice("fcc 3.52 orient x 1 1 1 orient y 1 -1 0 orient z 1 1 -2 origin 0.1 0 0"),
     "custom": lattice("custom 3.52 a1 1 0 0 a2 0.5 1 0 a3 0 0 0.5 basis 0 0 0 basis .5 .5 .5"),
     "basis": lattice("fcc 3.52", more="basis 2 2 basis 4 2"),
+    "general triclinic": GENERAL + "create_atoms 1 box basis 2 2\ncreate_atoms 1 single 0.5 0.5 0.5",
+    "general triclinic region": GENERAL + "region s sphere 1 1 1 1\ncreate_atoms 1 region s",
     "hex": FLAT,
     "triclinic": TRICLINIC,
     "single": FCC + """
@@ -90,7 +97,8 @@ def theirs():
 @pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
 @pytest.mark.parametrize("name", CASES)
 def test_same_atoms_as_lammps(theirs, name):
-    assert_same(asemd(CASES[name]), theirs[name], x=1e-14 if name == "displace rotate" else 0.0)
+    tolerance = {"displace rotate": 1e-14, "general": 1e-13}.get(name if name[0] == "d" else name.split()[0], 0.0)
+    assert_same(asemd(CASES[name]), theirs[name], x=tolerance)
 
 
 def test_text():
@@ -175,6 +183,10 @@ def test_mistakes(line, message):
     ("dimension 2\nregion b block 0 1 0 1 1 2\ncreate_box 1 b", "z = 0"),
     ("boundary p f p\nregion b prism 0 1 0 1 0 1 0.2 0 0\ncreate_box 1 b", "periodic"),
     ("region b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 box", "no lattice"),
+    ("create_box 1 NULL 0 1 0 1 0 1", "triclinic/general"), (GENERAL.replace("-1 1", "1 1"), "blo 1 must be less"),
+    (GENERAL.replace(" 0 3", ""), "6 values"), (GENERAL.replace("a1 1", "a1 -1"), "right-handed"),
+    ("lattice fcc 1 triclinic/general", "style custom"), ("boundary f p p\n" + GENERAL, "periodic in all"),
+    (GENERAL + "lattice sc 2\ncreate_atoms 1 box", "needs a lattice with triclinic/general"),
 ])
 def test_mistakes_before_the_box(script, message):
     with pytest.raises(InputError, match=message):

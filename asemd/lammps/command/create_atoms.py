@@ -62,7 +62,10 @@ def run(session, args):
     elif style == "random":
         x, types = _random(session, values, system, region, lattice, options, kind, wanted)
     else:
-        x, types = _lattice(system, lattice, region, options, kind, wanted)
+        if lattice.general != (scene.general is not None):
+            raise InputError("create_atoms: a general triclinic box needs a lattice with triclinic/general, and such a lattice a box of "
+                             "create_box NULL")
+        x, types = _lattice(system, lattice, region, options, kind, wanted, scene.general)
     if options.template is not None:
         if x.ndim == 2:
             x = np.array([_molecule(point, options, system.dimension) for point in x]).reshape(-1, options.template.natoms, 3)
@@ -206,15 +209,21 @@ def _inside(x: np.ndarray, box, below: float = 0.0, above: float = 0.0) -> np.nd
     return ((coordinates >= lo - below * length) & (coordinates < hi - above * length)).all(axis=1)
 
 
-def _lattice(system, lattice: Lattice, region, options: _Options, kind: int, wanted):
-    """The lattice points in the box: exactly one of two that face each other across a periodic boundary."""
+def _lattice(system, lattice: Lattice, region, options: _Options, kind: int, wanted, general=None):
+    """The lattice points in the box: exactly one of two that face each other across a periodic boundary.
+
+    The points of a general triclinic box are turned by `general` into LAMMPS's frame.
+    """
     box = system.box
-    corners = box.origin + np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell
+    corners = np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell
+    corners = box.origin + (corners if general is None else corners @ general.T)
     types = np.full(max(1, 0 if lattice.style == "none" else len(lattice.basis)), kind)
     for n, t in options.basis.items():
         types[n] = t
     xs, ts = [np.zeros((0, 3))], [np.zeros(0, int)]
     for x, basis in lattice.points(corners.min(axis=0), corners.max(axis=0)):
+        if general is not None:
+            x = box.origin + (x - box.origin) @ general
         keep = np.flatnonzero(_inside(x, box, EPSILON, 2.0 * EPSILON))
         if region is not None:
             keep = keep[region.inside(x[keep])]

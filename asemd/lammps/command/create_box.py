@@ -8,7 +8,7 @@ from asemd.box import MARGIN, Box
 from asemd.errors import InputError, nearest
 from asemd.region.prism import Prism
 from asemd.system import COUNTS, System
-from asemd.words import take, whole
+from asemd.words import number, take, whole
 
 KEYWORDS = {**{f"{kind}/types": f"n{kind}types" for kind in ("bond", "angle", "dihedral", "improper")},
             **{name.replace("_", "/"): name for name in COUNTS if name.startswith("extra_")}}
@@ -22,10 +22,11 @@ def run(session, args):
     counts = {"ntypes": whole(count, "create_box: number of atom types")}
     if counts["ntypes"] < 1:
         raise InputError(f"create_box: the number of atom types must be positive, got {count}")
-    if name == "NULL":
-        raise InputError("create_box NULL (general triclinic boxes) is not supported: use a region of style prism")
-    region = scene.region(name, "create_box")
     words = args[2:]
+    if name == "NULL":
+        box, words = _general(scene, take(words, 6, "create_box NULL")), words[6:]
+    else:
+        box = _box(scene, scene.region(name, "create_box"))
     while words:
         key, what = words[0], f"create_box {words[0]}"
         if key not in KEYWORDS:
@@ -37,11 +38,30 @@ def run(session, args):
             raise InputError(f"{what}: must not be negative, got {value}")
         counts[KEYWORDS[key]], words = value, words[2:]
     empty = np.zeros(0)
-    scene.system = System(box=_box(scene, region), x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
+    scene.system = System(box=box, x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
                           dimension=scene.dimension, step=scene.step, **fresh(scene.atom_style, 0))
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
     scene.system.box = widened(scene.system.box)
+
+
+def _general(scene, words: list[str]) -> Box:
+    """The general triclinic box of edges ``alo ahi blo bhi clo chi`` along the vectors of the lattice, in LAMMPS's frame."""
+    lattice, what = scene.lattice, "create_box NULL"
+    if lattice is None or not lattice.general:
+        raise InputError(f"{what}: a general triclinic box needs a lattice with the keyword triclinic/general before")
+    if scene.dimension == 2:
+        raise InputError(f"{what}: general triclinic boxes in 2d are not supported, use a region of style prism")
+    if scene.boundary != ("pp", "pp", "pp"):
+        raise InputError(f"{what}: a general triclinic box must be periodic in all directions")
+    ends = np.array([number(w, what) for w in words]).reshape(3, 2)
+    edges = lattice.primitive.T * lattice.factor
+    for (lo, hi), axis in zip(ends, "abc"):
+        if not lo < hi:
+            raise InputError(f"{what}: {axis}lo {lo:g} must be less than {axis}hi {hi:g}")
+    origin = ends[:, 0] @ edges
+    box, scene.general = Box(origin, (ends[:, 1] - ends[:, 0])[:, None] * edges, scene.boundary).to_lammps()
+    return Box.from_lammps(origin, origin + np.diag(box.cell), box.tilt, scene.boundary, triclinic=True)
 
 
 def _box(scene, region) -> Box:

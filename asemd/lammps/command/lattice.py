@@ -5,7 +5,7 @@ from asemd.errors import InputError, nearest
 from asemd.lattice import Lattice
 from asemd.words import number, take, whole
 
-KEYWORDS = {"origin": 3, "orient": 4, "spacing": 3, "a1": 3, "a2": 3, "a3": 3, "basis": 3}
+KEYWORDS = {"origin": 3, "orient": 4, "spacing": 3, "a1": 3, "a2": 3, "a3": 3, "basis": 3, "triclinic/general": 0}
 
 
 def run(session, args):
@@ -26,6 +26,9 @@ def run(session, args):
             raise InputError(f"lattice: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
         values = take(words[1:], KEYWORDS[key], f"lattice {key}")
         words = words[1 + len(values):]
+        if key == "triclinic/general":
+            options["general"] = True
+            continue
         if key == "orient":
             if values[0] not in ("x", "y", "z"):
                 raise InputError(f"lattice orient: the axis must be x, y or z, got {values[0]!r}")
