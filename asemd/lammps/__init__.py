@@ -9,6 +9,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.lammps.atom_arrays import AtomArrays
+from asemd.lammps.library import Library
 
 if TYPE_CHECKING:
     from asemd.scene import Scene
@@ -19,7 +20,7 @@ TYPE_COUNTS = ("ntypes", "nbondtypes", "nangletypes", "ndihedraltypes", "nimprop
 ITEMS = {"nbonds": "bonds", "nangles": "angles", "ndihedrals": "dihedrals", "nimpropers": "impropers"}
 
 
-class Lammps(AtomArrays):
+class Lammps(AtomArrays, Library):
     """A session with the methods of the ``lammps`` Python module.
 
     Parameters
@@ -321,6 +322,22 @@ class NumpyView:
     def extract_variable(self, name: str, group: str | None = None, vartype: int | None = None):
         return self._l.extract_variable(name, group, vartype)
 
+    def get_neighlist(self, idx: int):
+        return self._l.get_neighlist(idx)
+
+    def get_neighlist_element_neighbors(self, idx: int, element: int) -> tuple[int, np.ndarray]:
+        """Row of the atom, rows of its neighbours."""
+        return self._l.get_neighlist(idx)[element]
+
+    def fix_external_get_force(self, fix_id: str) -> np.ndarray:
+        return self._l.fix_external_get_force(fix_id)
+
+    def fix_external_set_energy_peratom(self, fix_id: str, eatom) -> None:
+        self._l.fix_external_set_energy_peratom(fix_id, eatom)
+
+    def fix_external_set_virial_peratom(self, fix_id: str, vatom) -> None:
+        self._l.fix_external_set_virial_peratom(fix_id, vatom)
+
     def gather_atoms(self, name: str, dtype: int, count: int) -> np.ndarray:
         """(n,) or (n, count) array in order of id."""
         values = np.array(self._l.gather_atoms(name, dtype, count))
@@ -341,3 +358,6 @@ class NumpyView:
     def gather_impropers(self) -> np.ndarray:
         """(nimpropers, 5) type and four ids."""
         return np.array(self._l.gather_impropers()[1]).reshape(-1, 5)
+
+
+lammps = Lammps        # ``sys.modules["lammps"] = asemd.lammps`` serves programs that import the ``lammps`` module

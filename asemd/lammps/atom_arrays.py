@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from asemd.atom_style import fresh
 from asemd.errors import InputError
 
 
@@ -64,6 +65,91 @@ class AtomArrays:
     def scatter_atoms_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int], data) -> None:
         """Set a property of the atoms with the given ids."""
         self._scatter(name, count, data, self._rows(ids, ndata))
+
+    # any per-atom quantity: also c_ID and f_ID
+    def gather(self, name: str, dtype: int, count: int):
+        """As `gather_atoms`, also for per-atom values of computes and fixes: ``c_ID``, ``f_ID``."""
+        return self._c_array(self._quantity(name, count)[self._ordered()], dtype)
+
+    def gather_concat(self, name: str, dtype: int, count: int):
+        """As `gather`, in the session's order."""
+        return self._c_array(self._quantity(name, count), dtype)
+
+    def gather_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int]):
+        """As `gather`, for the given ids."""
+        return self._c_array(self._quantity(name, count)[self._rows(ids, ndata)], dtype)
+
+    def scatter(self, name: str, dtype: int, count: int, data) -> None:
+        """As `scatter_atoms`; values of computes and fixes cannot be set."""
+        self._settable(name)
+        self.scatter_atoms(name, dtype, count, data)
+
+    def scatter_subset(self, name: str, dtype: int, count: int, ndata: int, ids: Sequence[int], data) -> None:
+        """As `scatter_atoms_subset`; values of computes and fixes cannot be set."""
+        self._settable(name)
+        self.scatter_atoms_subset(name, dtype, count, ndata, ids, data)
+
+    @staticmethod
+    def _settable(name: str) -> None:
+        if name[:2] in ("c_", "f_"):
+            raise InputError(f"scatter: {name} is computed and cannot be set")
+
+    def _quantity(self, name: str, count: int) -> np.ndarray:
+        if name[:2] not in ("c_", "f_"):
+            return self._columns(name, count)
+        moment = self.session.moment
+        values = moment.per_atom(name[2:]) if name[0] == "c" else moment.fix(name[2:]).per_atom(moment.snapshot)
+        width = 1 if values.ndim == 1 else values.shape[1]
+        if width != count:
+            raise InputError(f"gather: {name} has {width} value(s) per atom, not {count}")
+        return values
+
+    def create_atoms(self, n: int, atomid, atype, x, v=None, image=None, shrinkexceed: bool = False) -> int:
+        """Add atoms; returns how many are inside the box and were made.
+
+        Parameters
+        ----------
+        n : int
+        atomid : sequence of int or None
+            Their ids; by default they follow the largest one.
+        atype : sequence of int
+        x, v : sequence of 3n float
+        image : sequence of n int, optional
+            Packed image flags, see `encode_image_flags`.
+        shrinkexceed : bool
+            Atoms beyond a shrink-wrapped face are made too.
+
+        Raises
+        ------
+        InputError
+            A type that does not exist, an id that is there already.
+        """
+        scene, system = self.scene, self.scene.need_system("create_atoms")
+        x, types = np.array(x[:3 * n], float).reshape(n, 3), np.array(atype[:n], np.int32)
+        flags = np.zeros((n, 3), np.int32) if image is None else np.array([self.decode_image_flags(int(i)) for i in image[:n]], np.int32)
+        if ((types < 1) | (types > system.counts["ntypes"])).any():
+            raise InputError(f"create_atoms: atom types must be 1 to {system.counts['ntypes']}")
+        box = system.box
+        box.wrap(x, np.zeros_like(flags))       # as in LAMMPS flags stay as they are given
+        s = (x - box.origin) @ box.inverse
+        open_face = np.array([[shrinkexceed and c in "sm" for c in pair] for pair in box.boundary])
+        inside = ((s >= 0.0) | box.periodic | open_face[:, 0]) & ((s < 1.0) | box.periodic | open_face[:, 1])
+        keep = np.flatnonzero(inside.all(axis=1))
+        ids = system.id.max(initial=0) + 1 + np.arange(len(keep)) if atomid is None else np.array(atomid[:n], np.int64)[keep]
+        if np.isin(ids, system.id).any() or len(np.unique(ids)) < len(ids):
+            raise InputError(f"create_atoms: an atom of ID {ids[np.isin(ids, system.id)][:1]} exists already")
+        values = fresh(scene.atom_style, len(keep))
+        velocities = np.zeros((len(keep), 3)) if v is None else np.array(v[:3 * n], float).reshape(n, 3)[keep]
+        new = type(system)(box=box, x=x[keep], type=types[keep], id=ids, image=flags[keep], v=velocities, counts=dict(system.counts),
+                           units=system.units, dimension=system.dimension, **values)
+        scene.system = system.append(new, keep_ids=True)
+        scene.sync_groups()
+        self.session.changed()
+        return len(keep)
+
+    def create_molecule(self, molid: str, jsonstr: str) -> None:
+        """Refused: use the command ``molecule`` with a file."""
+        raise InputError(f"create_molecule {molid}: templates in JSON are not supported, use the command molecule with a file")
 
     def _columns(self, name: str, count: int) -> np.ndarray:
         values = self._field(name)

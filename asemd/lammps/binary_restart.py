@@ -26,7 +26,7 @@ l.command(f"read_restart '{source}'")
 l.command("info system out log")
 n, groups = l.extract_setting("nlocal"), {}
 ids = np.array(l.numpy.extract_atom("id"))[:n]
-for name in l.available_ids("group"):
+for name in filter(None, l.available_ids("group")):
     l.command(f"variable asemd_member atom gmask({name})")
     groups[name] = ids[np.array(l.numpy.extract_variable("asemd_member", "all", 1))[:n] > 0].tolist()
 l.command(f"write_data '{folder}/data' nocoeff")

@@ -26,7 +26,7 @@ PARTIAL = {
     ("command", "molecule"): "no files in JSON format, no bodies",
     ("command", "read_dump"): "formats native (text) and xyz; no general triclinic boxes",
     ("command", "rerun"): "formats native (text) and xyz; no general triclinic boxes",
-    ("command", "dump_modify"): "no variable intervals, no keywords of image and movie styles",
+    ("command", "dump_modify"): "no triclinic/general",
     ("command", "kspace_style"): "only none",
     ("command", "neigh_modify"): "no include of a group",
     ("command", "pair_modify"): "no special for sub-styles",
@@ -40,7 +40,10 @@ PARTIAL = {
     ("run_style", "respa"): "pairs on one level; fixes nve, langevin and forces from outside",
     ("atom", "dipole"): "no fix turns the dipoles",
     ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
+    ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
+    ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("dump", "local"): "no local values of fixes",
+    ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "langevin"): "no gjf, omega, angmom",
 }
 # names that are read but do nothing useful yet
