@@ -282,11 +282,11 @@ class Thermo:
 
     def format(self, column: int, word: str) -> str:
         """The printf format of a column (from 1)."""
-        if self.format_line:
-            return self.format_line[column - 1]
         kind = self.kind(word)
         default = {"one": {"int": INTEGER, "float": FLOAT}, "multi": {"int": MULTI_INTEGER, "float": MULTI_FLOAT},
                    "yaml": {"int": "%d", "float": "%.15g"}}[self.line][kind]
+        if self.format_line:
+            default = self.format_line[column - 1]
         return self.format_column.get(column) or self.format_word.get(word) or self.format_kind.get(kind) or default
 
     def header(self, words: Sequence[str]) -> str:

@@ -115,7 +115,7 @@ def test_log_has_echo_and_summary(session, tmp_path):
     session.commands("variable n index 3\nrun $n")
     session.close()
     log = (tmp_path / "log.lammps").read_text()
-    assert log.startswith("asemd ") and "run $n\nrun 3\n" in log
+    assert re.match(r"LAMMPS \(\d+ \w+ \d+ - asemd \S+\)\n", log) and "run $n\nrun 3\n" in log
     assert re.search(r"^Loop time of \S+ on 1 procs for 3 steps with 32 atoms$", log, re.M)
     assert re.search(r"^Performance: [\d.]+ tau/day, [\d.]+ timesteps/s, [\d.]+ [kMG]?atom-step/s$", log, re.M)
     assert re.search(r"^Section \|  min time  \|  avg time  \|  max time  \|%varavg\| %total$", log, re.M)

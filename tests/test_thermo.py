@@ -51,7 +51,7 @@ def test_formats():
     thermo.format_column[2], thermo.format_kind["int"], thermo.format_word["press"] = "%20.3f", "%6ld", "%g"
     assert thermo.row(thermo.columns(), [10, -0.40438, 0.5]) == "    10               -0.404 0.5"
     thermo.format_line = ("%d", "%g", "%g")
-    assert thermo.row(thermo.columns(), [0, 1.44, -5.504661]) == "0 1.44 -5.50466"
+    assert thermo.row(thermo.columns(), [0, 1.44, -5.504661]) == "     0                1.440 -5.50466"
 
 
 def test_names():

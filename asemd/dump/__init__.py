@@ -48,6 +48,7 @@ class Dump(Modify):
     style: ClassVar[str] = ""
     wildcards: ClassVar[str] = "*%"     # what the file name may hold
     binary: ClassVar[bool] = False      # whether there is a binary format too
+    one_each: ClassVar[bool] = False    # whether a file holds one snapshot only
     id: str = ""
     label: str = "ATOMS"        # what the header calls the lines
 
@@ -76,9 +77,16 @@ class Dump(Modify):
     @classmethod
     def from_lammps(cls, id: str, group: str, every: int, path: str, words: list[str], session) -> Dump:
         """Build from ``dump ID group style every path words...``."""
+        cls.check_many(id, path)
         dump = cls(group, every, path, *cls.chosen(words), variables=session.variables, regions=session.scene.regions)
         dump.id = id
         return dump
+
+    @classmethod
+    def check_many(cls, id: str, path: str) -> None:
+        """Styles with one file for each snapshot need a name that changes, except for the one snapshot of write_dump."""
+        if cls.one_each and "*" not in path and id != "WRITE_DUMP":
+            raise InputError(f"dump {cls.style} writes one file for each snapshot: the name {path} needs a *")
 
     @classmethod
     def chosen(cls, words: list[str]) -> tuple:

@@ -66,10 +66,8 @@ class Schedule:
             if self.next <= step:
                 raise InputError(f"dump_modify every v_{self.variable}: the variable gave step {self.next}, which is not after step {step}")
         elif self.interval:
-            self._time += self.interval
-            wanted = max(self._time, time + (self.delay - step) * dt)
-            if wanted > self._time:
-                self._time = math.ceil((wanted - EARLY * dt) / self.interval) * self.interval
+            wait = max(self.delay - step - 1, 0) * dt       # a snapshot at a time after this is written on or after the step of the delay
+            self._time = max(self._time + self.interval, math.ceil((time + wait) / self.interval + EARLY) * self.interval)
             self.next = step + max(1, math.ceil((self._time - time) / dt - EARLY))
         else:
             first = max(step + 1, self.delay)

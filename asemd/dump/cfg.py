@@ -20,13 +20,12 @@ class CFG(Custom):
 
     style = "cfg"
     binary = False
+    one_each = True
     KEYWORDS = {k: n for k, n in Custom.KEYWORDS.items() if k not in ("colname", "header")}
 
     def __init__(self, group: str, every: int, path: str, columns: list[str], *, variables=None, regions=None):
         if columns[:5] not in STARTS:
             raise InputError("dump cfg: the columns must begin with mass type xs ys zs or mass type xsu ysu zsu")
-        if "*" not in path:
-            raise InputError(f"dump cfg writes one file for each snapshot: the name needs a *, as in {path}.*")
         super().__init__(group, every, path, columns, variables=variables, regions=regions)
 
     def head(self, snapshot, step, n):

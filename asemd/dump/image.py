@@ -28,6 +28,7 @@ class Image(Dump):
 
     style = "image"
     wildcards = "*"
+    one_each = True
     KEYWORDS = {**{k: n for k, n in Dump.KEYWORDS.items() if k not in ("append", "colname", "format", "header", "sort", "time", "units")},
                 **SELECT, "acolor": 2, "adiam": 2, "amap": 0, "backcolor": 1, "bcolor": 2, "bdiam": 2, "boxcolor": 1, "color": 4}
 
@@ -48,13 +49,9 @@ class Image(Dump):
         self.bond_size: dict[int, float] = {}
         self.background, self.box_colour = (0.0, 0.0, 0.0), rgb("yellow", TYPES, "boxcolor")
 
-    def _check_path(self, path):
-        super()._check_path(path)
-        if self.style == "image" and "*" not in path:
-            raise InputError(f"dump image writes one file for each snapshot: the name {path} needs a *")
-
     @classmethod
     def from_lammps(cls, id, group, every, path, words, session):
+        cls.check_many(id, path)
         colour, diameter = take(words, 2, f"dump {cls.style}")
         dump = cls(group, every, path, colour, diameter, variables=session.variables, regions=session.scene.regions)
         dump.id = id

@@ -20,6 +20,7 @@ class Movie(Image):
 
     style = "movie"
     wildcards = ""
+    one_each = False
     KEYWORDS = {**{k: n for k, n in Image.KEYWORDS.items() if k not in ("maxfiles", "nfile", "fileper", "pad")},
                 "bitrate": 1, "framerate": 1}
 

@@ -10,6 +10,7 @@ from typing import TextIO
 from asemd import __version__
 from asemd.errors import InputError, InputWarning
 
+LANGUAGE = "22 Jul 2025"        # the version of LAMMPS whose scripts are read
 ECHO = ("none", "screen", "log", "both")
 SECTIONS = ("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify")
 
@@ -35,7 +36,8 @@ class Log:
         self.warnings, self.max_warnings = 0, 100
         if path and path != "none":
             self.open(path)
-        self.write(f"asemd {__version__} (LAMMPS input language)\n")
+        self.to_file(f"LAMMPS ({LANGUAGE} - asemd {__version__})\n")       # readers of logs look for the first word
+        self.to_screen(f"asemd {__version__} (LAMMPS input language)\n")
 
     def open(self, path: str, append: bool = False) -> None:
         """Write to another file from now on; ``none`` for none."""

@@ -1,0 +1,154 @@
+"""Whole logs: thermo blocks as LAMMPS writes them, readable by readers of LAMMPS's logs; where a log comes from."""
+from __future__ import annotations
+
+import hashlib
+import re
+
+import numpy as np
+import pytest
+from both import asemd, lines_of
+from wheel import ask
+
+from asemd import __version__
+from asemd.errors import InputError
+from asemd.lammps.session import Session
+from asemd.lammps.switches import Switches
+
+SCRIPT = """
+units metal
+atom_style full
+lattice fcc 3.9
+region b prism 0 4 0 4 0 4 0.5 0.3 0.2
+create_box 2 b bond/types 1 angle/types 1 dihedral/types 1 improper/types 1 extra/bond/per/atom 3
+create_atoms 1 box
+set atom 2*5 type 2
+mass * 12.0107
+velocity all create 300 1234 loop geom
+pair_style lj/cut 4
+pair_coeff * * 0.01 2.6
+bond_style zero
+bond_coeff *
+fix 1 all nvt temp 300 300 0.1
+compute t2 all temp
+compute p2 all pressure t2
+compute ke all ke
+variable v equal step*2
+thermo_style custom step elapsed elaplong dt time atoms temp press pe ke etotal evdwl ecoul epair ebond eangle edihed eimp emol elong etail
+run 2
+thermo_style custom step enthalpy ecouple econserve vol density lx ly lz xlo xhi ylo yhi zlo zhi xy xz yz xlat ylat zlat pxx pyy pzz pxy &
+  pxz pyz fmax fnorm cella cellb cellc cellalpha cellbeta cellgamma nbuild ndanger bonds angles dihedrals impropers part avecx avecy avecz &
+  bvecx bvecy bvecz cvecx cvecy cvecz
+thermo_modify norm yes
+run 2
+thermo_style custom step temp c_ke c_p2[1] f_1 v_v c_p2[*] timeremain
+thermo_modify norm yes format float %15.7f format int "%8d " colname 2 Temper colname c_ke KE format c_ke %9.3g
+thermo_modify format -1 %5.1f colname -2 last
+run 2
+thermo_modify line yaml
+run 2
+thermo_modify line multi format none
+run 2
+thermo_style multi
+run 1
+thermo_style yaml
+run 1
+thermo_style one
+thermo_modify temp t2 press p2 flush yes lost warn lost/bond ignore warn 5
+thermo_modify format line "%d %g %g %g %g %g"
+run 1
+thermo_modify format 2 %20.15g
+run 1
+"""
+THEIRS = """
+import re
+lmp = lammps(cmdargs=["-screen", "none", "-log", given["log"]])
+for line in given["lines"]:
+    lmp.command(line)
+lmp.close()
+answer = open(given["log"]).read()
+"""
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+
+
+def blocks(log: str) -> list[str]:
+    """The lines between setup and summary of each run; without seconds."""
+    found = re.findall(r"^Per MPI rank[^\n]*\n(.*?)^Loop time", log, re.M | re.S)
+    return [re.sub(r"CPU = +\S+", "CPU", block) for block in found]
+
+
+def our_log(folder, text: str) -> str:
+    """The log of a script."""
+    (folder / "in.x").write_text(text)
+    session = Session(switches=Switches(screen="none", log=str(folder / "log.x")))
+    try:
+        session.file(folder / "in.x")
+    finally:
+        session.close()
+    return (folder / "log.x").read_text()
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("logs")
+    commands = " ".join(SCRIPT.split("&\n")).splitlines()
+    theirs = ask(THEIRS, log=str(folder / "log.theirs"), lines=lines_of("\n".join(commands)))
+    return blocks(theirs), blocks(our_log(folder, SCRIPT)), folder
+
+
+def test_thermo_blocks(logs):
+    theirs, ours, _ = logs
+    assert len(theirs) == len(ours) == 9
+    for their, our in zip(theirs, ours):
+        a, b = ([float(n) for n in NUMBER.findall(text)] for text in (their, our))
+        assert NUMBER.sub("0", re.sub(" +", " ", our)) == NUMBER.sub("0", re.sub(" +", " ", their))
+        assert np.allclose(a, b, rtol=2e-6, atol=1e-9)
+        assert [len(line) for line in their.splitlines()][:2] == [len(line) for line in our.splitlines()][:2]
+
+
+def test_yaml_block_is_yaml(logs):
+    yaml = pytest.importorskip("yaml")
+    block = yaml.safe_load(logs[1][3].split("...")[0])
+    assert block["keywords"][:3] == ["Step", "Temper", "KE"] and [row[0] for row in block["data"]] == [6, 8]
+
+
+def test_tables_without_words(logs):
+    """What pymatgen and lammps-logfile do: split the block at blanks."""
+    for block in logs[1][:3]:
+        title, *rows = (line.split() for line in block.splitlines())
+        assert title[0] == "Step" and len(rows) == 2 and all(len(row) == len(title) for row in rows)
+        assert np.isfinite(np.array(rows, float)).all()
+
+
+def test_origin(tmp_path):
+    text = """
+units lj
+region b block 0 6 0 6 0 6
+create_box 1 b
+create_atoms 1 random 20 1234 NULL overlap 1.0 maxtry 100
+mass 1 1.0
+velocity all create 1.0 4711
+pair_style lj/cut 2.5
+pair_coeff 1 1 1 1
+fix 1 all langevin 1 1 1 999
+fix 2 all nve
+run 2
+run 2
+"""
+    log = our_log(tmp_path, text)
+    found = [line for line in log.splitlines() if line.startswith("# asemd")]
+    digest = hashlib.sha256(hashlib.sha256(text.encode()).hexdigest().encode()).hexdigest()
+    assert found == [f"# asemd {__version__}; inputs in.x sha256 {digest}; seeds 1234 (create_atoms), 4711 (velocity), 999 (fix langevin)"]
+    assert our_log(tmp_path, text.replace("999", "998")).split("sha256 ")[1][:64] != digest
+
+
+def test_errors_and_warnings_name_the_place(tmp_path):
+    with pytest.raises(InputError, match=r"in\.x:3: mass 1 1"):
+        our_log(tmp_path, "units lj\n\nmass 1 1\n")
+    log = our_log(tmp_path, "region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\npair_style zero 1\n"
+                            "pair_coeff * *\nrun 0\n")
+    assert re.search(r"^WARNING: no fixes with time integration, atoms won't move \(\S*in\.x:7: run 0\)$", log, re.M)
+
+
+def test_vectors_of_thermo_style():
+    session = asemd("region b block 0 4 0 4 0 4\ncreate_box 1 b\nthermo_style custom step c_thermo_press[*] c_thermo_temp[2*3]")
+    assert session.scene.thermo.words == ("step", *(f"c_thermo_press[{k}]" for k in range(1, 7)), "c_thermo_temp[2]", "c_thermo_temp[3]")
