@@ -54,6 +54,7 @@ class Rerun(Driver):
     def __init__(self, session, files: list[str], options: dict, request, plan: Plan):
         super().__init__(session, plan)
         self.files, self.options, self.request = files, options, request
+        self.loop = None
 
     def snapshots(self):
         """The snapshots that are wanted, in ascending order of steps."""
@@ -104,9 +105,14 @@ class Rerun(Driver):
     def _evaluate(self, step: int, fresh: bool) -> None:
         from asemd.loop import Loop
         session, scene = self.session, self.scene
-        fixes = [*scene.fixes.values(), *live_coefficients(session)]
-        loop = self.loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=step)
-        loop.warn = session.log.warn
+        if self.loop is None or self.loop.system is not scene.system:
+            fixes = [*scene.fixes.values(), *live_coefficients(session)]
+            self.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=step)
+            self.loop.warn = session.log.warn
+        else:
+            self.loop.engine.update(scene.system)       # the box is another one
+        loop = session.loop = self.loop
+        loop.step = step
         loop.setup(self.plan.first, min(self.plan.last, FOREVER), virial=True)
         loop.end_of_step()
         if fresh:
