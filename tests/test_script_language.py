@@ -74,6 +74,28 @@ SCRIPTS = [
     "print '$(5%0)'",
 ]
 
+IFS = ["1 > 0", "1 > 0 && 0 < 1", "a == a", "a != b", "a==b", "abc > abd", "1 == a", "(1 + 1) == 2", "1 + 1 == 2", "!0", "1 |^ 0", "1", "",
+       "a==a && b==b", "(a==a)", "1 && a == a", "a~b", "1.0 == 1", "1e2 == 100", "-1 < 0", "!(1>2)", "a == a == a", "1 <> 2", "true", "PI",
+       "1 % 2", "/a/b == /a/b", "lj/cut == lj/cut", "file.txt == file.txt", "0x1", "1 < 2 == 1", "0 || 1 && 0",
+    "((1>2)||(2>1))", "(1", "1)"]
+PLAIN = [
+    *(f'if "{condition}" then "print yes" else "print no"' for condition in IFS), 'if "1" print a', 'if "1" then',
+    'if "0" then "print a" elif "1" "print b" else "print c"', 'if "0" then "print a" else "print c" elif "1" "print b"',
+    'if "1" then "print a" "variable q index 5" "print ${q}"', "variable a index 3\nif \"$a > 2\" then \"print 'a is $a'\"",
+    'variable s string "a b"\nif "$s == hello" then "print ok"', "if \"1>0\" then \"if '1>0' then 'print deep'\"", "label a b", "label",
+    "include", "include nofile", "echo foo", "echo", "echo both x", "echo none\nprint hi", "shell", "shell cd", "shell mkdir",
+    "shell mv a", "shell mkdir zz zz2\nshell rmdir zz zz2\nprint done", "shell rm -f nofile\nprint done",
+    "shell putenv A=3 B=4\nvariable a getenv A\nvariable b getenv B\nprint '$a$b'",
+    "shell echo hi > zz.t\nvariable f file zz.t\nprint '$f'", "shell touch q1 q2\nshell rm q1 q2\nprint '$(is_file(q1))'",
+    "print 'x' # comment \"unfinished", "variable a string \"x#y\"\nprint '$a'", "print \"\"\"a 'b' \"c\" # d\"\"\"", "units lj real",
+    "units foo", "timer full", "timer off nosync", "timer foo", "partition no 1 print hi", "partition maybe 1 print hi",
+    "variable x equal 3\nprint '$x$x ${x}'", "print '$((1+2)*3) $(1.5:%8.3f)'", "print '$(1:%d)'", "print '${x'", "print $",
+    "variable y equal $(2+3)+1\nprint '${y}'", "print a b", "print", "print a bogus x", "print a screen maybe", "print a file", "jump",
+    "next", "variable", "variable v", "variable v bogus 1", "variable v-x equal 1", "variable v delete 3", "variable v loop 3 1",
+    "variable v loop 0", "variable v loop -1 3\nprint $v", "variable v loop 2 4 pad\nprint $v", "variable v internal a",
+    "variable v index a\nvariable v string b", "variable v string a\nvariable v index b\nprint $v", "variable v equal 1 + 2\nprint $v",
+]
+
 WHEEL = """
 import os, tempfile
 os.chdir(tempfile.mkdtemp())
@@ -83,7 +105,7 @@ answer = []
 for script in given["scripts"]:
     l = start("-nocite")
     try:
-        l.commands_string(given["box"] + "log out.log\\n" + script)
+        l.commands_string(script)
         done = True
     except Exception:
         done = False
@@ -96,7 +118,7 @@ def ours(script: str) -> tuple[bool, list[str]]:
     with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            l.commands_string(BOX + "log out.log\n" + script)
+            l.commands_string(script)
             done = True
         except InputError:
             done = False
@@ -108,9 +130,11 @@ def test_scripts_print_what_they_print_in_lammps(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
-    theirs = ask(WHEEL, scripts=SCRIPTS, box=BOX, files=FILES)
-    for script, (done, lines) in zip(SCRIPTS, theirs):
+    scripts = [f"{BOX}log out.log\n{s}" for s in SCRIPTS] + [f"log out.log\n{s}" for s in PLAIN]
+    theirs = ask(WHEEL, scripts=scripts, files=FILES)
+    for script, (done, lines) in zip(scripts, theirs):
         mine = ours(script)
+        script = script.partition("out.log")[2]
         assert mine[0] == done, script
         if done:
             assert mine[1][:len(lines) - 1] == lines[:-1], script      # the last line is the time

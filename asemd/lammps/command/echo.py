@@ -1,8 +1,8 @@
 """``echo none|screen|log|both``"""
 from __future__ import annotations
 
-from asemd.words import take
+from asemd.words import exactly
 
 
 def run(session, args):
-    session.log.set_echo(take(args, 1, "echo")[0])
+    session.log.set_echo(exactly(args, 1, "echo")[0])

@@ -6,9 +6,14 @@ import re
 from asemd.errors import InputError
 from asemd.words import take
 
-MARKS = ("elif", "else")
-COMPARE = re.compile(r"(.*?)(==|!=)(.*)", re.S)
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+TOKEN = re.compile(r"\s*(?:(?P<number>-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<text>[A-Za-z_][\w/]*)"
+                   r"|(?P<op>==|!=|<=|>=|<|>|&&|\|\||\|\^|!|\(|\)))")
+BINARY = (
+    {"||": lambda a, b: bool(a) or bool(b), "|^": lambda a, b: bool(a) != bool(b)},
+    {"&&": lambda a, b: bool(a) and bool(b)},
+    {"==": lambda a, b: a == b, "!=": lambda a, b: a != b},
+    {"<": lambda a, b: a < b, "<=": lambda a, b: a <= b, ">": lambda a, b: a > b, ">=": lambda a, b: a >= b},
+)
 
 
 def run(session, args):
@@ -26,27 +31,77 @@ def run(session, args):
             branches.append((None, []))
         else:
             branches[-1][1].append(word)
-    for k, (condition, commands) in enumerate(branches):
-        if not commands or (condition is None and k != len(branches) - 1):
-            raise InputError("if: every branch needs commands, and else comes last")
+    if not all(commands for _, commands in branches):
+        raise InputError("if: every branch needs commands")
     for condition, commands in branches:
-        if condition is None or holds(session, session.substitute(condition)):
+        if condition is None or holds(session.substitute(condition)):
             for command in commands:
                 session.execute(command)
             return
 
 
-def holds(session, text: str) -> bool:
-    """Whether a condition is true: a formula of numbers, or two texts compared with == or !=."""
-    compare = COMPARE.fullmatch(text.strip())
-    if compare and not any(c in text for c in "&|()"):
-        left, right = compare[1].strip(), compare[3].strip()
-        if not (NUMBER.fullmatch(left) and NUMBER.fullmatch(right)):
-            if not left or not right or " " in left or " " in right:
-                raise InputError(f"if: cannot compare {text!r}")
-            if NUMBER.fullmatch(left) or NUMBER.fullmatch(right):
-                raise InputError(f"if: cannot compare a number with text in {text!r}")
-            return (left == right) == (compare[2] == "==")
-    if re.search(r"[A-Za-z_](?![-+.\d])", re.sub(NUMBER, "", text)):
-        raise InputError(f"if: {text!r} must be numbers with operators, or two words compared with == or !=")
-    return session.variables.evaluate(text) != 0.0
+def holds(text: str) -> bool:
+    """Whether a condition of numbers and words is true.
+
+    Raises
+    ------
+    InputError
+        Not a condition, or one that compares a number with a word.
+    """
+    condition = Condition(text)
+    value = condition.binary(0)
+    if condition.tokens or isinstance(value, str):
+        raise condition.error()
+    return bool(value)
+
+
+class Condition:
+    """The tokens of a condition, read from left to right."""
+
+    def __init__(self, text: str):
+        self.text, self.tokens, at = text, [], 0
+        while text[at:].strip():
+            match = TOKEN.match(text, at)
+            if not match:
+                raise self.error()
+            kind = match.lastgroup
+            self.tokens.append((kind, match[kind]))
+            at = match.end()
+
+    def error(self) -> InputError:
+        return InputError(f"if: {self.text!r} must be numbers or words compared with == != < <= > >= and joined by && || |^ ! ( )")
+
+    def next(self, operators=("!", "(", ")")) -> str:
+        """The operator that comes next, if it is one of these."""
+        if self.tokens and self.tokens[0][0] == "op" and self.tokens[0][1] in operators:
+            return self.tokens.pop(0)[1]
+        return ""
+
+    def binary(self, level: int):
+        if level == len(BINARY):
+            return self.operand()
+        value = self.binary(level + 1)
+        while operator := self.next(BINARY[level]):
+            other = self.binary(level + 1)
+            if isinstance(value, str) != isinstance(other, str):
+                raise InputError(f"if: cannot compare a number with text in {self.text!r}")
+            if isinstance(value, str) and operator not in ("==", "!="):
+                raise InputError(f"if: words can only be compared with == and != in {self.text!r}")
+            value = float(BINARY[level][operator](value, other))
+        return value
+
+    def operand(self):
+        if self.next(("!",)):
+            value = self.operand()
+            if isinstance(value, str):
+                raise self.error()
+            return float(not value)
+        if self.next(("(",)):
+            value = self.binary(0)
+            if not self.next((")",)):
+                raise self.error()
+            return value
+        if not self.tokens or self.tokens[0][0] == "op":
+            raise self.error()
+        kind, word = self.tokens.pop(0)
+        return float(word) if kind == "number" else word

@@ -1,8 +1,8 @@
 """``label ID``: a place that ``jump`` may go to."""
 from __future__ import annotations
 
-from asemd.words import take
+from asemd.words import exactly
 
 
 def run(session, args):
-    take(args, 1, "label")
+    exactly(args, 1, "label")

@@ -5,9 +5,12 @@ import glob
 import os
 import shutil
 import subprocess
+from collections.abc import Callable
 
 from asemd.errors import InputError
 from asemd.words import take
+
+MANY = 10**6
 
 
 def run(session, args):
@@ -16,49 +19,56 @@ def run(session, args):
     if session.passive:
         return
     name, rest = words[0], words[1:]
-    try:
-        if name in BUILT_IN:
-            BUILT_IN[name](*rest)
-            return
-    except TypeError:
-        raise InputError(f"shell {name}: wrong number of arguments, got {len(rest)}") from None
-    except OSError as e:
-        raise InputError(f"shell {name} failed: {e}") from None
+    if name in BUILT_IN:
+        least, most = COUNTS[name]
+        if not least <= len(rest) <= most:
+            raise InputError(f"shell {name}: wrong number of arguments, got {len(rest)}")
+        for failed in BUILT_IN[name](*rest):
+            session.warn(f"shell command {name} failed: {failed}")
+        return
     session.log.flush()
     status = subprocess.run(" ".join(words), shell=True, check=False).returncode
     if status:
         session.warn(f"shell command {name} ended with status {status}")
 
 
-def cd(path: str) -> None:
-    os.chdir(path)
+def attempts(work: Callable[..., object], *arguments: tuple) -> list[str]:
+    """Do the same with each tuple of arguments; returns what went wrong."""
+    failed = []
+    for values in arguments:
+        try:
+            work(*values)
+        except (OSError, shutil.Error, ValueError) as e:
+            failed.append(str(e))
+    return failed
 
 
-def mkdir(*paths: str) -> None:
-    for path in paths:
-        os.makedirs(path, exist_ok=True)
+def cd(path: str) -> list[str]:
+    return attempts(os.chdir, (path,))
 
 
-def mv(old: str, new: str) -> None:
-    shutil.move(old, new)
+def mkdir(*paths: str) -> list[str]:
+    return attempts(lambda p: os.makedirs(p, exist_ok=True), *((p,) for p in paths))
 
 
-def rm(*patterns: str) -> None:
-    for pattern in patterns:
-        if pattern != "-f":
-            for path in glob.glob(pattern):
-                os.remove(path)
+def mv(old: str, new: str) -> list[str]:
+    return attempts(shutil.move, (old, new))
 
 
-def rmdir(*paths: str) -> None:
-    for path in paths:
-        os.rmdir(path)
+def rm(*words: str) -> list[str]:
+    """Remove files; with -f it does not matter if there is none."""
+    patterns = [w for w in words if w != "-f"]
+    failed = attempts(os.remove, *((p,) for pattern in patterns for p in (glob.glob(pattern) or [pattern])))
+    return [] if "-f" in words else failed
 
 
-def putenv(*pairs: str) -> None:
-    for pair in pairs:
-        name, _, value = pair.partition("=")
-        os.environ[name] = value
+def rmdir(*paths: str) -> list[str]:
+    return attempts(os.rmdir, *((p,) for p in paths))
+
+
+def putenv(*pairs: str) -> list[str]:
+    return attempts(os.environ.__setitem__, *((name, value) for name, _, value in (p.partition("=") for p in pairs)))
 
 
 BUILT_IN = {"cd": cd, "mkdir": mkdir, "mv": mv, "rm": rm, "rmdir": rmdir, "putenv": putenv}
+COUNTS = {"cd": (1, 1), "mkdir": (1, MANY), "mv": (2, 2), "rm": (1, MANY), "rmdir": (1, MANY), "putenv": (1, MANY)}

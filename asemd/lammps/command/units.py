@@ -1,9 +1,9 @@
 """``units style``"""
 from __future__ import annotations
 
-from asemd.words import take
+from asemd.words import exactly
 
 
 def run(session, args):
-    take(args, 1, "units")
+    exactly(args, 1, "units")
     session.scene.set_units(args[0])
