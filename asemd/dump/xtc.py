@@ -41,6 +41,9 @@ class XTC(Trajectory):
         scale, tick = self.scales
         self._file.write((scale * positions).astype(np.float32), (scale * cell).astype(np.float32), step, np.float32(tick * step * dt),
                          self.precision)
+        if self.flush:          # a file that is closed is on the disk
+            self._file.close()
+            self._file = library()[1].XTCFile(self.path, "a")
 
     def _modify_precision(self, values, what, session):
         precision = whole(values[0], what)
