@@ -1,6 +1,9 @@
 """``dump ID group xtc N file``: GROMACS's compressed trajectory format, written by MDAnalysis."""
 from __future__ import annotations
 
+import os
+import tempfile
+
 import numpy as np
 
 from asemd import units
@@ -31,7 +34,7 @@ class XTC(Trajectory):
         return self.sfactor or known[0], self.tfactor or known[1]
 
     def start(self, path, n, step, dt):
-        self._file = library()[1].XTCFile(path, "w")
+        self._file = open(path, "wb")
 
     def write_view(self, snapshot, step, view):
         self.scales = self._factors(snapshot.system.units)
@@ -39,11 +42,16 @@ class XTC(Trajectory):
 
     def frame(self, positions, cell, step, dt):
         scale, tick = self.scales
-        self._file.write((scale * positions).astype(np.float32), (scale * cell).astype(np.float32), step, np.float32(tick * step * dt),
-                         self.precision)
-        if self.flush:          # a file that is closed is on the disk
-            self._file.close()
-            self._file = library()[1].XTCFile(self.path, "a")
+        # the library keeps frames back until its file is closed: a file for each, joined to the others
+        with tempfile.TemporaryDirectory(prefix="asemd-xtc-") as folder:
+            path = os.path.join(folder, "frame.xtc")
+            with library()[1].XTCFile(path, "w") as out:
+                out.write((scale * positions).astype(np.float32), (scale * cell).astype(np.float32), step, np.float32(tick * step * dt),
+                          self.precision)
+            with open(path, "rb") as f:
+                self._file.write(f.read())
+        if self.flush:
+            self._file.flush()
 
     def _modify_precision(self, values, what, session):
         precision = whole(values[0], what)
