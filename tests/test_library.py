@@ -26,8 +26,8 @@ set_show_error set_string_variable set_variable version accelerator_config cmd h
 has_gpu_device has_gzip_support has_jpeg_support has_mpi_support has_png_support installed_packages ipython is_running last_thermo_step
 numpy"""
 VIEWS = """extract_atom extract_compute extract_fix extract_variable fix_external_get_force fix_external_set_energy_peratom
-fix_external_set_virial_peratom gather_angles gather_bonds gather_dihedrals gather_impropers get_neighlist "
-"get_neighlist_element_neighbors"""
+fix_external_set_virial_peratom gather_angles gather_bonds gather_dihedrals gather_impropers get_neighlist
+get_neighlist_element_neighbors"""
 SCENE = """units real
 atom_style full
 atom_modify map array sort 0 0
