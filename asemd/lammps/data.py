@@ -92,7 +92,6 @@ class _Reader(DataText):
         self.labels: dict[str, dict[int, str]] = {}
         self.told = progress and (lambda line: progress(line, len(self.lines)))
 
-    # ---- the whole file
     def read(self) -> DataFile:
         for section, kind in LABELS.items():
             if section in self.sections:
@@ -117,7 +116,6 @@ class _Reader(DataText):
         if said and said[0] != self.units and self.units != "ase":
             self.warn(f"the file was written in units {said[0]}, but units is {self.units}", 0)
 
-    # ---- box
     def read_box(self) -> tuple[Box, np.ndarray | None]:
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""
         head = self.header
@@ -150,7 +148,6 @@ class _Reader(DataText):
             raise self.fail("read_data add: the tilt factors of both boxes must be equal", self.header_line.get("xy xz yz"))
         return Box.from_lammps(np.minimum(old.lo, box.lo), np.maximum(old.hi, box.hi), old.tilt, old.boundary, old.triclinic)
 
-    # ---- sections
     def table(self, section: str, columns: Sequence[str], count: int, kind: str = "atom", optional: Sequence[str] = ()):
         """Columns of a section as arrays, and a function row -> line index."""
         s = self.sections[section]
