@@ -95,7 +95,10 @@ class Parser:
         self.advance()
 
     def result(self) -> Value:
-        value = self.binary(0)
+        try:
+            value = self.binary(0)
+        except RecursionError:
+            raise InputError("a formula is nested too deeply") from None
         if self.kind != "end":
             raise InputError(f"invalid formula {self.formula!r}: unexpected {self.token!r}")
         if isinstance(value, np.ndarray) and self.style == "equal":

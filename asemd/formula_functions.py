@@ -60,7 +60,7 @@ def _divide(a: float, b: float) -> float:
 def _modulo(a: float, b: float) -> float:
     if b == 0.0:
         raise InputError("modulo 0 in a formula")
-    return math.fmod(a, b)
+    return math.fmod(a, b) if math.isfinite(a) and not math.isnan(b) else math.nan
 
 
 def _power(a: float, b: float) -> float:
@@ -171,7 +171,7 @@ def _logfreq2(c: Clock, x: float, y: float, z: float) -> float:
     low = x
     while c.step >= z * low:
         low *= z
-    k = 1
+    k = max(1, int((c.step / low - 1) * y / (z - 1)) - 1)       # close to the one, not beyond it
     while math.ceil(low * (1 + k * (z - 1) / y)) <= c.step:
         k += 1
     return float(math.ceil(low * (1 + k * (z - 1) / y)))
@@ -184,7 +184,8 @@ def _logfreq3(c: Clock, x: float, y: float, z: float) -> float:
         return float(x)
     if c.step >= z:
         raise InputError(f"logfreq3({x},{y},{z}) has no step after {c.step}")
-    for k in range(1, y):
+    near = int((y - 1) * math.log(c.step / x) / math.log(z / x))
+    for k in range(max(1, near - 1), y):
         step = math.ceil(x * (z / x) ** (k / (y - 1)) - 1e-9)
         if step > c.step:
             return float(min(step, z))

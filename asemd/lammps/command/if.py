@@ -49,7 +49,10 @@ def holds(text: str) -> bool:
         Not a condition, or one that compares a number with a word.
     """
     condition = Condition(text)
-    value = condition.binary(0)
+    try:
+        value = condition.binary(0)
+    except RecursionError:
+        raise InputError("if: the condition is nested too deeply") from None
     if condition.tokens or isinstance(value, str):
         raise condition.error()
     return bool(value)
