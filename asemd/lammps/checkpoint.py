@@ -26,6 +26,11 @@ def renew(loop: Loop) -> np.ndarray:
         Forces of the interactions alone, without the part of fixes.
     """
     e, system = loop.engine, loop.system
+    if hasattr(loop, "levels"):         # respa: the forces of each level are made afresh, here as in the continued run
+        counters = e.builds, e.dangerous, e.timings
+        loop.setup(loop.begin, loop.end)
+        e.builds, e.dangerous, e.timings = counters
+        return system.f.copy()
     for name in ("pre_exchange", "pre_neighbor"):
         loop._hook(name)
     e.store()
@@ -64,8 +69,10 @@ def digest(system) -> str:
     return h.hexdigest()
 
 
-def take(loop: Loop, alone: np.ndarray) -> dict[str, Any]:
-    """The state of a run; `alone` is what `renew` returned at this step."""
+def take(loop: Loop, alone: np.ndarray) -> dict[str, Any] | None:
+    """The state of a run; `alone` is what `renew` returned at this step. None for respa, which begins afresh."""
+    if hasattr(loop, "levels"):
+        return None
     numbers = [{"p": p.copy(), "a": a.copy()} for p, a in loop._fix_data]
     return {"forces": loop.system.f.copy(), "alone": alone, "dt": loop.dt, "atoms": digest(loop.system), "fixes": describe(loop.fixes),
             "numbers": numbers}
