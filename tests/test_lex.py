@@ -87,8 +87,8 @@ def test_all_unknown_names_are_found_at_once():
 
 
 def test_a_command_of_lammps_that_is_missing_here_is_not_called_unknown():
-    errors, _ = script.check(script.parse("write_restart a\nwrite_restrat a\n"))
-    assert "not supported yet" in str(errors[0]) and "did you mean write_restart?" in str(errors[1])
+    errors, _ = script.check(script.parse("temper_npt a\ntemper_ntp a\n"))
+    assert "not supported yet" in str(errors[0]) and "did you mean temper_npt?" in str(errors[1])
 
 
 def test_names_inside_a_loop_are_only_doubtful():

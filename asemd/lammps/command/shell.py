@@ -44,7 +44,10 @@ def attempts(work: Callable[..., object], *arguments: tuple) -> list[str]:
 
 
 def cd(path: str) -> list[str]:
-    return attempts(os.chdir, (path,))
+    """LAMMPS would only warn, and go on in the wrong folder."""
+    for failed in attempts(os.chdir, (path,)):
+        raise InputError(f"shell cd failed: {failed}")
+    return []
 
 
 def mkdir(*paths: str) -> list[str]:
