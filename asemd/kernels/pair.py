@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_list
+from asemd.kernels import bond_history, pair_cluster, pair_list, pair_sums
 from asemd.kernels.generate import Builder, text_of
 from asemd.pairstyle import PairStyle
 
@@ -98,6 +98,8 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         for v, r in enumerate(varying):
             lines += ["    for k in range(full):", f"        b[k + base + {v} * ROW] = rows[{r}, t, types[k]]"]
         b.text("\n".join(lines))
+    for f in (pair_sums.eight, pair_sums.plus, pair_sums.add):
+        b.function(f, fast=True)
     b.function(pair_cluster.inner_two, fast=True)
     b.function(pair_cluster.one_pair, fast=True)
     if outdated:
@@ -149,6 +151,8 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         array += len(part.arrays)
     lines.append("    return fp, ev, ec")
     b.text("\n".join(lines))
+    for f in (pair_sums.eight, pair_sums.add):
+        b.function(f)
     b.function(pair_list.list_forces)
     if broken:
         b.function(bond_history.broken_pairs)
@@ -180,6 +184,8 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool):
         constant += len(part.constants)
     b.text("\n".join([*lines, "    return fp, ev, ec"]))
     b.text(f"def furthest(p, rows, ti, tj):\n    return {cuts[0] if len(cuts) == 1 else 'max(' + ', '.join(cuts) + ')'}")
+    for f in (pair_sums.eight, pair_sums.add):
+        b.function(f, fast=True)
     b.function(pair_list.row_forces, fast=True)
     module = b.build()
     return module.row_forces, module

@@ -20,6 +20,7 @@ import math
 import numpy as np
 
 from asemd.kernels.fuse import madd
+from asemd.kernels.pair_sums import add, eight, plus
 
 CLUSTER = 8
 ROW = 1048
@@ -100,7 +101,7 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
         b[place(k + 3 * ROW)] = madd(-dxa, pa, madd(-dxb, pb, b[place(k + 3 * ROW)]))
         b[place(k + 4 * ROW)] = madd(-dya, pa, madd(-dyb, pb, b[place(k + 4 * ROW)]))
         b[place(k + 5 * ROW)] = madd(-dza, pa, madd(-dzb, pb, b[place(k + 5 * ROW)]))
-    return fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5
+    return fxa, fya, fza, fxb, fyb, fzb, (ev, ec, v0, v1, v2, v3, v4, v5)
 
 
 def one_pair(b, k, x, y, z, qi, p, rows):
@@ -120,7 +121,7 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     b[place(k + 3 * ROW)] -= fx
     b[place(k + 4 * ROW)] -= fy
     b[place(k + 5 * ROW)] -= fz
-    return fx, fy, fz, ev, ec, dx * fx, dy * fy, dz * fz, dx * fy, dx * fz, dy * fz
+    return fx, fy, fz, eight(ev, ec, dx, dy, dz, fx, fy, fz)
 
 
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
@@ -205,10 +206,10 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                     b[k] = far
                     xp += 1
             if OUTDATED and late:
-                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_hidden(
+                fxa, fya, fza, fxb, fyb, fzb, sums = inner_hidden(
                     b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0)
             else:
-                fxa, fya, fza, fxb, fyb, fzb, ev, ec, v0, v1, v2, v3, v4, v5 = inner_two(
+                fxa, fya, fza, fxb, fyb, fzb, sums = inner_two(
                     b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0)
             if EXCLUDE:
                 for y in range(xp - 1, x0 - 1, -1):
@@ -227,43 +228,29 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         if (hide[place(f0 + k)] >> (a0 + ((excluded[y] >> 16) == a0))) & 1:
                             continue
                     if (excluded[y] >> 16) == a0:
-                        gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, k, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
+                        gx, gy, gz, one = one_pair(b, k, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
                         fxb += gx
                         fyb += gy
                         fzb += gz
                     else:
-                        gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, k, xa, ya, za, qa, p, 7 * ROW)
+                        gx, gy, gz, one = one_pair(b, k, xa, ya, za, qa, p, 7 * ROW)
                         fxa += gx
                         fya += gy
                         fza += gz
                     if ENERGY:
-                        ev += ev1
-                        ec += ec1
-                        v0 += w0
-                        v1 += w1
-                        v2 += w2
-                        v3 += w3
-                        v4 += w4
-                        v5 += w5
+                        sums = plus(sums, one)
             if OUTDATED and late:
                 together = together and ((hide[place(f0 + mine + a0 + 1)] >> a0) & 1) == 0
             if together:
                 # b was hidden from a, too, lest they met twice
                 b[place(mine + a0 + 1)] = xb
-                gx, gy, gz, ev1, ec1, w0, w1, w2, w3, w4, w5 = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, 7 * ROW)
+                gx, gy, gz, one = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, 7 * ROW)
                 b[place(mine + a0 + 1)] = done
                 fxa += gx
                 fya += gy
                 fza += gz
                 if ENERGY:
-                    ev += ev1
-                    ec += ec1
-                    v0 += w0
-                    v1 += w1
-                    v2 += w2
-                    v3 += w3
-                    v4 += w4
-                    v5 += w5
+                    sums = plus(sums, one)
             b[place(mine + a0 + 3 * ROW)] += fxa
             b[place(mine + a0 + 4 * ROW)] += fya
             b[place(mine + a0 + 5 * ROW)] += fza
@@ -271,14 +258,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             b[place(mine + a0 + 1 + 4 * ROW)] += fyb
             b[place(mine + a0 + 1 + 5 * ROW)] += fzb
             if ENERGY:
-                acc[0] += ev
-                acc[1] += ec
-                acc[2] += v0
-                acc[3] += v1
-                acc[4] += v2
-                acc[5] += v3
-                acc[6] += v4
-                acc[7] += v5
+                add(acc, sums)
         for k in range(full):
             j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
             f[0, j] += b[k + 3 * ROW]

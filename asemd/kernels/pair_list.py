@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.kernels.pair_sums import add, eight
+
 ENERGY = PER_ATOM = CHARGED = False
 pair_energy_one = furthest = pair_of = None
 
@@ -50,14 +52,7 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         f[1, j] -= gy
         f[2, j] -= gz
         if ENERGY:
-            acc[0] += ev
-            acc[1] += ec
-            acc[2] += dx * gx
-            acc[3] += dy * gy
-            acc[4] += dz * gz
-            acc[5] += dx * gy
-            acc[6] += dx * gz
-            acc[7] += dy * gz
+            add(acc, eight(ev, ec, dx, dy, dz, gx, gy, gz))
         if PER_ATOM:
             h = 0.5 * (ev + ec)
             atom_energy[i] += h
@@ -105,14 +100,7 @@ def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2
                 f[1, j] -= gy
                 f[2, j] -= gz
                 if ENERGY:
-                    acc[0] += ev
-                    acc[1] += ec
-                    acc[2] += dx * gx
-                    acc[3] += dy * gy
-                    acc[4] += dz * gz
-                    acc[5] += dx * gy
-                    acc[6] += dx * gz
-                    acc[7] += dy * gz
+                    add(acc, eight(ev, ec, dx, dy, dz, gx, gy, gz))
         f[0, i] += fx
         f[1, i] += fy
         f[2, i] += fz
