@@ -7,6 +7,7 @@ from asemd.errors import InputError, nearest
 from asemd.thermo import Thermo, parse_reference
 from asemd.words import take
 
+NUMBERS = ("equal", "timer", "internal", "python")     # variables that are one number
 RANGE = re.compile(r"([cfv])_(\w+)\[(\d*)\*(\d*)\]")
 
 
@@ -21,6 +22,10 @@ def run(session, args):
         if table is not None and reference[1] not in table:
             kind, id = "compute" if reference[0] == "c" else "fix", reference[1]
             raise InputError(f"thermo_style: there is no {kind} {id}{nearest(id, table)}")
+        if reference and reference[0] == "v":
+            style, fits = session.variables.find(reference[1]).style, ("vector",) if reference[2] else NUMBERS
+            if style not in fits:
+                raise InputError(f"thermo_style: {word} needs a variable of style {fits[0]}, {reference[1]} has style {style}")
     before = scene.thermo
     lost = before != Thermo(before.style, before.words, before.every, before.style if before.style in ("multi", "yaml") else "one")
     before.set_style(args[0], words)
