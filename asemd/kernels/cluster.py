@@ -148,8 +148,9 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
 
     `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (11, w)`, `codes (w,)`, `needed (w,)`, `near (w,)`:
     candidates of one cluster. A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only,
-    ``span[c, 2 p]`` to ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry; pair p then needs the sums p to p + 3. The
-    cluster itself stands in the middle, at ``own[c]``. Rows end with copies of the slot `empty`, so that they fill vectors of `width`.
+    ``span[c, 2 p]`` to ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry; pair p then needs
+    the sums p to p + 3. The cluster itself stands in the middle, at ``own[c]``. Rows end with copies of the slot `empty`, so that they
+    fill vectors of `width`.
     `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row. With MARK each entry gets
     in `hide` the bits of the atoms of the cluster that are beyond reach.
     """
