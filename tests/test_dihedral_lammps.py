@@ -131,6 +131,28 @@ def test_cross_terms_in_data_files(style, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("style", ["table/cut linear 100", "hybrid table/cut linear 100 class2"])
+def test_the_cutoff_of_a_table_is_no_cross_term(style, tmp_path):
+    """The mark aat of class2 is also a word of table/cut, whose coefficients stand in the main section."""
+    path, written, table = data(tmp_path / "data.chain", 0), tmp_path / "data.written", tmp_path / "table.txt"
+    phi = np.arange(0.0, 360.0, 3.0)
+    rows = np.column_stack([phi, 1 + np.cos(np.radians(3 * phi)), np.radians(3 * np.sin(np.radians(3 * phi)))])
+    table.write_text("\n".join([f"KEY\nN {len(phi)} DEGREES", "", *(f"{k} {a:.15g} {b:.15g} {c:.15g}" for k, (a, b, c) in
+                                                                     enumerate(rows.tolist(), 1))]) + "\n")
+    cut = f"aat 1.2 80 140 {table} KEY"
+    hybrid = [f"1 table/cut {cut}", f"3 table/cut {cut}", *(f"2 class2 {line}" for line in CLASS2)]
+    lines = hybrid if "hybrid" in style else [f"* {cut}"]
+    lines = scene(path, style, lines)
+    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as mine:
+        mine.commands_list([*lines, "run 0", f"write_data {written}"])
+        energy = mine.get_thermo("edihed")
+    again = [line.replace(str(path), str(written)) for line in lines if not line.startswith(("dihedral_coeff", "bond_coeff", "pair_coeff"))]
+    want, = ask(WHEEL, jobs=[again])
+    assert energy != 0.0 and want["edihed"] == pytest.approx(energy, rel=1e-12)
+    same(again, want)
+
+
+@pytest.mark.filterwarnings("ignore")
 def test_a_cross_term_is_missing(tmp_path):
     path = data(tmp_path / "data.chain", 0)
     fails(scene(path, "class2", LISTS["class2"][:-1]), "lacks bb13")

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from asemd import atom_style as atom_styles
+from asemd.cross_terms import CrossTermStyle
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
 from asemd.lammps.data_format import COEFFS, IMAGE, LABELS, TOPOLOGY
@@ -188,8 +189,9 @@ def _bonded_sections(interactions: Interactions, category: str, count: int) -> d
     main = f"{category.capitalize()} Coeffs"
     out: dict[str, list[list[str]]] = {main: []}
     at = 2 if interactions.hybrid[category] else 1
+    crossed = {str(key) for use in interactions.uses[category] if isinstance(use.style, CrossTermStyle) for key in use.coeff}
     for line in interactions.coeff_lines(category):
-        mark = line[at] if len(line) > at else ""
+        mark = line[at] if line[0] in crossed and len(line) > at else ""        # a table/cut line has a word aat that is no such mark
         name = MARKS.get(category, {}).get(mark, main)
         out.setdefault(name, []).append(line if name == main else [*line[:at], *line[at + 1:]])
     for name, lines in out.items():
