@@ -84,7 +84,7 @@ def differentiated(program: tuple[str, ...]) -> Source:
             return functions["whole"](root if e.exp > 0 else functions["recip"](root), abs(e.exp.p))
         return e.func(*map(fold, e.args))
 
-    temporaries, results = sympy.cse([fold(energy), fold(sympy.diff(energy, x))], sympy.numbered_symbols("s"), order="none")
+    temporaries, results = sympy.cse([fold(energy), fold(sympy.diff(divided(energy, x), x))], sympy.numbered_symbols("s"), order="none")
     write, lines = printer()
     for name, e in temporaries:
         text = write(e)
@@ -93,6 +93,29 @@ def differentiated(program: tuple[str, ...]) -> Source:
     formulas = [write(e) for e in constants]
     lines, formulas, texts = ([text.replace("numpy.", "np.") for text in each] for each in (lines, formulas, texts))
     return Source(tuple(lines), *texts, tuple(formulas))
+
+
+def divided(energy, x):
+    """Quotients that level off, such as x^2 / (1 + x^2), as a constant and a remainder over the denominator; for the derivative.
+
+    The derivative of such a quotient as it stands is a difference of nearly equal numbers where it is almost level.
+    """
+    import sympy
+
+    def level(e):
+        fixed, moving = e.as_independent(x, as_Add=False)
+        above, below = sympy.fraction(moving)
+        if not (above.has(x) and below.has(x)):
+            return e
+        t = sympy.Dummy("t")
+        for part in (x, *sorted(moving.atoms(sympy.exp), key=str)):
+            top, bottom = above.subs(part, t), below.subs(part, t)
+            if not (top.has(x) or bottom.has(x)) and top.is_polynomial(t) and bottom.is_polynomial(t):
+                whole, rest = sympy.div(top, bottom, t)
+                return e if whole == 0 or whole.has(t) or rest.has(t) else fixed * (whole + rest / below)
+        return e
+
+    return energy.replace(lambda e: e.is_Mul and e.has(x), level)
 
 
 @cache

@@ -126,11 +126,6 @@ def check_complete(interactions: Interactions, system) -> None:
         the pair style does not have, shift and tail are both on, tail in two dimensions.
     """
     for category, uses in interactions.uses.items():
-        if interactions.hybrid[category]:
-            for use in uses:
-                if not use.coeff:
-                    raise InputError(f"{category}_style {interactions.hybrid[category]}: sub-style {use.label} is not used by any "
-                                     f"{category}_coeff: leave it out")
         if category != "pair" and uses:
             known = interactions.none[category].union(*(use.coeff for use in uses))
             missing = sorted({abs(int(t)) for t in np.unique(system.topology.items(category)[1])} - known - {0})
@@ -142,6 +137,11 @@ def check_complete(interactions: Interactions, system) -> None:
                     if marks := use.style.missing(coeff):
                         raise InputError(f"All {category} coeffs are not set: {category}_coeff {t} of {category} style {use.style.name} "
                                          f"lacks {' and '.join(marks)}")
+        if interactions.hybrid[category]:
+            for use in uses:
+                if not use.coeff:
+                    raise InputError(f"{category}_style {interactions.hybrid[category]}: sub-style {use.label} is not used by any "
+                                     f"{category}_coeff: leave it out")
         for use in uses:
             use.style.check_scene(interactions, system)
     complete(interactions, system.counts["ntypes"])

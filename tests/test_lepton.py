@@ -99,6 +99,8 @@ EXACT = {
     "k*(1-cos(r))^2;k=2": lambda x: 2 * (1 - mpmath.cos(x)) ** 2,
     "k*tanh(4*r);k=2": lambda x: 2 * mpmath.tanh(4 * x),
     "log(1+r)^2": lambda x: mpmath.log(1 + x) ** 2,
+    "k*(a*r)^2/(1+(a*r)^2);k=250;a=1e4": lambda x: 250 * (10**4 * x) ** 2 / (1 + (10**4 * x) ** 2),
+    "k*exp(a*r)/(1+exp(a*r));k=3;a=30": lambda x: 3 * mpmath.exp(30 * x) / (1 + mpmath.exp(30 * x)),
     "4*((s/r)^12-(s/r)^6);s=0.75": lambda x: 4 * ((mpmath.mpf("0.75") / x) ** 12 - (mpmath.mpf("0.75") / x) ** 6),
 }
 

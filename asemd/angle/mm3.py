@@ -2,7 +2,8 @@ r"""$$E = K \Delta^2 [1 - 0.802141 \Delta + 0.183837 \Delta^2 - 0.131664 \Delta^
 
 Angle of the MM3 force field; the factors are 0.014, 5.6e-5, 7e-7 and 2.2e-8 per power of a degree, in radians.
 
-The cubic term of LAMMPS's force has another factor than its energy asks for. Here the force is minus the gradient; ``compat="lammps"``
+The cubic term of LAMMPS's force has another factor than its energy asks for: off by 4e-5 of its size at 10 degrees from theta0, 4e-4 at
+20 and 5e-3 at 40. Here the force is minus the gradient; ``compat="lammps"``
 gives LAMMPS's force. Source: Allinger, Yuh and Lii, J. Am. Chem. Soc. 111, 8551 (1989); LAMMPS manual, angle_style mm3.
 """
 from __future__ import annotations
