@@ -64,11 +64,13 @@ def test_names_exist():
     import importlib
     for page in PAGES:
         for name in set(re.findall(r"`(asemd(?:\.\w+)+)`", page.read_text())):
-            module, _, attribute = name.rpartition(".")
-            try:
-                found = importlib.import_module(name)
-            except ModuleNotFoundError:
-                found = getattr(importlib.import_module(module), attribute, None)
+            found, module = importlib.import_module("asemd"), "asemd"
+            for part in name.split(".")[1:]:
+                module = f"{module}.{part}"
+                try:
+                    found = importlib.import_module(module)
+                except ModuleNotFoundError:
+                    found = getattr(found, part, None)
             assert found is not None, f"{page.name}: {name}"
 
 
