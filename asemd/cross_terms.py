@@ -55,7 +55,7 @@ class CrossTermStyle(Style):
         return [mark or "the main ones" for mark, group in self.groups.items() if group[0].name not in coeff]
 
     def coeff_lines(self, coeff):
-        return [[mark] * bool(mark) + [p.write(coeff[p.name]) for p in group]
+        return [[mark] * bool(mark) + [p.write(coeff[p.name]) for p in group if p.name in coeff]
                 for mark, group in self.groups.items() if group[0].name in coeff]
 
     def format_coeff(self, coeff):

@@ -14,11 +14,15 @@ if TYPE_CHECKING:
 def fill(interactions: Interactions, category: str, styles: Mapping[str, Any], labels: Mapping[int, str]) -> None:
     """Set styles and coefficients of one category; see `asemd.forcefield.Interactions.build`."""
     entries = []
+    if not isinstance(styles, Mapping):
+        raise InputError(f"{category} needs a mapping from style to coefficients, as {{'harmonic': {{1: (K, r0)}}}}, got {styles!r}")
     for title, content in styles.items():
         name, *settings = title.split()
         if isinstance(content, Mapping) and not set(content) - {"settings", "coeff"} and content:
             settings += text(content.get("settings", ()))
             content = content.get("coeff", {})
+        if not isinstance(content, Mapping):
+            raise InputError(f"{category} style {title}: coefficients are a mapping from type to values, as {{1: values}}, got {content!r}")
         coeff = {key_of(key, category, labels): values for key, values in content.items()}
         entries.append((plain_name(name), settings, coeff))
     if len(entries) == 1:

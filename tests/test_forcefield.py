@@ -332,6 +332,9 @@ def test_build():
 @pytest.mark.parametrize("given, message", [
     (dict(bond={"harmonc": {1: (1, 1)}}), "did you mean harmonic"), (dict(bond={"harmonic": {1: (1,)}}), "needs K r0"),
     (dict(bond={"harmonic": {0: (1, 1)}}), "whole numbers from 1"), (dict(bond={"harmonic": {"A": (1, 1)}}), "unknown bond type label 'A'"),
+    (dict(bond="harmonic"), "needs a mapping from style"), (dict(bond={"harmonic": (1, 2)}), "mapping from type to values"),
+    (dict(angle={"class2": {1: {"theta0": 109}}}), "class2 needs theta0 K2 K3 K4, got 1 value$"),
+    (dict(angle={"class2": {1: dict(theta0=9, K2=1, K3=2, K4=3, M=1)}}), "class2 bb needs M bb_r1 bb_r2, got 1 value$"),
     (dict(bond={"harmonic": {1: {"K": 1, "r": 1}}}), "no coefficient 'r'"), (dict(bond={"harmonic": {1: {"r0": 1}}}), "in order"),
     (dict(pair={"lj/cut": {(1, 1): (1, 1)}}), "needs cut"), (dict(pair={"lj/cut 3": {(1, 1, 1): (1, 1)}}), "pair of atom types"),
     (dict(mix="foo"), "expected one of"), (dict(special_bonds="foo"), "unknown special_bonds keyword"),
