@@ -318,9 +318,9 @@ def test_interrupt_leaves_the_last_complete_step():
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        dynamics.run(10**8)
+        dynamics.run(10**6)
     steps = dynamics.nsteps
-    assert 1 < steps < 10**8
+    assert 1 < steps < 10**6
     energy = atoms.get_total_energy()
     dynamics.run(10)
     assert dynamics.nsteps == steps + 10

@@ -414,10 +414,10 @@ def test_interrupt_leaves_a_consistent_state():
     timer.start()
     began = time.perf_counter()
     with pytest.raises(KeyboardInterrupt):
-        loop.advance(10**8)
+        loop.advance(10**6)
     assert time.perf_counter() - began < 20
     stopped = loop.step
-    assert 50 < stopped < 10**8
+    assert 50 < stopped < 10**6
     x, v = system.x.copy(), system.v.copy()
     loop.sync_out()
     assert np.array_equal(x, system.x) and np.array_equal(v, system.v)
