@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 
-from asemd.kernels import angle, bond, dihedral, dipole, image, vectors
+from asemd.kernels import angle, bond, bond_history, dihedral, dipole, image, vectors
 from asemd.kernels.generate import Builder, plain_source
 from asemd.style import VECTORS, Style
 
@@ -61,7 +61,7 @@ def chart(style: Style) -> tuple[str, ...]:
 
 def _loop(style: Style) -> Callable:
     if style.category == "bond":
-        return bond.bond
+        return bond_history.bond if style.history else bond.bond
     if style.coordinates[0] == "ax":
         return vectors.three if style.category == "angle" else vectors.four
     if style.coordinates[0] == "gamma":
@@ -101,7 +101,8 @@ def _adapter(style: Style) -> str:
     call = f"potential({', '.join(words)})"
     handed = chart(style)
     if style.category == "bond":
-        return f"def evaluate(r, t, coeff, arrays, rate, reference):\n    return {call}"
+        past = ", rate=0.0, reference=1.0" if style.history else ""
+        return f"def evaluate(r, t, coeff, arrays{past}):\n    return {call}"
     head = f"def evaluate({', '.join(handed)}, t, coeff, arrays):\n"
     if style.coordinates == ("chi",):      # chi = |phi|; in the plane neither side is the one to be pushed to
         return (f"{head}    chi = abs(phi)\n    e, slope = {call}\n    if phi == 0.0 and math.isfinite(slope):\n        slope = 0.0\n"
@@ -125,7 +126,7 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
     else:
         for name in chart(style)[1:]:
             b.constant(name.upper(), name in style.coordinates)
-    if style.category == "bond":
+    if style.history:
         for name, value in dict(BREAKS=style.breaks != "", REFERENCE=style.remembers != "", RATE="rate" in style.coordinates).items():
             b.constant(name, value)
     if chart(style) == TORSION:
@@ -140,7 +141,7 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
         b.text(plain_source(image.closest_orthogonal if orthogonal else image.closest_general, "closest"), cache=False)
     for f in (report, push) + (total,) * energy + (share,) * per_atom:
         b.text(plain_source(f), cache=False)
-    b.text(plain_source(_loop(style), "loop", constants=b.constants))
+    b.text(plain_source(_loop(style), "loop"))
     return b
 
 

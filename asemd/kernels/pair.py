@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import pair_cluster, pair_list, pair_sums
+from asemd.kernels import bond_history, pair_cluster, pair_list, pair_sums
 from asemd.kernels.generate import Builder, text_of
 from asemd.pairstyle import PairStyle
 
@@ -124,7 +124,7 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
 
 @cache
 def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False):
-    """The kernel over plain pair lists; `parts` are its own or 1-4 parts; `broken`: pairs of bonds, `pair_list.broken_pairs`."""
+    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`."""
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
     charged = any(p.charged for p in parts)
@@ -155,7 +155,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         b.function(f)
     b.function(pair_list.list_forces)
     if broken:
-        b.function(pair_list.broken_pairs)
+        b.function(bond_history.broken_pairs)
     module = b.build()
     return (module.broken_pairs if broken else module.list_forces), module
 

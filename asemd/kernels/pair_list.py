@@ -66,17 +66,6 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
                 atom_virial[5, s] += 0.5 * dy * gz
 
 
-def broken_pairs(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
-                 atom_energy, atom_virial, bad, bond_types):
-    """The pairs of bonds: kind 1 while a bond holds, 0 once it is broken."""
-    if not PER_ATOM:
-        for m in range(lo, hi):
-            if bond_types[m] == 0 and code[m] & 3 == 1:
-                code[m] -= 1
-    list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
-                atom_energy, atom_virial, bad)
-
-
 def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2e, acc):
     """Slots lo..hi-1 against the atoms of their rows (entries: slot + shift code << 26), one pair at a time: sparse systems."""
     for i in range(lo, hi):
