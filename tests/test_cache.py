@@ -54,6 +54,16 @@ def answer(process: subprocess.Popen):
     return json.loads(out.splitlines()[-1])
 
 
+def test_full_disk(tmp_path):
+    """No file may grow beyond a few bytes: compiled for this process only."""
+    limits = "import resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
+    cache = tmp_path / "cache"
+    tight, free = launch(limits + PROGRAM, cache), launch(PROGRAM, tmp_path / "free")
+    result, expected = answer(tight), answer(free)
+    assert result["first"] == expected["first"] and result["x"] == expected["x"]
+    assert not [f for f in cache.rglob("*") if f.is_file() and f.stat().st_size and f.suffix != ".nbi"]
+
+
 @pytest.fixture(scope="module")
 def cold(tmp_path_factory):
     """Two processes at once that find an empty cache."""

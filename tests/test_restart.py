@@ -276,7 +276,6 @@ def test_killed(here, at):
 
 def test_full_disk(here):
     """A file beyond what may be written: earlier ones are whole, nothing half-written stays, the message says what to do."""
-    session(f"{MELT}{FIXES['nve']}\nrun 10").close()      # compiled code is on disk before the room gets scarce
     size = 20000
     process = start(f"{MELT}{FIXES['nve']}\nrestart 10 r.*\nrun 10\nimport_nothing", preexec_fn=lambda: resource.setrlimit(
         resource.RLIMIT_FSIZE, (size, size)))

@@ -8,6 +8,8 @@ hashed name.
 from __future__ import annotations
 
 import ast
+import contextlib
+import functools
 import hashlib
 import importlib
 import importlib.util
@@ -19,7 +21,6 @@ import tempfile
 import textwrap
 import types
 from collections.abc import Callable, Mapping
-from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
@@ -200,7 +201,7 @@ class Builder:
         return load(self.source())
 
 
-@cache
+@functools.cache
 def _source_of(module: str) -> str:
     """The text of a module of asemd that generated code imports: it is part of what the code is."""
     return inspect.getsource(importlib.import_module(module))
@@ -218,24 +219,57 @@ def load(text: str) -> types.ModuleType:
     name = f"{PACKAGE}.{stem}"
     if name in sys.modules:
         return sys.modules[name]
+    try:
+        spec = importlib.util.spec_from_file_location(name, _written(stem, text))
+        module = importlib.util.module_from_spec(spec)
+        run = spec.loader.exec_module
+    except OSError:      # no room on the disk: compiled for this process only
+        module = types.ModuleType(name)
+        run = functools.partial(_run_unwritten, text)
+    sys.modules[name] = module
+    try:
+        run(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    for value in vars(module).values():
+        if hasattr(value, "_cache"):
+            _keep_if_there_is_room(value._cache)
+    return module
+
+
+def _written(stem: str, text: str) -> Path:
+    """The file of a generated module, written unless it is there."""
     folder = cache_dir()
     path = folder / f"{stem}.py"
     if not path.exists():
         _trim(folder)
         fd, tmp = tempfile.mkstemp(dir=folder, suffix=".tmp")
-        with os.fdopen(fd, "w") as f:
-            f.write(text)
-        os.utime(tmp, (1_600_000_000, 1_600_000_000))   # numba's index compares the time: two writers must agree
-        os.replace(tmp, path)
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
-    return module
+        try:
+            with os.fdopen(fd, "w") as f:
+                f.write(text)
+            os.utime(tmp, (1_600_000_000, 1_600_000_000))   # numba's index compares the time: two writers must agree
+            os.replace(tmp, path)
+        except OSError:
+            os.unlink(tmp)
+            raise
+    return path
+
+
+def _run_unwritten(text: str, module: types.ModuleType) -> None:
+    exec(compile(text.replace("cache=True, ", ""), f"<{module.__name__}>", "exec"), vars(module))
+
+
+def _keep_if_there_is_room(kept) -> None:
+    """Code that the disk has no room for is compiled again in the next process; a run does not end for it."""
+    if "save_overload" not in vars(kept):
+        save = kept.save_overload
+
+        def attempt(signature, code):
+            with contextlib.suppress(OSError):
+                save(signature, code)
+
+        kept.save_overload = attempt
 
 
 def _wide_vectors(numba) -> None:
