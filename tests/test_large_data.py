@@ -44,6 +44,25 @@ def test_memory_of_reading(chains):
     assert peak / system.n < 1000.0
 
 
+def test_labels_are_read_in_bulk(chains, tmp_path, monkeypatch):
+    """Labels are looked up while the numbers are read: never line by line, and in no more memory."""
+    import tracemalloc
+
+    from asemd.lammps import data_table
+    from tests.benchmarks.data_file import label
+    monkeypatch.setattr(data_table, "_slowly", None)
+    system, path = chains[0].copy(), tmp_path / "labels.data"
+    label(system)
+    write_data(path, system, types="labels")
+    assert " O-x " in path.read_text() and " C-C-C " in path.read_text()
+    tracemalloc.start()
+    other = read_data(path, "real", "full").system
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert np.array_equal(other.type, system.type) and other.topology == system.topology and other.labels == system.labels
+    assert peak / system.n < 1000.0
+
+
 def test_writing_tells_its_progress(chains, tmp_path):
     system, told = chains[0], []
     write_data(tmp_path / "f", system, progress=lambda done, total: told.append((done, total)))

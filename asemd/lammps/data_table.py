@@ -51,14 +51,25 @@ def parse_table(lines: Lines, first: int, last: int, columns: Sequence[str], kin
     if len(lines[start].split("#", 1)[0].split()) == len(columns) + len(optional):
         columns, optional = (*columns, *optional), ()
     dtype = np.dtype([(c, "f8" if kinds[c] == "real" else "i8") for c in columns])
+    numbers = _Numbers({label: t for t, label in labels.items()})
+    named = {k: numbers.__getitem__ for k, c in enumerate(columns) if labels and kinds[c] == "type"}
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")       # numpy would read 1.0 as a whole number
-            table = np.loadtxt(_each(lines, start, last, done), dtype=dtype, comments="#", ndmin=1)
+            table = np.loadtxt(_each(lines, start, last, done), dtype=dtype, comments="#", ndmin=1, converters=named, encoding="utf-8")
         values = {c: np.ascontiguousarray(table[c]) for c in columns}
-    except (ValueError, DeprecationWarning, OverflowError):
+    except (ValueError, KeyError, DeprecationWarning, OverflowError):
         values = _slowly(lines, content(), columns, kinds, optional, labels)
     return values, lambda row: content()[row]
+
+
+class _Numbers(dict):
+    """The number of a type by its label; a word that is no label is the number itself."""
+
+    def __missing__(self, word: str) -> int:
+        if not WHOLE.fullmatch(word):
+            raise KeyError(word)
+        return int(word)
 
 
 def _each(lines, first: int, last: int, done) -> Iterator[str]:

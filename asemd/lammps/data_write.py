@@ -34,7 +34,7 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     pair : str
         ``ii``: a line for each atom type; ``ij``: a line for each pair of types, mixed ones included.
     types : str
-        ``numeric``, or ``labels``: type labels instead of numbers in Masses, Atoms, Bonds, ...
+        ``numeric``, or ``labels``: type labels instead of numbers in Atoms, Bonds, ... (of kinds where all types have one).
     labels : bool
         Whether sections of type labels are written.
     progress : callable, optional
@@ -54,8 +54,6 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
     if system.rmass is not None and not atom_styles.has(system.atom_style, "density"):
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
-    if types == "labels" and not labels:
-        raise InputError("write_data: types labels needs the sections of type labels")
     parts = _file(_lammps_frame(system), interactions, pair, types, labels, progress)
     path = os.fspath(path)
     try:
@@ -95,13 +93,15 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         yield " ".join(map(repr, s.box.tilt.tolist())) + " xy xz yz"
     names = {kind: {t: str(t) for t in range(1, _count(s, kind) + 1)} for kind in LABELLED}
     for section, kind in LABELS.items():
-        if labels and s.labels[kind]:
+        if not s.labels[kind] or not _complete(s, kind, types):
+            continue
+        if labels:
             yield from _section(section, (f"{t} {label}" for t, label in sorted(s.labels[kind].items())))
         if types == "labels":
-            names[kind] |= s.labels[kind]
+            names[kind] = s.labels[kind]
     if not np.isnan(s.mass[1:]).all():
         s.check_masses()
-        yield from _section("Masses", (f"{names['atom'][t]} {m!r}" for t, m in enumerate(s.mass[1:].tolist(), 1)))
+        yield from _section("Masses", (f"{t} {m!r}" for t, m in enumerate(s.mass[1:].tolist(), 1)))
     if interactions is not None:
         yield from _coefficients(interactions, s, pair)
     told = _Told(progress, 2 * s.n + sum(len(atoms) for _, atoms, _ in s.topology))
@@ -120,6 +120,15 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
 
 def _count(s: System, kind: str) -> int:
     return s.counts["ntypes" if kind == "atom" else f"n{kind}types"]
+
+
+def _complete(s: System, kind: str, types: str) -> bool:
+    """Whether each type has a label that can stand in a file: such files are read only where all have one."""
+    missing = [t for t in range(1, _count(s, kind) + 1) if "#" in s.labels[kind].get(t, "#")]
+    if missing and types == "labels":
+        warnings.warn(f"write_data: {kind} type {missing[0]} has no label that a data file can hold: numbers are written for {kind} types",
+                      InputWarning, stacklevel=2)
+    return not missing
 
 
 def _section(heading: str, lines: Iterable[str]) -> Iterator[str]:

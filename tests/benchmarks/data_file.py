@@ -1,4 +1,7 @@
-"""Seconds and memory to write and read a data file: chains of ten atoms with bonds, angles and charges, a million atoms by default."""
+"""Seconds and memory to write and read a data file: chains of ten atoms with bonds, angles and charges, a million atoms by default.
+
+With type labels instead of numbers after ``labels``: ``data_file.py 1000000 labels``.
+"""
 from __future__ import annotations
 
 import json
@@ -43,16 +46,23 @@ def chains(atoms: int):
     return system
 
 
-def measure(atoms: int = 1_000_000) -> dict:
+def label(system) -> None:
+    """Give every type a label."""
+    system.counts |= {"nbondtypes": 1, "nangletypes": 1}
+    system.labels |= {"atom": {1: "C", 2: "H", 3: "O-x"}, "bond": {1: "C-C"}, "angle": {1: "C-C-C"}}
+
+
+def measure(atoms: int = 1_000_000, types: str = "numeric") -> dict:
     """Seconds (and seconds of the processor) to write and to read, bytes of the file, peak of memory while reading."""
     import time
 
     from asemd.lammps.data_write import write_data
     system = chains(atoms)
+    label(system)
     with tempfile.TemporaryDirectory(prefix="asemd-data-") as folder:
         path = Path(folder) / "chains.data"
         start = time.perf_counter(), time.process_time()
-        write_data(path, system)
+        write_data(path, system, types=types)
         out = {"atoms": system.n, "write_s": time.perf_counter() - start[0], "write_cpu_s": time.process_time() - start[1],
                "file_bytes": os.path.getsize(path)}
         answer = subprocess.run([sys.executable, "-c", READ, str(path)], check=True, capture_output=True, text=True)
@@ -60,4 +70,4 @@ def measure(atoms: int = 1_000_000) -> dict:
 
 
 if __name__ == "__main__":
-    print(json.dumps(measure(int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000), indent=1))
+    print(json.dumps(measure(int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000, (*sys.argv[2:], "numeric")[0]), indent=1))

@@ -160,4 +160,6 @@ def _number(word: str, labels: dict[int, str], what: str) -> int:
     for number, label in labels.items():
         if label == word:
             return number
+    if labels and not re.match(r"[-+\d]", word):
+        raise InputError(f"{what}: {word} is no type label{nearest(word, labels.values())}")
     return whole(word, what)
