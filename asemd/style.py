@@ -143,6 +143,8 @@ class Style:
         Coefficients that weigh the Lennard-Jones and Coulomb part of the pair interaction, which is all the energy of the bond.
     lammps : callable, optional
         LAMMPS's forces where they are not minus the gradient of its energy: a function like `function`, for ``compat="lammps"``.
+    straight : callable, optional
+        The energy of a torsion three of whose atoms lie on a line, a function of the coefficients; by default that of 90 degrees.
     d2 : callable, optional
         Second derivatives of the energy by the coordinates: a function with the arguments of `function` that returns one number for one
         coordinate, a tuple of rows for several (for `asemd.hessian`).
@@ -152,11 +154,12 @@ class Style:
                  settings_example: str = "", domain: str = "", equilibrium: str = "", see: str = "",
                  xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
                  centre: int = 0, lammps: Callable | None = None, rest: Callable | None = None,
-                 d2: Callable | None = None, breaks: str = "", remembers: str = "", pair_weights: tuple[str, str] | tuple[()] = ()):
+                 d2: Callable | None = None, straight: Callable | None = None, breaks: str = "", remembers: str = "",
+                 pair_weights: tuple[str, str] | tuple[()] = ()):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.rest, self.see, self.xfail = equilibrium, rest, see, dict(xfail)
-        self.weight_14, self._check, self.lammps, self.d2 = weight_14, check, lammps, d2
+        self.weight_14, self._check, self.lammps, self.d2, self.straight = weight_14, check, lammps, d2, straight
         self.breaks, self.remembers, self.pair_weights = breaks, remembers, pair_weights
         self.centre = centre or (1 if category == "improper" else 2)
         notes = units_of(function) if function else {}

@@ -275,16 +275,44 @@ BACK = np.array([[0.7, 0, 0], [0, 0, 0], [1.4, 0, 0], [1.85, 1.1, 0.3]])
 RODS = np.array([[-1.1, 0, 0], [0, 0, 0], [1.4, 0, 0], [2.6, 0, 0]])
 
 
+TURNED = np.array([[1.0, 2, 3], [2, 3, 4], [3, 4, 5], [3, 4.5, 6]])
+
+
 @pytest.mark.parametrize(("name", "words", "energy"), FORMULAS, ids=TITLES)
-def test_arms_in_line_give_finite_forces(name, words, energy):
-    s = sample(name, words)
-    for x in (LINE, LINE[::-1], BACK, BACK[::-1], RODS):
+def test_arms_in_line(name, words, energy):
+    """No torsional force, and the energy of 90 degrees or the mean over a turn."""
+    s, many, c = sample(name, words), name in ("class2", "spherical"), [mp.mpf(w) for w in numbers(name, words)]
+    for x in (LINE, LINE[::-1], BACK, BACK[::-1], RODS, TURNED):
         a = s.run(np.ascontiguousarray(x.T))
-        if a.bad[0]:
-            assert "restricted" in name and not a.forces.any()
-            continue
-        assert np.isfinite(a.forces).all() and math.isfinite(a.acc[0])
+        assert not a.bad[0] and np.isfinite(a.forces).all()
         assert np.abs(a.forces.sum(axis=1)).max() <= 1e-13 * (1 + np.abs(a.forces).max())
+        assert many or not a.forces.any()
+        if name in ("harmonic", "charmm", "charmmfsw", "fourier"):
+            want = sum(energy(2 * mp.pi * k / 101, *c) for k in range(101)) / 101
+        elif name == "cosine/shift/exp":
+            want = energy(deg(c[1]) + mp.pi / 2, *c)
+        else:
+            d = [[mp.mpf(float(p - q)) for p, q in zip(x[i], x[j])] for i, j in PAIRS]
+            want = energy(*[mp.pi / 2, *coordinates(*d)[1:]][:6 if many else 1], *c)
+        assert a.acc[0] == pytest.approx(float(want), rel=1e-13, abs=1e-26)
+
+
+def test_energy_of_arms_in_line_is_the_same_per_atom_and_without_it():
+    s = sample("harmonic", "3 1 3")
+    assert s.run(np.ascontiguousarray(LINE.T), per_atom=False).acc[0] == 3.0
+    assert s.run(np.ascontiguousarray(LINE.T), energy=False).energies.sum() == 3.0
+
+
+def test_trans_is_plus_180_degrees_in_every_orientation():
+    """A sine of -0.0 must not make it -180."""
+    s = sample("spherical", "1 1 0.5 100 0 0 90 2 0 90 2")
+    want = -math.cos(0.5 * (math.pi - math.radians(100)))
+    flat = np.array([[[-0.5, 1.0], [0, 0], [1.5, 0], [2.0, -1.25]], [[-1.5, 2.0], [-0.5, -2.25], [1.0, 1.5], [1.75, -1.5]]])
+    for x in (turn @ np.append(f, np.zeros((4, 1)), axis=1).T for f in flat for p in ([0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0])
+              for turn in (sign * np.eye(3)[p] for sign in np.array(np.meshgrid(*[[1, -1]] * 3)).T.reshape(-1, 3, 1))):
+        for y in (x, x[:, ::-1]):
+            if dot(*(np.cross(u, y[:, 1] - y[:, 2]) for u in (y[:, 0] - y[:, 1], y[:, 3] - y[:, 2]))) < 0.0:
+                assert s.run(np.ascontiguousarray(y)).acc[0] == pytest.approx(want, rel=1e-14)
 
 
 @pytest.mark.parametrize("number", range(3))

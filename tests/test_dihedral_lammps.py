@@ -30,13 +30,13 @@ PAIRS = {      # pair style -> dihedral styles whose 1-4 pairs it knows
 }
 
 
-def data(path, charges) -> str:
-    """A random chain of ten atoms with dihedrals of three types."""
+def data(path, charges, straight=False) -> str:
+    """A random, or an exactly straight, chain of ten atoms with dihedrals of three types."""
     rng = np.random.default_rng(3)
     n, x = 10, np.zeros((10, 3))
     for i in range(1, n):
         step = rng.normal(size=3) * [0.4, 1, 1] + [1.0, 0, 0]
-        x[i] = x[i - 1] + 1.6 * step / np.linalg.norm(step)
+        x[i] = [1.5 * i, 0, 0] if straight else x[i - 1] + 1.6 * step / np.linalg.norm(step)
     lines = ["chain", "", f"{n} atoms", f"{n - 1} bonds", f"{n - 3} dihedrals", "1 atom types", "1 bond types", "3 dihedral types"]
     lines += [f"-30 30 {a}lo {a}hi" for a in "xyz"] + ["", "Masses", "", "1 12.0", "", "Atoms # full", ""]
     lines += [f"{i + 1} 1 1 {charges * (-1) ** i * (0.1 + 0.05 * i):.3f} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}" for i, p in enumerate(x)]
@@ -86,6 +86,19 @@ def test_lists_and_cross_terms(tmp_path):
     jobs = [scene(path, style, coeff) for style, coeff in LISTS.items()]
     for job, want in zip(jobs, ask(WHEEL, jobs=jobs), strict=True):
         same(job, want)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_energy_of_a_straight_chain(tmp_path):
+    """There no torsion has an angle; LAMMPS's energies are those of 90 degrees, or means over a turn."""
+    path = data(tmp_path / "data.chain", 0, straight=True)
+    more = {"harmonic": ["1 2 1 3", "2 3 -1 2", "3 5 -1 0"], "charmm": ["1 1.2 3 180 0", "2 0.4 1 37 0", "3 5 0 60 0"],
+            "opls": ["* 1.74 -0.157 0.279 0.9"], "multi/harmonic": ["* 20 -10 5 7 -3"], "lepton": ["* (phi-1)^2+sin(phi)"]}
+    jobs = [scene(path, style, coeff) for style, coeff in (LISTS | more).items()]
+    for job, want in zip(jobs, ask(WHEEL, jobs=jobs), strict=True):
+        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as mine:
+            mine.commands_list([*job, "run 0"])
+            assert mine.get_thermo("edihed") == pytest.approx(want["edihed"], rel=1e-11, abs=1e-12), job
 
 
 @pytest.mark.filterwarnings("ignore")

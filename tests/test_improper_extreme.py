@@ -263,11 +263,26 @@ def test_direction_undefined_is_finite(name, words, pairs):
             assert not a.forces.any()                   # neither side is preferred
 
 
-def test_harmonic_in_its_plane_is_pushed_to_neither_side():
-    s = sample("harmonic", "40 35")
-    a = s.run(np.array([[-0.5, 1, 0], [0, 0, 0], [1.4, 0, 0], [1.9, 1.1, 0]]).T)
+@pytest.mark.parametrize("chi", [0, 180])
+def test_harmonic_in_its_plane_is_pushed_to_neither_side(chi):
+    s, side = sample("harmonic", "40 35"), 1.1 if chi == 0 else -1.1
+    x = np.array([[-0.5, 1, 0], [0, 0, 0], [1.4, 0, 0], [1.9, side, 0]])
+    a = s.run(x.T)
     assert not a.bad[0] and not a.forces.any() and not a.acc[2:].any()
-    assert a.acc[0] == pytest.approx(40 * math.radians(35) ** 2, rel=1e-15)
+    assert a.acc[0] == pytest.approx(40 * math.radians(chi - 35) ** 2, rel=1e-15)
+    x[3, 2] = 1e-20                                # a direction, though chi is the same double
+    up = s.run(x.T).forces[2, 3]
+    assert up == pytest.approx(-80 * math.radians(chi - 35) / side, rel=1e-14)
+
+
+@pytest.mark.parametrize(("name", "words"), [("harmonic", "40 35"), ("cvff", "80 1 5"), ("cvff", "80 -1 2")])
+def test_three_atoms_on_a_line_have_the_energy_of_90_degrees(name, words):
+    s, c = sample(name, words), [float(w) for w in words.split()]
+    want = c[0] * math.radians(90 - c[1]) ** 2 if name == "harmonic" else c[0] * (1 + c[1] * math.cos(c[2] * math.pi / 2))
+    for x in ([[-1, 0, 0], [0, 0, 0], [1.4, 0, 0], [1.9, 1.1, 0.2]], [[-0.4, 1, 0.3], [0, 0, 0], [1.4, 0, 0], [2.6, 0, 0]],
+              [[1.0, 2, 3], [2, 3, 4], [3, 4, 5], [4, 5, 6]]):
+        a = s.run(np.array(x, float).T)
+        assert not a.bad[0] and not a.forces.any() and a.acc[0] == pytest.approx(want, rel=1e-14, abs=1e-25)
 
 
 @pytest.mark.parametrize("name", ["class2", "umbrella", "fourier", "inversion/harmonic", "ring"])

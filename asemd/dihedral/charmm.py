@@ -1,7 +1,7 @@
 r"""$$E = K [1 + \cos(n \phi - d)]$$
 
 Torsion of CHARMM and AMBER; d is a whole number of degrees, and w scales the pair interaction of the first and the fourth atom, which
-the styles with "charmm" in their name provide.
+the styles with "charmm" in their name provide. Three atoms on a line have the mean energy K.
 Source: MacKerell et al., J. Phys. Chem. B 102, 3586 (1998); LAMMPS manual, dihedral_style charmm.
 """
 from __future__ import annotations
@@ -50,7 +50,11 @@ def charmm_d2(phi, K, n, d):
     return -K * n * n * math.cos(n * phi - math.radians(d))
 
 
-@dihedral("charmm", example="1.2 3 180 0.5", cls=Charmm, coeff=COEFF, weight_14="w", d2=charmm_d2)
+def on_line(K, n, d):
+    return K * (1.0 + math.cos(math.radians(d))) if n == 0.0 else K
+
+
+@dihedral("charmm", example="1.2 3 180 0.5", cls=Charmm, coeff=COEFF, weight_14="w", d2=charmm_d2, straight=on_line)
 def charmm(phi, K: "energy", n: "integer", d: "integer"):
     a = n * phi - math.radians(d)
     c = math.cos(0.5 * a)

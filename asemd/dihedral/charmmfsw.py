@@ -7,7 +7,7 @@ dihedral_style charmmfsw.
 """
 from __future__ import annotations
 
-from asemd.dihedral.charmm import COEFF, Charmm, charmm
+from asemd.dihedral.charmm import COEFF, Charmm, charmm, charmm_d2, on_line
 from asemd.style import register
 
 
@@ -18,4 +18,5 @@ class CharmmSwitched(Charmm):
     providers = "lj/charmmfsw/coul/charmmfsh"
 
 
-charmmfsw = register(CharmmSwitched("dihedral", "charmmfsw", charmm, example="1.2 3 180 0.5", coeff=COEFF, weight_14="w", doc=__doc__))
+charmmfsw = register(CharmmSwitched("dihedral", "charmmfsw", charmm, example="1.2 3 180 0.5", coeff=COEFF, weight_14="w", doc=__doc__,
+                                    d2=charmm_d2, straight=on_line))

@@ -1,7 +1,8 @@
 r"""$$E = -U_{min} \frac{e^{a u} - 1}{e^a - 1} \quad \text{with} \quad u = \tfrac{1}{2} [1 + \cos(\phi - \theta)]$$
 
 Torsion with one minimum of depth Umin at theta whose width a sets; for |a| < 0.001 it is, as in LAMMPS, the expansion to first order,
--Umin u [1 + a (u - 1) / 2]. There LAMMPS's force is not minus the gradient of its energy; ``compat="lammps"`` gives it.
+-Umin u [1 + a (u - 1) / 2]. There LAMMPS's force is not minus the gradient of its energy; ``compat="lammps"`` gives it. For three atoms
+on a line u is 1/2.
 Source: LAMMPS manual, dihedral_style cosine/shift/exp.
 """
 from __future__ import annotations
@@ -23,7 +24,11 @@ def lammps_force(phi, Umin: "energy", theta: "angle", a):
     return -Umin * math.expm1(a * u) / math.expm1(a), Umin * a * s * c * math.exp(a * u) / math.expm1(a)
 
 
-@dihedral("cosine/shift/exp", example="10.0 45.0 2.0", lammps=lammps_force)
+def on_line(Umin, theta, a):          # u = 1/2
+    return -0.5 * Umin * (1.0 - 0.25 * a) if abs(a) < 0.001 else -Umin / (1.0 + math.exp(0.5 * a))
+
+
+@dihedral("cosine/shift/exp", example="10.0 45.0 2.0", lammps=lammps_force, straight=on_line)
 def cosine_shift_exp(phi, Umin: "energy", theta: "angle", a):
     s = math.sin(0.5 * (phi - theta))
     c = math.cos(0.5 * (phi - theta))

@@ -1,6 +1,7 @@
 r"""$$E = \sum_{i=1}^{m} K_i [1 + \cos(n_i \phi - d_i)]$$
 
-Sum of torsions with any multiplicities and phases. Source: LAMMPS manual, dihedral_style fourier.
+Sum of torsions with any multiplicities and phases. Three atoms on a line have the mean energy, the sum of all K.
+Source: LAMMPS manual, dihedral_style fourier.
 """
 from __future__ import annotations
 
@@ -20,7 +21,16 @@ def check(coeff, settings):
 TERM = (Parameter("K", "energy"), Parameter("n", "integer"), Parameter("d", "angle"))
 
 
-@dihedral("fourier", cls=SeriesStyle, count="m", term=TERM, check=check, example="3 -0.846200 3 0.0 7.578800 1 0 0.138000 2 -180.0")
+def on_line(first, count, terms):
+    e = 0.0
+    for k in range(int(first), int(first) + int(count)):
+        K = terms[k, 0]
+        e += K * (1.0 + math.cos(terms[k, 2])) if terms[k, 1] == 0.0 else K
+    return e
+
+
+@dihedral("fourier", cls=SeriesStyle, count="m", term=TERM, check=check, straight=on_line,
+          example="3 -0.846200 3 0.0 7.578800 1 0 0.138000 2 -180.0")
 def fourier(phi, first, count, terms: "array"):
     # beyond 90 degrees the angle counts from trans, so that terms whose forces cancel in a planar molecule do so to the last digit
     x, flipped = phi, 0.0

@@ -90,23 +90,23 @@ def without_energy(source: str) -> str:
     return ast.unparse(ast.fix_missing_locations(_WithoutEnergy().visit(ast.parse(source))))
 
 
+def _coefficients(style: Style) -> list[str]:
+    """The arguments of a style's function after the coordinates, looked up for type t."""
+    rows = {n: k for k, n in enumerate(n for n in style.arguments if n not in style.arrays)}
+    return [f"arrays[{style.arrays.index(n)}]" if n in style.arrays else f"coeff[{rows[n]}, t]" for n in style.arguments]
+
+
 def _adapter(style: Style) -> str:
     """`evaluate(coordinates, type, coeff, arrays)`: the style's function with its coefficients looked up."""
-    notes, words = {n: k for k, n in enumerate(n for n in style.arguments if n not in style.arrays)}, []
-    for name in style.coordinates + style.arguments:
-        if name in style.arrays:
-            words.append(f"arrays[{style.arrays.index(name)}]")
-        else:
-            words.append(f"coeff[{notes[name]}, t]" if name in notes else name)
-    call = f"potential({', '.join(words)})"
+    call = f"potential({', '.join([*style.coordinates, *_coefficients(style)])})"
     handed = chart(style)
     if style.category == "bond":
         past = ", rate=0.0, reference=1.0" if style.history else ""
         return f"def evaluate(r, t, coeff, arrays{past}):\n    return {call}"
     head = f"def evaluate({', '.join(handed)}, t, coeff, arrays):\n"
-    if style.coordinates == ("chi",):      # chi = |phi|; in the plane neither side is the one to be pushed to
-        return (f"{head}    chi = abs(phi)\n    e, slope = {call}\n    if phi == 0.0 and math.isfinite(slope):\n        slope = 0.0\n"
-                f"    return e, slope if phi >= 0.0 else -slope{', 0.0' * (len(handed) - 1)}")
+    if style.coordinates == ("chi",):      # chi = |phi|
+        zeros = ", 0.0" * (len(handed) - 1)
+        return f"{head}    chi = abs(phi)\n    e, slope = {call}\n    return e, slope if phi >= 0.0 else -slope{zeros}"
     if handed == style.coordinates:
         return f"{head}    return {call}"
     names = ["e"] + [f"d_{c}" for c in style.coordinates]
@@ -131,12 +131,17 @@ def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodi
             b.constant(name, value)
     if chart(style) == TORSION:
         b.constant("ARMS", len(style.coordinates) > 1)
+        b.constant("CHI", style.coordinates == ("chi",))
+        b.constant("STRAIGHT", style.straight is not None and (energy or per_atom))
     *helpers, function = style.functions()
     for helper in helpers:
         b.text(plain_source(helper), cache=False)
     text = plain_source(function, "potential")
     b.text(text if energy or per_atom else without_energy(text), cache=False)
     b.text(_adapter(style), cache=False)
+    if style.straight and (energy or per_atom):
+        b.text(plain_source(style.straight, "on_line"), cache=False)
+        b.text(f"def straight(t, coeff, arrays):\n    return on_line({', '.join(_coefficients(style))})", cache=False)
     if periodic:
         b.text(plain_source(image.closest_orthogonal if orthogonal else image.closest_general, "closest"), cache=False)
     for f in (report, push) + (total,) * energy + (share,) * per_atom:

@@ -1,5 +1,6 @@
 """Loop over torsion angles (dihedrals, and impropers in phi or chi); pasted by `asemd.kernels.bonded` like `asemd.kernels.bond`.
-R12, R23, R34, THETA1, THETA2 say which lengths and angles the style takes besides, ARMS whether it takes any.
+R12, R23, R34, THETA1, THETA2 say which lengths and angles the style takes besides, ARMS whether it takes any, CHI that it takes the size of
+phi, STRAIGHT that it has an energy of its own for three atoms on a line, where phi is not defined; else that of 90 degrees counts.
 
 With f = x1 - x2, g = x2 - x3, h = x4 - x3, a = f x g, b = h x g the sine is (b x a) . g / |g| and the gradients are multiples of a / a^2
 and b / b^2, so that no sine is divided by. Source: Blondel and Karplus, J. Comput. Chem. 17, 1132 (1996).
@@ -27,8 +28,9 @@ def torsion(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy,
         ax, ay, az = fy * gz - fz * gy, fz * gx - fx * gz, fx * gy - fy * gx
         bx, by, bz = hy * gz - hz * gy, hz * gx - hx * gz, hx * gy - hy * gx
         aa, bb, g = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, math.sqrt(gg)
-        sine = ((by * az - bz * ay) * gx + (bz * ax - bx * az) * gy + (bx * ay - by * ax) * gz) / g
-        phi = math.atan2(sine, ax * bx + ay * by + az * bz)
+        sine = ((by * az - bz * ay) * gx + (bz * ax - bx * az) * gy + (bx * ay - by * ax) * gz) / g + 0.0     # never -0.0: trans is +pi
+        line = not (aa > 0.0 and bb > 0.0)
+        phi = 0.5 * math.pi if line else math.atan2(sine, ax * bx + ay * by + az * bz)
         r12 = math.sqrt(fx * fx + fy * fy + fz * fz) if R12 else 0.0
         r34 = math.sqrt(hx * hx + hy * hy + hz * hz) if R34 else 0.0
         theta1 = math.atan2(math.sqrt(aa), -(fx * gx + fy * gy + fz * gz)) if THETA1 else 0.0
@@ -37,8 +39,11 @@ def torsion(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy,
         if not (math.isfinite(e) and math.isfinite(slope + slope12 + slope23 + slope34 + bend1 + bend2)):
             report(bad, m, phi)
             continue
-        wa = wb = 0.0
-        if aa > 0.0 and bb > 0.0:         # with three atoms on a line the force has no direction
+        if STRAIGHT and line:
+            e = straight(types[m], coeff, arrays)
+        if line or CHI and sine == 0.0:   # three atoms on a line, or the size of an angle in the plane: the force has no direction
+            wa = wb = 0.0
+        else:
             wa, wb = slope / aa, slope / bb
         p = (fx * gx + fy * gy + fz * gz) / g * wa
         q = (hx * gx + hy * gy + hz * gz) / g * wb
