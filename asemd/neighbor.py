@@ -34,6 +34,18 @@ def kernels(ortho: bool, mark: bool = False):
     return b.build()
 
 
+def _pairs_in_need() -> np.ndarray:
+    """For the bits of the atoms of a cluster that reach a candidate (256,): number of the first pair of atoms in need plus the last's."""
+    keys = np.zeros(256, np.int64)
+    for bits in range(1, 256):
+        pairs = [p for p in range(4) if (bits >> 2 * p) & 3]
+        keys[bits] = pairs[0] + pairs[-1]
+    return keys
+
+
+_KEYS = _pairs_in_need()
+
+
 class BinCell:
     """The cell that bins cover: the periodic cell, and along other directions the extent of the atoms."""
 
@@ -133,10 +145,8 @@ class ClusterList:
 
     def _room(self) -> None:
         """Work space for the candidates of one cluster."""
-        self.work = np.zeros((self.threads, 11 if self.outdated else 7, self.candidates))
-        self.near = np.zeros((self.threads, self.candidates if self.outdated else 1), np.int32)
-        self.work_codes = np.zeros((self.threads, self.candidates), np.int32)
-        self.needed = np.zeros((self.threads, self.candidates), np.int32)
+        self.work = np.zeros((self.threads, 3, self.candidates))
+        self.work_codes = np.zeros((self.threads, self.candidates), np.int64)
         self.earlier = np.zeros((self.threads, self.candidates + 64), np.int32)
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
@@ -160,8 +170,7 @@ class ClusterList:
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
                                      c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.needed[t], self.width, ns, self.row_length[t],
-                                     self.near[t], self.hide[t])
+                                     self.work_codes[t], self.width, ns, self.row_length[t], _KEYS, self.hide[t])
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])

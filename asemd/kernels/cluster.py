@@ -143,14 +143,14 @@ def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2)
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, own, span, unshifted, work, codes, needed, width, empty, longest, near, hide):
+          first, entries, own, span, unshifted, work, codes, width, empty, longest, keys, hide):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
 
-    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (11, w)`, `codes (w,)`, `needed (w,)`, `near (w,)`:
-    candidates of one cluster. A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only,
-    ``span[c, 2 p]`` to ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry; pair p then needs
-    the sums p to p + 3. The cluster itself stands in the middle, at ``own[c]``. Rows end with copies of the slot `empty`, so that they
-    fill vectors of `width`.
+    `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (3, w)`, `codes (w,)`: candidates of one cluster.
+    A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
+    ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, which `keys (256,)` holds for the bits of
+    the atoms that reach it; pair p then needs the sums p to p + 3. The cluster itself stands in the middle, at ``own[c]``. Rows end with
+    copies of the slot `empty`, so that they fill vectors of `width`.
     `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row. With MARK each entry gets
     in `hide` the bits of the atoms of the cluster that are beyond reach.
     """
@@ -164,7 +164,6 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     capacity = codes.shape[0]
     longest[0] = 0
     tally = np.zeros(9, np.int64)
-    keys = np.array([0, 0, 2, 1, 4, 2, 3, 2, 6, 3, 4, 3, 5, 3, 4, 3])      # bits of pairs in need -> first + last
     index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
     index_b, image_b, gap_b = np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1)
     for ci in range(c0, c1):
@@ -231,7 +230,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                     px = shifts[code, 0]
                     py = shifts[code, 1]
                     pz = shifts[code, 2]
-                    high = np.int32(code << 26)
+                    high = np.int64(code << 26)
                     for q in range(0, count, 8):             # whole vectors; what is copied beyond the end is overwritten
                         for k in range(8):
                             tx[np.uint64(nt + q + k)] = x[0, np.uint64(k0 + q + k)] + px
@@ -240,68 +239,56 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                         for k in range(8):
                             tz[np.uint64(nt + q + k)] = x[2, np.uint64(k0 + q + k)] + pz
                         for k in range(8):
-                            codes[np.uint64(nt + q + k)] = np.int32(k0 + q + k) | high
+                            codes[np.uint64(nt + q + k)] = np.int64(k0 + q + k) | high
                     nt += count
         unshifted[ci] = all_in
-        end = nt
-        if MARK:                     # the cluster itself, for its places in `hide`
-            end = nt + CLUSTER
-            for k in range(CLUSTER):
-                tx[nt + k] = x[0, ci * CLUSTER + k]
-                ty[nt + k] = x[1, ci * CLUSTER + k]
-                tz[nt + k] = x[2, ci * CLUSTER + k]
-        for pair in range(CLUSTER // 2):
-            td = work[3 + pair]
-            if MARK:
-                te = work[7 + pair]
-            k = ci * CLUSTER + 2 * pair
-            k2 = min(k + 1, ci * CLUSTER + m - 1)
-            if k2 < k:
-                for t in range(end):
-                    td[t] = 1e300
-                    if MARK:
-                        te[t] = 1e300
-                continue
-            xi, yi, zi = x[0, k], x[1, k], x[2, k]
-            xj, yj, zj = x[0, k2], x[1, k2], x[2, k2]
-            for t in range(end):
-                a = tx[t] - xi
-                b = ty[t] - yi
-                c = tz[t] - zi
-                e = tx[t] - xj
-                f = ty[t] - yj
-                g = tz[t] - zj
-                if MARK:
-                    td[t] = a * a + b * b + c * c
-                    te[t] = e * e + f * f + g * g
-                else:
-                    td[t] = min(a * a + b * b + c * c, e * e + f * f + g * g)
+        for k in range(CLUSTER):     # the cluster itself, for its places in `hide`
+            tx[nt + k] = x[0, ci * CLUSTER + k]
+            ty[nt + k] = x[1, ci * CLUSTER + k]
+            tz[nt + k] = x[2, ci * CLUSTER + k]
+            codes[nt + k] = np.int64(0)
+        # which atoms of the cluster reach each candidate, as bits above its code: a sum in floating point, written out, vectorises
+        s = ci * CLUSTER
+        gone = 1e150
+        x0, y0, z0 = (x[0, s + 0], x[1, s + 0], x[2, s + 0]) if m > 0 else (gone, gone, gone)
+        x1, y1, z1 = (x[0, s + 1], x[1, s + 1], x[2, s + 1]) if m > 1 else (gone, gone, gone)
+        x2, y2, z2 = (x[0, s + 2], x[1, s + 2], x[2, s + 2]) if m > 2 else (gone, gone, gone)
+        x3, y3, z3 = (x[0, s + 3], x[1, s + 3], x[2, s + 3]) if m > 3 else (gone, gone, gone)
+        x4, y4, z4 = (x[0, s + 4], x[1, s + 4], x[2, s + 4]) if m > 4 else (gone, gone, gone)
+        x5, y5, z5 = (x[0, s + 5], x[1, s + 5], x[2, s + 5]) if m > 5 else (gone, gone, gone)
+        x6, y6, z6 = (x[0, s + 6], x[1, s + 6], x[2, s + 6]) if m > 6 else (gone, gone, gone)
+        x7, y7, z7 = (x[0, s + 7], x[1, s + 7], x[2, s + 7]) if m > 7 else (gone, gone, gone)
+        for t in range(nt + CLUSTER):
+            near = 0.0
+            a, b, c = tx[t] - x0, ty[t] - y0, tz[t] - z0
+            near += 1.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x1, ty[t] - y1, tz[t] - z1
+            near += 2.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x2, ty[t] - y2, tz[t] - z2
+            near += 4.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x3, ty[t] - y3, tz[t] - z3
+            near += 8.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x4, ty[t] - y4, tz[t] - z4
+            near += 16.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x5, ty[t] - y5, tz[t] - z5
+            near += 32.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x6, ty[t] - y6, tz[t] - z6
+            near += 64.0 if a * a + b * b + c * c <= r2 else 0.0
+            a, b, c = tx[t] - x7, ty[t] - y7, tz[t] - z7
+            near += 128.0 if a * a + b * b + c * c <= r2 else 0.0
+            codes[t] |= np.int64(np.int32(near)) << 32
         if n + nt + CLUSTER + width > entries.shape[0]:
             return -1
-        # which pairs need each candidate, as bits; those nobody needs are dropped by not moving the counter: no branches to mispredict
-        d0, d1, d2, d3 = work[3], work[4], work[5], work[6]
-        if MARK:
-            e0, e1, e2, e3 = work[7], work[8], work[9], work[10]
-            for t in range(end):
-                near[t] = ((d0[t] <= r2) + 2 * (e0[t] <= r2) + 4 * (d1[t] <= r2) + 8 * (e1[t] <= r2) + 16 * (d2[t] <= r2)
-                           + 32 * (e2[t] <= r2) + 64 * (d3[t] <= r2) + 128 * (e3[t] <= r2))
-            for t in range(nt):
-                needed[t] = ((near[t] & 3) != 0) + 2 * ((near[t] & 12) != 0) + 4 * ((near[t] & 48) != 0) + 8 * ((near[t] & 192) != 0)
-        else:
-            for t in range(nt):
-                needed[t] = (d0[t] < r2) + 2 * (d1[t] < r2) + 4 * (d2[t] < r2) + 8 * (d3[t] < r2)
+        # candidates that nobody reaches are dropped by not moving the counter: no branches to mispredict
         kept = 0
         for t in range(nt):
-            if MARK:
-                near[np.uint64(kept)] = near[t]
             codes[np.uint64(kept)] = codes[t]
-            needed[np.uint64(kept)] = needed[t]
-            kept += needed[t] != 0
+            kept += (codes[t] >> 32) != 0
         # counting sort by first + last pair in need
         for k in range(8):
             tally[k] = 0
         for t in range(kept):
-            tally[keys[needed[t]] + 1] += 1
+            tally[keys[codes[t] >> 32] + 1] += 1
         for k in range(7):
             tally[k + 1] += tally[k]
         mine = (tally[3] // width) * width      # the cluster's own place; what it displaces goes behind it
@@ -313,15 +300,15 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         for k in range(CLUSTER):
             entries[start + mine + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
             if MARK:
-                hide[start + mine + k] = np.uint8(255 - near[nt + k])
+                hide[start + mine + k] = np.uint8(255 - (codes[nt + k] >> 32))
         for t in range(kept):
-            key = keys[needed[t]]
+            key = keys[codes[t] >> 32]
             q = tally[key]
             tally[key] = q + 1
             place = start + q + (CLUSTER if q >= mine else 0)
-            entries[place] = codes[t]
+            entries[place] = np.int32(codes[t] & 0xFFFFFFFF)
             if MARK:
-                hide[place] = np.uint8(255 - near[t])
+                hide[place] = np.uint8(255 - (codes[t] >> 32))
         n = start + kept + CLUSTER
         while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)
