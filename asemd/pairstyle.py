@@ -95,6 +95,8 @@ class PairStyle(Style):
         factors of number and volume), see `asemd/pair/lj_cut.py`.
     units : mapping
         Units of settings and coefficients that no function argument names.
+    splits : bool
+        The force may be split by distance between the levels of ``run_style respa``, as LAMMPS allows for this style.
     rows : str
         Names of function arguments that differ by pair of types but are not words of ``pair_coeff`` (`pack_pairs` makes them).
     """
@@ -102,11 +104,11 @@ class PairStyle(Style):
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
-                 mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", **options):
+                 mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, **options):
         notes = dict(units)
         for function, _ in parts:
             notes = {**units_of(function), **notes}
-        self.mix, self.mix_rule, self.tail = dict(mix), mix_rule, tail
+        self.mix, self.mix_rule, self.tail, self.splits = dict(mix), mix_rule, tail, splits
 
         def parameters(spec):
             return tuple(Parameter(n, notes.get(n) or ("distance" if n.startswith(("cut", "inner", "outer")) else ""), optional,

@@ -4,21 +4,27 @@ Level 1 is the innermost one. Every level kicks the velocities by its own forces
 
 .. math:: \Delta t_{l-1} = \Delta t_l / n_l, \qquad \Delta t_N = \Delta t
 
+The pair force may be split by distance into an inner, a middle and an outer piece. Between two limits `a < b` a piece goes over into the
+next one with :math:`s = t^2 (3 - 2 t)`, :math:`t = (r - a) / (b - a)`. Energy and virial are those of the whole force.
+
 Source: M. Tuckerman, B. J. Berne, G. J. Martyna, J. Chem. Phys. 97, 1990 (1992); LAMMPS manual, run_style.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import time
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from asemd.errors import InputError, SimulationError
+from asemd.kernels import timeloop as tl
+from asemd.kernels.state import Thread
 from asemd.loop import Loop
+from asemd.term import PairListTerm, PairRowsTerm, PairTerm
 
 FORCES = ("bond", "angle", "dihedral", "improper", "pair", "kspace")
-# fixes whose force acts on the outermost level, as in LAMMPS
-OUTERMOST = ("addforce", "drag", "efield", "indent", "langevin", "restrain", "spring", "spring/self", "wall/harmonic", "wall/lj126",
-             "wall/lj93", "wall/lj1043", "wall/morse")
+PIECES = ("inner", "middle", "outer")
+SHORT = 0.7         # pieces that end before this part of the reach have a list of their own
 
 
 @dataclass
@@ -30,11 +36,17 @@ class Levels:
     factors : list of int
         How many steps of a level make one of the next, from the innermost on; one less than there are levels.
     level : dict of str to int
-        ``bond angle dihedral improper pair kspace`` -> level, from 1.
+        ``bond angle dihedral improper kspace``, and ``pair`` or ``inner [middle] outer`` -> level, from 1.
+    cuts : (4,) tuple of float
+        Where the inner piece begins and has come to its end, then the same for the piece before the outer one (distance units).
+    hybrid : list of int
+        Instead of ``pair``: the level of each sub-style of pair_style hybrid.
     """
 
     factors: list[int]
     level: dict[str, int] = field(default_factory=dict)
+    cuts: tuple[float, ...] = ()
+    hybrid: list[int] = field(default_factory=list)
 
     @property
     def n(self) -> int:
@@ -49,12 +61,58 @@ class Levels:
         return out
 
     def forces(self, level: int) -> list[str]:
-        """The kinds of forces on a level."""
-        return [kind for kind in FORCES if self.level[kind] == level]
+        """What acts on a level, in LAMMPS's words."""
+        names = {**{kind: kind for kind in FORCES[:5]}, **{piece: f"pair-{piece}" for piece in PIECES}}
+        out = [name for kind, name in names.items() if self.level.get(kind) == level]
+        return out + [f"hybrid-{k}" for k, at in enumerate(self.hybrid, 1) if at == level] + ["kspace"] * (self.level["kspace"] == level)
+
+    def check(self, interactions, pair_terms) -> None:
+        """Whether these interactions can have these levels.
+
+        Raises
+        ------
+        InputError
+            A pair style whose force cannot be split, or is cut off too early; another number of sub-styles; 1-4 pairs of dihedrals on
+            another level than the rest of the pair forces.
+        """
+        what, pairs = "run_style respa", interactions.uses["pair"]
+        if self.hybrid and not (interactions.hybrid["pair"] and len(pairs) == len(self.hybrid)):
+            raise InputError(f"{what} hybrid has levels of {len(self.hybrid)} sub-styles, but pair_style changed: give run_style again")
+        if "inner" in self.level:
+            for use in pairs:
+                if not use.style.splits:
+                    raise InputError(f"{what}: pair style {use.style.name} does not support inner, middle and outer: put its force on one "
+                                     "level, with the keyword pair or hybrid")
+            for t in pair_terms:
+                for (i, j), coeff in t.filled.items():
+                    shortest = min(t.style.cutoffs(coeff, t.use.settings))
+                    if shortest < self.cuts[3]:
+                        raise InputError(f"{what}: the cutoff {shortest:g} of pair style {t.style.name}, types {i} {j}, is below the limit "
+                                         f"{self.cuts[3]:g} of the {'middle' if 'middle' in self.level else 'inner'} forces")
+        for use in interactions.uses["dihedral"]:
+            weight = use.style.weight_14
+            if weight and any(c.get(weight) for c in use.coeff.values()):
+                for kind in ("pair", "outer"):
+                    if self.level.get(kind, self.level["dihedral"]) != self.level["dihedral"]:
+                        raise InputError(f"{what}: dihedral style {use.style.name} must be set to same r-RESPA level as {kind!r}, for its "
+                                         "1-4 pairs are pair forces")
+
+
+class ShortListTerm(PairListTerm):
+    """A piece of a pair force over those pairs of the list that are closer than `within` when it is built."""
+
+    within = np.inf
+
+    def rebuild(self, engine):
+        super().rebuild(engine)
+        x = engine.state.x
+        d = x[:, self.i] - x[:, self.j] - self.shifts[self.code >> 2].T
+        near = (d * d).sum(axis=0) < self.within**2
+        self.i, self.j, self.code = self.i[near], self.j[near], self.code[near]
 
 
 class RespaLoop(Loop):
-    """A `Loop` whose steps have levels; fixes nve move the atoms.
+    """A `Loop` whose steps have levels.
 
     Parameters
     ----------
@@ -65,70 +123,148 @@ class RespaLoop(Loop):
     Raises
     ------
     InputError
-        A fix that does not know levels.
+        A fix that does not know levels, or what `Levels.check` finds.
     """
 
     def __init__(self, *args, levels: Levels, **keywords):
         super().__init__(*args, **keywords)
         self.levels = levels
+        self._level_forces: list[np.ndarray] = []
         for fix in self.fixes:
-            own = set(fix.hooks()) - {"end_of_step"}
-            if own and fix.style not in ("nve", *OUTERMOST):
-                raise InputError(f"run_style respa does not work with fix {fix.id} (style {fix.style}): use fix nve, fix langevin and "
-                                 "forces from outside, or run_style verlet")
+            if set(fix.hooks()) - {"end_of_step"} and not fix.levels:
+                raise InputError(f"run_style respa does not work with fix {fix.id} (style {fix.style}), which has no levels: leave it "
+                                 "out or use run_style verlet")
+        levels.check(self.interactions, self.engine.pair_terms)
 
+    # ---- set-up -------------------------------------------------------------------------------------------------------------------------
     def setup(self, begin=None, end=None, virial: bool = True):
         super().setup(begin, end, virial)
-        self._level_forces: list[np.ndarray] = []
+        self._times = self.levels.steps(self.dt)
+        self._before = [np.zeros(3) for _ in self.fixes]
+        self._new_lists()
+        self._level_forces = [np.zeros_like(self.state.f) for _ in self._times]
         for level in range(1, self.levels.n + 1):
             self._forces(level, True)
-            self._level_forces.append(self.state.f.copy())
-        return self._total()
-
-    def _make_module(self) -> None:
-        super()._make_module()
-        self._compiled = False
-
-    def _total(self):
-        """The sum of all levels, which everybody sees, and its energies."""
-        self.state.f[:] = sum(self._level_forces)
+        self._total()
         self.result = self.engine.collect()
         return self.result
 
+    def _total(self) -> None:
+        """The sum of all levels, which everybody sees."""
+        self.state.f[:] = sum(self._level_forces)
+
+    def _make_module(self) -> None:
+        """Hooks of the fixes, those of the inner levels too, and which terms are on which level."""
+        self.engine.changed = False
+        self._compiled = False
+        self._kinds = [f.hooks() for f in self.fixes]
+        hooks = []
+        for fix, kinds in zip(self.fixes, self._kinds):
+            mine = {name: getattr(fix, name) for name in tl.COMPILED if kinds.get(name)}
+            if fix.integrates:
+                inner = fix.inner or fix
+                mine |= {"inner_initial": inner.initial_integrate, "inner_final": inner.final_integrate}
+                mine["outer_initial"] = getattr(fix, "outer_initial", fix.final_integrate)
+            hooks.append(mine)
+        self._module = (None, tl.module([], [], hooks, [f.every for f in self.fixes]))
+        self._make_levels()
+
+    def _make_levels(self) -> None:
+        """`_work`: the terms of each level; `_whole`: those that are computed for the energy only, because their force is split."""
+        e, at = self.engine, self.levels.level
+        self._work: list[list] = [[] for _ in range(self.levels.n)]
+        self._whole, self._pieces = [], []
+        for t in e.terms:
+            if t.category != "pair" or getattr(t, "pairs", "") == "one_four":
+                self._work[at["dihedral" if t.category == "pair" else t.category] - 1].append(t)
+                continue
+            owner = next(p for p in e.pair_terms if p.tables is t.tables)
+            if self.levels.hybrid:
+                self._work[self.levels.hybrid[self._number(owner.use)] - 1].append(t)
+            elif "pair" in at:
+                self._work[at["pair"] - 1].append(t)
+            else:
+                self._whole.append(t)
+                for piece in PIECES:
+                    part = self._piece(t, owner, piece) if piece in at else None
+                    if part is not None:
+                        self._work[at[piece] - 1].append(part)
+                        self._pieces.append(part)
+
+    def _number(self, use) -> int:
+        return next(k for k, other in enumerate(self.interactions.uses["pair"]) if other is use)
+
+    def _piece(self, t, owner, piece: str):
+        """The term of one piece of a term's force; None for special pairs that are in a short list already."""
+        a, b, c, d = self.levels.cuts
+        numbers = [a, 1.0 / max(b - a, 1e-30), c, 1.0 / max(d - c, 1e-30)]
+        owner = replace(owner, tables=replace(owner.tables, constants=np.append(owner.tables.constants, numbers)))
+        within = {"inner": b, "middle": d}.get(piece, np.inf) + self.settings.skin
+        if within < SHORT * self.engine.reach:
+            if getattr(t, "pairs", "all") == "special":
+                return None
+            new = ShortListTerm(owner.style, owner.tables, owner.style.parts, "all")
+            new.within = within
+        elif isinstance(t, PairTerm):
+            new = PairTerm(owner, t.single)
+        elif isinstance(t, PairRowsTerm):
+            new = PairRowsTerm(owner)
+        else:
+            new = PairListTerm(owner.style, owner.tables, t.parts, t.pairs)
+        new.piece, new.index = piece, t.index
+        return new
+
+    def _new_lists(self) -> None:
+        """After each list build: the pieces' lists, and kernels with their arguments by level, without and with energy."""
+        e = self.engine
+        short = [p.within for p in self._pieces if isinstance(p, ShortListTerm)]
+        if short and e.mode == "cluster" and not e.expanded:
+            e.mark(*e.list.expand(e.k, e.state, max(short)), e.list.shifts)
+        for piece in self._pieces:
+            piece.rebuild(e)
+        e.changed = False       # the pieces' buffers, perhaps
+        threads = range(e.threads)
+
+        def calls(terms, energy):
+            return [(t, t.kernel(energy and t not in self._pieces, False), [t.arguments(e, tid) for tid in threads]) for t in terms]
+        self._calls = [[calls(terms, energy) for energy in (False, True)] for terms in self._work]
+        self._whole_calls = calls(self._whole, True)
+
+    # ---- steps --------------------------------------------------------------------------------------------------------------------------
     def _python_step(self, energy: bool) -> None:
         self.step += 1
         self._times = self.levels.steps(self.dt)
         self._recurse(self.levels.n, energy)
-        self.state.f[:] = sum(self._level_forces)
+        self._total()
         self._hook("end_of_step")
 
     def _recurse(self, level: int, energy: bool) -> None:
-        outermost = level == self.levels.n
-        for _ in range(1 if outermost else self.levels.factors[level - 1]):
-            self._kick(level)
+        """The steps of one level that make one of the next; energies belong to the last of them."""
+        n = self.levels.n
+        times = 1 if level == n else self.levels.factors[level - 1]
+        for k in range(times):
+            self._integrate(level, "inner_initial" if level == 1 < n else "inner_final" if level < n else
+                            "outer_initial" if n > 1 else "initial_integrate")
             if level == 1:
-                self._drift()
-            if outermost:
+                self._hook("post_integrate")
+            if level == n:
                 self._look_at_list()
+                self._hook("pre_force")
+            wanted = energy and k == times - 1
             if level > 1:
-                self._recurse(level - 1, energy)
-            self._forces(level, energy)
-            self._level_forces[level - 1][:] = self.state.f
-            self._kick(level)
+                self._recurse(level - 1, wanted)
+            self._forces(level, wanted)
+            self._integrate(level, "final_integrate" if level == n else "inner_final")
 
-    def _moved(self):
-        """Masks of the slots that each fix nve moves."""
-        s = self.state
-        return [(s.mask & np.int32(self.group_bit(f.group))) != 0 for f in self.fixes if f.integrates]
-
-    def _kick(self, level: int) -> None:
-        s, half = self.state, 0.5 * self._times[level - 1]
-        for mask in self._moved():
-            s.v[:, mask] += half * s.inverse_mass[mask] * self._level_forces[level - 1][:, mask]
-
-    def _drift(self) -> None:
-        for mask in self._moved():
-            self.state.x[:, mask] += self._times[0] * self.state.v[:, mask]
+    def _integrate(self, level: int, name: str) -> None:
+        """A half step of one level by all fixes that move atoms."""
+        began = time.perf_counter()
+        th = Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, self._times[level - 1], self._sync, self._scratch)
+        state = self.state._replace(f=self._level_forces[level - 1])
+        for n, fix in enumerate(self.fixes):
+            if fix.integrates:
+                getattr(self._module[1], f"fix{n}_{name}")(th, state, *self._fix_data[n])
+        self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _look_at_list(self) -> None:
         """Once in a step, after the outermost kick: a fresh list if it is time; the forces of the levels keep their atoms."""
@@ -140,41 +276,79 @@ class RespaLoop(Loop):
             return
         if s.check and self._ago == max(s.every, s.delay):
             e.dangerous += 1
-        old, n = e.state.row[:e.ns].copy(), self.system.n
-        by_row = np.zeros((len(self._level_forces), 3, n))
-        for forces, f in zip(by_row, self._level_forces):
+        self._hook("pre_exchange")
+        self._hook("pre_neighbor")
+        old = e.state.row[:e.ns]
+        self._by_row = np.zeros((self.levels.n, 3, self.system.n))
+        for forces, f in zip(self._by_row, self._level_forces):
             forces[:, old[old >= 0]] = f[:, :len(old)][:, old >= 0]
         self._rebuild()
-        if self.system.n != n:
-            raise SimulationError(f"step {self.step}: an atom was lost, which run_style respa does not allow")
         new = e.state.row[:e.ns]
-        self._level_forces = [np.zeros_like(e.state.f) for _ in by_row]
-        for forces, f in zip(by_row, self._level_forces):
+        self._level_forces = [np.zeros_like(e.state.f) for _ in self._by_row]
+        for forces, f in zip(self._by_row, self._level_forces):
             f[:, :len(new)][:, new >= 0] = forces[:, new[new >= 0]]
+        self._new_lists()
+        self._hook("post_neighbor")
+
+    def remove(self, rows) -> None:
+        super().remove(rows)
+        if self._level_forces:
+            self._by_row = np.delete(self._by_row, rows, axis=2)
 
     def _forces(self, level: int, energy: bool) -> None:
-        """The forces of one level into ``state.f``; of its terms, energies and virials too."""
-        e, kinds = self.engine, self.levels.forces(level)
-        chosen = [(k, t.kernel(energy, False)) for k, t in enumerate(e.terms) if t.category in kinds]
+        """The forces of one level, with what fixes do to them; of its terms, energies and virials too."""
+        e, calls = self.engine, self._calls[level - 1][energy]
+        if self.settings.outdated:
+            e.farthest[:] = e.k.displacements(e.state.x, e.held, e.ns, e.moved)
         if energy:
-            for k, _ in chosen:
-                e.acc[:, e.terms[k].index] = 0.0
+            e.acc[:, [t.index for t in self._work[level - 1] if t not in self._pieces]] = 0.0
+            if level == self.levels.level.get("outer"):
+                e.acc[:, [t.index for t in self._whole]] = 0.0
+                self._compute(self._whole_calls)
+        self._compute(calls)
+        began = time.perf_counter()
+        for n, fix in enumerate(self.fixes):
+            if "post_force" in self._kinds[n]:
+                self._post_force(n, fix, level)
+        self._level_forces[level - 1][:] = self.state.f
+        e.timings["Modify"] += time.perf_counter() - began
+
+    def _compute(self, calls) -> None:
+        """Clear the forces, run kernels."""
+        e, spent = self.engine, np.zeros(len(calls))
 
         def work(tid):
             e.k.clear(e.buffers[tid], e.ns)
-            arguments = e.arguments(tid)
-            for k, kernel in chosen:
-                kernel(*arguments[k])
+            for k, (_, kernel, arguments) in enumerate(calls):
+                began = time.perf_counter()
+                kernel(*arguments[tid])
+                if tid == 0:
+                    spent[k] += time.perf_counter() - began
         e.parallel(work)
         if e.threads > 1:
             e.k.add_buffers(e.buffers, e.ns)
-        try:
-            e.check()
-        except SimulationError as error:
-            e.store()
-            raise SimulationError(f"step {self.step}: {error}") from None
-        if level == self.levels.n:
-            self._hook("post_force")
+        for (t, _, _), seconds in zip(calls, spent):
+            e.timings["Pair" if t.category == "pair" else "Bond"] += seconds
+        for t, _, _ in calls if e.bad[:, :, 0].any() else ():
+            for found, item, value, _ in e.bad[:, t.index]:
+                if found:
+                    e.bad[:] = 0.0
+                    e.store()
+                    raise SimulationError(f"step {self.step}: {t.describe(e, int(item), float(value))}")
+
+    def _post_force(self, n: int, fix, level: int) -> None:
+        """A fix that acts on one level may do something on the others, too; what it counts is the sum over levels."""
+        own = min(fix.level or self.levels.n, self.levels.n)
+        if fix.levels == "every" or level == own:
+            self._call(n, "post_force")
+        if not hasattr(fix, "elsewhere"):
+            return
+        if level == 1:
+            self._before[n][:] = 0.0
+        if level == own:
+            fix.before += self._before[n]
+        else:
+            self._before[n] += fix.elsewhere(self)
 
 
-__all__ = ["Levels", "RespaLoop"]
+__all__ = ["FORCES", "Levels", "RespaLoop"]

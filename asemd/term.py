@@ -112,9 +112,10 @@ def store_torques(terms: list, system) -> None:
 
 
 class PairTerm:
-    """A pair style over the cluster list."""
+    """A pair style over the cluster list; `piece` of any pair term: only this part of a force that is split (`asemd.kernels.pair`)."""
 
     category = "pair"
+    piece = ""
 
     def __init__(self, term, single: bool):
         self.style, self.tables, self.single = term.style, term.tables, single
@@ -123,7 +124,7 @@ class PairTerm:
 
     def kernel(self, energy, per_atom):
         return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single,
-                                           outdated=self.outdated)[0]
+                                           outdated=self.outdated, piece=self.piece)[0]
 
     def rebuild(self, engine):
         self.outdated = engine.list.outdated
@@ -155,6 +156,7 @@ class PairRowsTerm:
     """A pair style over rows of single atoms: where an atom has so few neighbours that packing clusters does not pay."""
 
     category = "pair"
+    piece = ""
 
     def __init__(self, term):
         self.style, self.tables = term.style, term.tables
@@ -162,7 +164,7 @@ class PairRowsTerm:
         self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.rows_kernel(self.style, self.uniform, energy=energy)[0]
+        return pair_kernels.rows_kernel(self.style, self.uniform, energy=energy, piece=self.piece)[0]
 
     def rebuild(self, engine):
         """Nothing of its own: the rows are the engine's."""
@@ -187,12 +189,14 @@ class PairListTerm:
         kinds: ``one_four`` (dihedral charmm) and ``ends`` (angle spica, whose energy they are part of).
     """
 
+    piece = ""
+
     def __init__(self, style, tables, parts, pairs: str, one_four=None):
         self.style, self.tables, self.parts, self.pairs = style, tables, parts, pairs
         self.one_four, self.category = one_four, "angle" if pairs == "ends" else "pair"
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom)[0]
+        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom, piece=self.piece)[0]
 
     def rebuild(self, engine):
         if self.pairs == "all":

@@ -58,7 +58,7 @@ def rows(text: str) -> list[list[float]]:
 
 @pytest.mark.parametrize(("lost", "z", "cut", "fix"), [
     ("ignore", "f", "2.5", "nve"), ("warn", "s", "2.5", "nve"), ("warn", "p", "1.2", "nve"),
-    ("ignore", "f", "2.5", "nvt temp 3.0 3.0 0.5")])
+    ("ignore", "f", "2.5", "nvt temp 3.0 3.0 0.5"), ("ignore", "f", "2.5", "nve\nrun_style respa 2 2 inner 1 1.2 1.6 outer 2")])
 @pytest.mark.filterwarnings("ignore::UserWarning")
 def test_thermo_follows_lammps(lost, z, cut, fix, tmp_path):
     script = GAS.format(lost=lost, z=z, cut=cut, fix=fix)

@@ -36,6 +36,7 @@ FIXES = {
     "force": "fix 1 all nve\nfix 2 half addforce 0.1 0 0\nfix 3 all momentum 10 linear 1 1 1\nfix 4 half setforce NULL 0 NULL",
     "limit": "fix 1 all nve/limit 0.02",
     "respa": "fix 1 all nve\nrun_style respa 2 2 bond 1 pair 2",
+    "respa with pieces": "fix 1 all nvt temp 1 1 0.5\nrun_style respa 2 2 inner 1 1.3 1.6 outer 2",
 }
 
 

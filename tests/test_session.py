@@ -95,7 +95,7 @@ def test_undefined_variable(session):
     ("dump d all atom 0 x", "positive"),
     ("undump q", "no dump q"), ("min_style foo", "foo"), ("next a", "undefined variable a"), ("jump SELF a", "only lines of a script"),
     ("echo loud", "none screen"),
-    ("if 1 > 2 then", "then"), ("run_style respa 2 2 inner 1 4 5", "not supported"),
+    ("if 1 > 2 then", "then"), ("run_style respa 2 2 inner 1 4 5", "inner and outer"),
     ("fix 1 all langevin 1 1 1 1", "exists with style nve"),
     ("print a b", "quotes"),
     ("variable v world 1 2", "one partition"), ("include nofile", "cannot open"), ("print 'a", "quote"),

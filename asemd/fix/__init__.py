@@ -37,6 +37,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.registry import class_called, class_of
+from asemd.words import whole
 
 if TYPE_CHECKING:
     from asemd.loop import Loop
@@ -73,6 +74,13 @@ class Fix:
         True if `scalar` is the energy of a heat bath, counted by the thermo keywords ecouple and econserve.
     every : int
         `end_of_step` is called on multiples of this.
+    levels : str
+        Where `post_force` acts under ``run_style respa``: on ``every`` level, the ``outermost`` one, or ``one``, which is the outermost
+        unless `level` (``fix_modify respa``) says another, from 1. Empty: it does not work there, unless `end_of_step` is all it has.
+        Other hooks: `post_integrate` follows each move of the atoms, `pre_force` comes once in a step.
+    inner : type of Fix
+        The fix whose hooks move the atoms on all levels but the outermost, if not its own; ``outer_initial`` is a hook that takes the
+        place of `initial_integrate` on the outermost of several levels and moves no atom (by default `final_integrate`).
     thermo_energy, thermo_virial : bool
         ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, ``virial(state)`` as virial.
     id : str
@@ -83,6 +91,9 @@ class Fix:
     integrates: ClassVar[bool] = False
     minimizes: ClassVar[bool] = False
     ecouple: ClassVar[bool] = False
+    levels: ClassVar[str] = ""
+    level: int = 0
+    inner: ClassVar[type[Fix] | None] = None
     every: int = 1
     id: str = ""
     thermo_energy: bool = False
@@ -145,6 +156,11 @@ class Fix:
 
     def modify_option(self, keyword: str, value: str, session) -> bool:
         """Take one pair of ``fix_modify`` words; False if this style has no such option."""
+        if keyword == "respa" and self.levels == "one":
+            self.level = whole(value, "fix_modify respa")
+            if self.level < 0:
+                raise InputError(f"fix_modify respa: a level is a number from 1 on, got {value}")
+            return True
         return keyword in ("energy", "virial") and value in ("no", "off", "false")
 
     def removed_dof(self, mask: np.ndarray) -> float:

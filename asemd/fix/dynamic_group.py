@@ -26,6 +26,8 @@ class DynamicGroup(Fix):
     every : int
     """
 
+    levels = "every"
+
     def __init__(self, name: str, parent: str, session, region: str | None = None, variable: str | None = None, vector: str | None = None,
                  every: int = 1):
         super().__init__(parent)

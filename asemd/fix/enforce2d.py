@@ -21,6 +21,7 @@ class Enforce2D(Fix):
 
     style = "enforce2d"
     minimizes = True
+    levels = "every"
 
     def parameters(self, loop) -> np.ndarray:
         if loop.system.dimension != 2:

@@ -53,6 +53,7 @@ class Langevin(Thermostat):
     """
 
     style = "langevin"
+    levels = "outermost"
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1, scale: dict[int, float] | None = None,
                  tally: bool = False, zero: bool = False):

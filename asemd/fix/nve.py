@@ -17,6 +17,7 @@ class NVE(Fix):
 
     style = "nve"
     integrates = True
+    levels = "every"
 
     @hook
     def initial_integrate(th, s, p, a):

@@ -20,7 +20,7 @@ def kick_within(th, s, p):
     """A half kick, then the limit; adds to the count in ``p[2]``."""
     bit = np.int32(np.int64(p[0]))
     half = 0.5 * th.dt
-    longest = (p[1] / th.dt) ** 2
+    longest = p[1] * p[1]
     limited = 0
     for i in range(th.lo, th.hi):
         if s.mask[i] & bit != 0:
@@ -57,6 +57,7 @@ class NVELimit(Fix):
 
     style = "nve/limit"
     integrates = True
+    levels = "every"
 
     def __init__(self, group: str = "all", xmax: float = 0.1):
         super().__init__(group)
@@ -75,7 +76,7 @@ class NVELimit(Fix):
         return [repr(self.xmax)]
 
     def parameters(self, loop) -> np.ndarray:
-        self.p = np.array([float(loop.group_bit(self.group)), self.xmax, 0.0])
+        self.p = np.array([float(loop.group_bit(self.group)), self.xmax / loop.dt, 0.0])
         return self.p
 
     @hook(uses=[kick_within])

@@ -24,6 +24,7 @@ import numpy as np
 
 from asemd.errors import InputError, nearest
 from asemd.fix import hook
+from asemd.fix.nve import NVE
 from asemd.fix.thermostat import Thermostat
 from asemd.kernels.threads import barrier, reduce_sum
 from asemd.words import number, take, whole
@@ -102,6 +103,8 @@ class NVT(Thermostat):
 
     style = "nvt"
     integrates = True
+    levels = "every"
+    inner = NVE
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 3, loops: int = 1, drag: float = 0.0):
         super().__init__(group, temperature, damping)
@@ -171,6 +174,19 @@ class NVT(Thermostat):
                 if mask[i] & bit != 0:
                     v[i] = v[i] * factor + half * inverse_mass[i] * f[i]
                     x[i] += th.dt * v[i]
+
+    @hook(uses=[nose_hoover_chain])
+    def outer_initial(th, s, p, a):
+        if th.tid == 0:
+            nose_hoover_chain(th, p)
+        barrier(th)
+        bit, factor, half, mine = np.int32(np.int64(p[0])), p[12], 0.5 * th.dt, slice(th.lo, th.hi)
+        mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
+        for d in range(3):
+            v, f = s.v[d, mine], s.f[d, mine]
+            for i in range(v.size):
+                if mask[i] & bit != 0:
+                    v[i] = v[i] * factor + half * inverse_mass[i] * f[i]
 
     @hook(uses=[nose_hoover_chain])
     def final_integrate(th, s, p, a):

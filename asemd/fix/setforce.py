@@ -70,6 +70,15 @@ class SetForce(AppliedForce):
             if th.tid == 0:
                 p[7 + d] = before
 
+    def elsewhere(self, loop) -> np.ndarray:
+        """What it does on the other levels of ``run_style respa``: no force in the components it sets. Returns the total force before."""
+        slots, f = self.selected(loop), loop.state.f
+        before = f[:, slots].sum(axis=1)
+        for d, value in enumerate(self.force):
+            if value is not None:
+                f[d, slots] = 0.0
+        return before
+
     def _with_python(self, loop) -> None:
         slots, f = self.selected(loop), loop.state.f
         self.before[:] = f[:, slots].sum(axis=1)

@@ -31,7 +31,22 @@ def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
     return names
 
 
-def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool) -> str:
+def _share(piece: str, numbers: str, first: int) -> list[str]:
+    """Lines that compute ``share``, what a piece of a split force has of the whole at that distance: 1, between its limits smoothly to 0.
+
+    From ``numbers[first]`` on stand four numbers: where the inner piece begins to go over into the next one and the inverse of how long
+    that takes, then the same for the piece before the outer one.
+    """
+    lines = ["    w = math.sqrt(r2)", "    share = real(1)"]
+    for at, rises, falls in ((first, "middle", "inner"), (first + 2, "outer", "middle")):
+        if piece in (rises, falls):
+            lines.append(f"    t = min(max((w - {numbers}[{at}]) * {numbers}[{at + 1}], real(0)), real(1))")
+            lines.append("    t = t * t * (real(3) - real(2) * t)")
+            lines.append(f"    share = share * {'t' if piece == rises else '(real(1) - t)'}")
+    return lines
+
+
+def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool, piece: str = "") -> str:
     """``pair_force`` or ``pair_energy``: every part masked by its cutoff. Uniform rows come from the tuple `p`, others from the buffer."""
     where: list[str] = []
     for u in uniform:
@@ -56,6 +71,9 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
             lines.append(f"    e{k} = e{k} - {offset} if m{k} else real(0)")
             (coul if part.charged else vdwl).append(f"e{k}")
     force = " + ".join(total) or "real(0)"
+    if piece:
+        lines += _share(piece, "p", at_constant)
+        force = f"({force}) * share"
     if energy:
         lines.append(f"    return {force}, {' + '.join(vdwl) or 'real(0)'}, {' + '.join(coul) or 'real(0)'}")
     else:
@@ -65,7 +83,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool)
 
 @cache
 def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool,
-                   outdated: bool = False):
+                   outdated: bool = False, piece: str = ""):
     """The kernel over cluster lists.
 
     Parameters
@@ -78,6 +96,8 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         Pair arithmetic in single precision (sums stay in double).
     outdated : bool
         The list may be older than the skin allows; pairs beyond its reach when it was built do not interact.
+    piece : str
+        ``inner``, ``middle`` or ``outer``: only this part of the force; the constants end with the four numbers of `_share`.
     """
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
@@ -92,7 +112,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         from asemd.kernels import vector_math
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)
-    b.text(_adapter(style.parts, names, uniform, energy), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
+    b.text(_adapter(style.parts, names, uniform, energy, piece), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
     if varying:
         lines = ["def fill_rows(b, full, rows, t, types, base):"]
         for v, r in enumerate(varying):
@@ -123,8 +143,11 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
 
 
 @cache
-def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False):
-    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`."""
+def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, piece: str = ""):
+    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`.
+
+    `piece` as in `cluster_kernel`.
+    """
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
     charged = any(p.charged for p in parts)
@@ -149,6 +172,8 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         row += 2 + len(part.rows)
         constant += len(part.constants)
         array += len(part.arrays)
+    if piece:
+        lines += [*_share(piece, "constants", constant), "    fp *= share"]
     lines.append("    return fp, ev, ec")
     b.text("\n".join(lines))
     for f in (pair_sums.eight, pair_sums.add):
@@ -161,8 +186,8 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
 
 
 @cache
-def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool):
-    """The kernel over rows of single atoms, for sparse systems; `uniform` as in `cluster_kernel`."""
+def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = ""):
+    """The kernel over rows of single atoms, for sparse systems; `uniform` and `piece` as in `cluster_kernel`."""
     b = Builder(f"pair {style.name}: rows of atoms")
     b.line("real = np.float64")
     for name, value in dict(ENERGY=energy, CHARGED=style.charged).items():
@@ -182,6 +207,8 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool):
         cuts.append(where[row])
         row += 2 + len(part.rows)
         constant += len(part.constants)
+    if piece:
+        lines += [*_share(piece, "p", constant), "    fp *= share"]
     b.text("\n".join([*lines, "    return fp, ev, ec"]))
     b.text(f"def furthest(p, rows, ti, tj):\n    return {cuts[0] if len(cuts) == 1 else 'max(' + ', '.join(cuts) + ')'}")
     for f in (pair_sums.eight, pair_sums.add):

@@ -41,9 +41,10 @@ def active(scene, category: str, name: str) -> bool:
     if category == "pair":
         _known(name, ("single", "respa", "manybody", "tail", "shift"), "is_active(pair)")
         pairs = bool(uses["pair"])
-        return {"single": pairs, "respa": pairs, "manybody": False}.get(name, bool(getattr(scene.interactions, name, False)))
-    one = {"atom_style": scene.atom_style, "min_style": scene.min_style, "run_style": "verlet", "comm_style": "brick",
-           "kspace_style": "none"}
+        splits = pairs and all(use.style.splits for use in uses["pair"])
+        return {"single": pairs, "respa": splits, "manybody": False}.get(name, bool(getattr(scene.interactions, name, False)))
+    one = {"atom_style": scene.atom_style, "min_style": scene.min_style, "run_style": "respa" if scene.respa else "verlet",
+           "comm_style": "brick", "kspace_style": "none"}
     styles = [f"{c}_style" for c in catalog.FORCE_FIELD]
     if _known(category, (*one, *styles, "package", "newton", "pair"), "is_active") in one:
         return one[category].split()[0] == name

@@ -33,6 +33,7 @@ class LiveCoefficients(Fix):
     """Puts values of variables into the coefficients of running terms before each force computation."""
 
     style = "live/coefficients"
+    levels = "outermost"
 
     def __init__(self, session: Session):
         super().__init__("all")

@@ -22,7 +22,8 @@ def lj96_cut_d2(r2, epsilon, sigma):
 
 
 @pair("lj96/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, tail=tail,
-      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj96/cut", d2=lj96_cut_d2)
+      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj96/cut", d2=lj96_cut_d2,
+      splits=True)
 def lj96_cut(r2, epsilon: "energy", sigma: "distance"):
     r2inv = 1.0 / r2
     s2 = sigma * sigma * r2inv

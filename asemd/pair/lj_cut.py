@@ -22,7 +22,7 @@ def lj_cut_d2(r2, epsilon, sigma):
 
 
 @pair("lj/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, tail=tail,
-      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj/cut", d2=lj_cut_d2)
+      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj/cut", d2=lj_cut_d2, splits=True)
 def lj_cut(r2, epsilon: "energy", sigma: "distance"):
     r2inv = 1.0 / r2
     s2 = sigma * sigma * r2inv

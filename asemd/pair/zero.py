@@ -28,4 +28,5 @@ class Zero(PairStyle):
 
 
 register(Zero("zero", [], settings="cut [nocoeff] [full]", coeff="[cut]", units={"nocoeff": "word", "full": "word"},
-              mix={"cut": "distance"}, settings_example="10.0", example="8.0", doc=__doc__, see="LAMMPS manual, pair_style zero"))
+              mix={"cut": "distance"}, settings_example="10.0", example="8.0", doc=__doc__, splits=True,
+              see="LAMMPS manual, pair_style zero"))

@@ -43,6 +43,8 @@ def run(session, args):
     if first > begin or last < begin + steps:
         raise InputError(f"run: start {first} and stop {last} must enclose the steps of this run, {begin} to {begin + steps}")
     pre, post = options.get("pre", True), options.get("post", True)
+    if not pre and scene.respa:
+        raise InputError("run pre no does not go with run_style respa: leave it out")
     if not every:
         Driver(session, Plan(steps, first, last, pre, post)).run()
         return
