@@ -20,11 +20,12 @@ from asemd.errors import InputError, SimulationError
 from asemd.kernels import timeloop as tl
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
+from asemd.neighbor import ClusterList
 from asemd.term import PairListTerm, PairRowsTerm, PairTerm
 
 FORCES = ("bond", "angle", "dihedral", "improper", "pair", "kspace")
 PIECES = ("inner", "middle", "outer")
-SHORT = 0.7         # pieces that end before this part of the reach have a list of their own
+SHORT = 0.9         # pieces that end before this part of the reach have a list of their own
 
 
 @dataclass
@@ -111,6 +112,27 @@ class ShortListTerm(PairListTerm):
         self.i, self.j, self.code = self.i[near], self.j[near], self.code[near]
 
 
+class ShortClusterTerm(PairTerm):
+    """The same over clusters: a second list with a shorter reach, for the same slots."""
+
+    within = np.inf
+    near = None
+
+    def rebuild(self, engine):
+        whole = engine.list
+        if self.near is None:
+            self.near = ClusterList(engine.threads, self.within, whole.width, whole.outdated)
+        near = self.near
+        near.shape(whole.bins, engine.system.n)
+        near.cell_start, near.column_start, near.column_of = whole.cell_start, whole.column_start, whole.column_of     # same slots
+        near.build(engine.k, engine.state, engine.ns, engine.vectors, engine.periodic, engine.exclusions.partners, engine.slot_of,
+                   engine.parallel)
+        super().rebuild(engine)
+
+    def clusters(self, engine):
+        return self.near
+
+
 class RespaLoop(Loop):
     """A `Loop` whose steps have levels.
 
@@ -186,40 +208,34 @@ class RespaLoop(Loop):
             else:
                 self._whole.append(t)
                 for piece in PIECES:
-                    part = self._piece(t, owner, piece) if piece in at else None
-                    if part is not None:
-                        self._work[at[piece] - 1].append(part)
-                        self._pieces.append(part)
+                    if piece in at:
+                        self._pieces.append(self._piece(t, owner, piece))
+                        self._work[at[piece] - 1].append(self._pieces[-1])
 
     def _number(self, use) -> int:
         return next(k for k, other in enumerate(self.interactions.uses["pair"]) if other is use)
 
     def _piece(self, t, owner, piece: str):
-        """The term of one piece of a term's force; None for special pairs that are in a short list already."""
+        """The term of one piece of a term's force."""
         a, b, c, d = self.levels.cuts
-        numbers = [a, 1.0 / max(b - a, 1e-30), c, 1.0 / max(d - c, 1e-30)]
+        near, far = {"inner": (0.0, b), "middle": (a, d), "outer": (c, np.inf)}[piece]
+        numbers = [a, 1.0 / max(b - a, 1e-30), c, 1.0 / max(d - c, 1e-30), near * abs(near), far * far]
         owner = replace(owner, tables=replace(owner.tables, constants=np.append(owner.tables.constants, numbers)))
-        within = {"inner": b, "middle": d}.get(piece, np.inf) + self.settings.skin
-        if within < SHORT * self.engine.reach:
-            if getattr(t, "pairs", "all") == "special":
-                return None
-            new = ShortListTerm(owner.style, owner.tables, owner.style.parts, "all")
-            new.within = within
+        within = far + self.settings.skin
+        short = within < SHORT * self.engine.reach
+        if isinstance(t, PairListTerm):
+            kind = ShortListTerm if short and t.pairs == "all" else PairListTerm
+            new = kind(owner.style, owner.tables, t.parts, t.pairs)
         elif isinstance(t, PairTerm):
-            new = PairTerm(owner, t.single)
-        elif isinstance(t, PairRowsTerm):
-            new = PairRowsTerm(owner)
+            new = (ShortClusterTerm if short else PairTerm)(owner, t.single)
         else:
-            new = PairListTerm(owner.style, owner.tables, t.parts, t.pairs)
-        new.piece, new.index = piece, t.index
+            new = PairRowsTerm(owner)
+        new.piece, new.index, new.within = piece, t.index, within
         return new
 
     def _new_lists(self) -> None:
         """After each list build: the pieces' lists, and kernels with their arguments by level, without and with energy."""
         e = self.engine
-        short = [p.within for p in self._pieces if isinstance(p, ShortListTerm)]
-        if short and e.mode == "cluster" and not e.expanded:
-            e.mark(*e.list.expand(e.k, e.state, max(short)), e.list.shifts)
         for piece in self._pieces:
             piece.rebuild(e)
         e.changed = False       # the pieces' buffers, perhaps

@@ -126,13 +126,18 @@ class PairTerm:
         return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single,
                                            outdated=self.outdated, piece=self.piece)[0]
 
+    def clusters(self, engine):
+        """The `asemd.neighbor.ClusterList` it runs over."""
+        return engine.list
+
     def rebuild(self, engine):
-        self.outdated = engine.list.outdated
+        clusters = self.clusters(engine)
+        self.outdated = clusters.outdated
         self.exclude = engine.exclusions.partners is not None
-        row = pair_kernels.row_length(engine.list.longest())
+        row = pair_kernels.row_length(clusters.longest())
         if row > self.row:
             engine.changed = True
-            self.row = pair_kernels.row_length(int(1.15 * engine.list.longest()))
+            self.row = pair_kernels.row_length(int(1.15 * clusters.longest()))
             real = np.float32 if self.single else np.float64
             size = (7 + 2 * (len(self.uniform) - sum(self.uniform)) + 1) * self.row
             self.buffer = aligned((engine.threads, -(-size // 16) * 16), real)
@@ -142,7 +147,7 @@ class PairTerm:
             self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, self.single)
 
     def arguments(self, engine, tid):
-        s, c = engine.state, engine.list
+        s, c = engine.state, self.clusters(engine)
         return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts,
                 c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
                 engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index], c.hide[tid],

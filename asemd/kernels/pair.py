@@ -34,8 +34,8 @@ def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
 def _share(piece: str, numbers: str, first: int) -> list[str]:
     """Lines that compute ``share``, what a piece of a split force has of the whole at that distance: 1, between its limits smoothly to 0.
 
-    From ``numbers[first]`` on stand four numbers: where the inner piece begins to go over into the next one and the inverse of how long
-    that takes, then the same for the piece before the outer one.
+    From ``numbers[first]`` on stand six numbers: where the inner piece begins to go over into the next one and the inverse of how long
+    that takes, the same for the piece before the outer one, and the squared distances between which this piece is not 0.
     """
     lines = ["    w = math.sqrt(r2)", "    share = real(1)"]
     for at, rises, falls in ((first, "middle", "inner"), (first + 2, "outer", "middle")):
@@ -97,7 +97,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     outdated : bool
         The list may be older than the skin allows; pairs beyond its reach when it was built do not interact.
     piece : str
-        ``inner``, ``middle`` or ``outer``: only this part of the force; the constants end with the four numbers of `_share`.
+        ``inner``, ``middle`` or ``outer``: only this part of the force; the constants end with the six numbers of `_share`.
     """
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
@@ -158,6 +158,9 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     if any(p.coordinate == "r" for p in parts):
         lines.append("    r = math.sqrt(r2)")
     row = constant = array = 0
+    if piece:
+        limits = sum(len(p.constants) for p in parts) + 4
+        lines += [f"    if r2 <= constants[{limits}] or r2 >= constants[{limits + 1}]:", "        return fp, ev, ec"]
     for k, (part, name) in enumerate(zip(parts, names)):
         args = [part.coordinate] + ["qq"] * part.charged
         args += [f"rows[{row + 2 + i}, ti, tj]" for i in range(len(part.rows))]
@@ -210,7 +213,10 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = 
     if piece:
         lines += [*_share(piece, "p", constant), "    fp *= share"]
     b.text("\n".join([*lines, "    return fp, ev, ec"]))
-    b.text(f"def furthest(p, rows, ti, tj):\n    return {cuts[0] if len(cuts) == 1 else 'max(' + ', '.join(cuts) + ')'}")
+    cut = cuts[0] if len(cuts) == 1 else f"max({', '.join(cuts)})"
+    if piece:
+        cut = f"min({cut}, p[{constant + 5}])"
+    b.text(f"def furthest(p, rows, ti, tj):\n    return {cut}")
     for f in (pair_sums.eight, pair_sums.add):
         b.function(f, fast=True)
     b.function(pair_list.row_forces, fast=True)
