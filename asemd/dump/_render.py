@@ -6,9 +6,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from scipy.ndimage import gaussian_filter
+
+from asemd.kernels.target import njit
 
 FAR = -1e30
 GAMMA = 2.2
@@ -54,7 +55,7 @@ class Look:
     samples: int = 2
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _spheres(depth, normal, colour, centre, radius, paint):
     h, w = depth.shape
     for k in range(len(radius)):
@@ -74,7 +75,7 @@ def _spheres(depth, normal, colour, centre, radius, paint):
                         colour[i, j, c] = paint[k, c]
 
 
-@numba.njit(cache=True)
+@njit(cache=True)
 def _cylinders(depth, normal, colour, start, end, radius, paint):
     h, w = depth.shape
     for k in range(len(radius)):

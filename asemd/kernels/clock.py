@@ -5,9 +5,11 @@ import sys
 import time
 
 from llvmlite import ir
-from numba import config, njit, types
+from numba import config, types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from asemd.kernels.target import njit
 
 _MONOTONIC = 6 if sys.platform == "darwin" else 1
 

@@ -212,7 +212,7 @@ def load(text: str) -> types.ModuleType:
     import numba
 
     import asemd
-    _wide_vectors(numba)
+    import asemd.kernels.target  # noqa: F401   before the module decorates its functions
     imported = "".join(map(_source_of, sorted(set(re.findall(r"^from (asemd\.[\w.]+) import", text, re.M)))))
     key = f"{asemd.__version__}|{numba.__version__}|{np.__version__}|{sys.version_info[:2]}|{text}|{imported}"
     stem = "k_" + hashlib.sha256(key.encode()).hexdigest()[:24]
@@ -270,15 +270,6 @@ def _keep_if_there_is_room(kept) -> None:
                 save(signature, code)
 
         kept.save_overload = attempt
-
-
-def _wide_vectors(numba) -> None:
-    """Let LLVM use 512-bit vectors where the processor has them: it prefers 256 bits on Intel, which costs these kernels a fifth."""
-    if numba.config.CPU_FEATURES is None and numba.config.CPU_NAME is None and not numba.config.DISABLE_JIT:
-        import llvmlite.binding as llvm
-        features = llvm.get_host_cpu_features()
-        if features.get("avx512f"):
-            numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
 
 
 def _trim(folder: Path) -> None:

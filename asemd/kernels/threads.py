@@ -10,9 +10,11 @@ import sys
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from asemd.kernels.target import njit
 
 _GIVE_WAY = "SwitchToThread" if sys.platform == "win32" else "sched_yield"
 
