@@ -48,7 +48,7 @@ def run(session, args):
             new.id[:] = np.arange(1, new.n + 1)
     session.stale()
     session.print(f"Deleted {system.n - new.n} atoms, new total = {new.n}")
-    if options["bond"]:
+    if options["bond"] or options["mol"]:
         for kind, n in new.topology.counts().items():
             if system.counts[f"n{kind}types"]:
                 session.print(f"Deleted {before[kind] - n} {kind}s, new total = {n}")
@@ -61,12 +61,15 @@ def _chosen(session, system, style: str, values: list[str], what: str) -> np.nda
     if style == "region":
         return scene.region(values[0], what).inside(system.x)
     if style == "variable":
-        return session.variables.per_atom(values[0].removeprefix("v_"), system.n) != 0.0
+        variable = values[0].removeprefix("v_")
+        if session.variables.find(variable).style not in ("atom", "atomfile"):
+            raise InputError(f"{what}: variable {variable} must be of style atom or atomfile")
+        return session.variables.per_atom(variable, system.n) != 0.0
     if style in ("random", "porosity"):
         return _random(session, system, values if style == "random" else _as_random(values), what)
     cutoff = number(values[0], f"{what}: cutoff")
-    if cutoff <= 0.0:
-        raise InputError(f"{what}: the cutoff must be positive, got {values[0]}")
+    if cutoff < 0.0:
+        raise InputError(f"{what}: the cutoff must not be negative, got {values[0]}")
     return _overlapping(scene, system, cutoff, scene.groups.mask(values[1], what), scene.groups.mask(values[2], what))
 
 

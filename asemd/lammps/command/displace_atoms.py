@@ -34,6 +34,7 @@ def run(session, args):
     if style == "move":
         for k in range(3):
             if words[k].startswith("v_"):
+                system.x[:] = x         # a formula sees what the directions before it have done, as in LAMMPS
                 x[rows, k] += session.variables.per_atom(words[k][2:], system.n)[rows] * spacings[k]
             else:
                 x[rows, k] += number(words[k], what) * spacings[k]
@@ -41,6 +42,8 @@ def run(session, args):
         _ramp(x, rows, words, spacings, what)
     elif style == "random":
         size = [number(w, what) * s for w, s in zip(words, spacings)]
+        if system.dimension == 2 and size[2]:
+            raise InputError(f"{what}: in a 2d simulation atoms must not move along z, got {words[2]}")
         u = uniform_at(position_seeds(whole(words[3], f"{what}: seed"), x[rows]), 3)
         for k in range(3):
             x[rows, k] += size[k] * 2.0 * (u[:, k] - 0.5)
@@ -58,8 +61,8 @@ def _ramp(x, rows, words, spacings, what) -> None:
     d, c = AXES.index(choice(words[0], AXES, what)), AXES.index(choice(words[3], AXES, what))
     low, high = (number(w, what) * spacings[d] for w in words[1:3])
     first, last = (number(w, what) * spacings[c] for w in words[4:6])
-    if first >= last:
-        raise InputError(f"{what}: the lower bound {words[4]} must be below the upper bound {words[5]}")
+    if first == last:
+        raise InputError(f"{what}: the bounds must differ, got {words[4]} twice")
     fraction = np.clip((x[rows, c] - first) / (last - first), 0.0, 1.0)
     x[rows, d] += low + fraction * (high - low)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from asemd.errors import InputError, nearest
 from asemd.fix.dynamic_group import DynamicGroup
-from asemd.words import bounds, exactly, take, whole
+from asemd.words import exactly, take, whole
 
 LOGICAL = {"<": np.less, ">": np.greater, "<=": np.less_equal, ">=": np.greater_equal, "==": np.equal, "!=": np.not_equal, "<>": None}
 STYLES = ("delete", "clear", "empty", "region", "id", "type", "molecule", "variable", "include", "subtract", "union", "intersect",
@@ -122,7 +122,7 @@ def _members(session, system, old: np.ndarray, style: str, words: list[str], wha
     if style == "molecule":
         _need_molecules(system, what)
     labels = system.labels["atom"] if style == "type" else {}
-    return _selected(getattr(system, style), words, labels, system.counts["ntypes"] if style == "type" else None, what)
+    return _selected(getattr(system, style), words, labels, what)
 
 
 def _need_molecules(system, what: str) -> None:
@@ -130,7 +130,7 @@ def _need_molecules(system, what: str) -> None:
         raise InputError(f"{what}: atom_style {system.atom_style} has no molecules")
 
 
-def _selected(values: np.ndarray, words: list[str], labels: dict[int, str], count: int | None, what: str) -> np.ndarray:
+def _selected(values: np.ndarray, words: list[str], labels: dict[int, str], what: str) -> np.ndarray:
     """Which values a list of numbers, labels and sequences A:B:C names, or a comparison."""
     if words[0] in LOGICAL:
         need = 2 if words[0] == "<>" else 1
@@ -148,9 +148,6 @@ def _selected(values: np.ndarray, words: list[str], labels: dict[int, str], coun
             if step < 1:
                 raise InputError(f"{what}: {word} is not a sequence start:end:step")
             found |= (values >= first) & (values <= last) & ((values - first) % step == 0)
-        elif "*" in word and count is not None:
-            first, last = bounds(word, 1, count, what, labels)
-            found |= (values >= first) & (values <= last)
         else:
             found |= values == _number(word, labels, what)
     return found

@@ -45,4 +45,5 @@ def run(session, args):
             options[key] = vector
     scene.lattice = Lattice(style, scale, density=scene.units == "lj", dimension=scene.dimension, orient=tuple(orient),
                             vectors=tuple(edges) if style == "custom" else None, basis=tuple(basis), **options)
-    session.print(scene.lattice.text())
+    if style != "none":
+        session.print(scene.lattice.text())

@@ -110,6 +110,8 @@ class Setter:
     def _values(self, word: str) -> np.ndarray:
         """One number for all, or the values of a variable."""
         if word.startswith("v_"):
+            if self.session.variables.find(word[2:]).style not in ("atom", "atomfile"):
+                raise InputError(f"{self.what}: variable {word[2:]} must be of style atom or atomfile; a number is written $({word})")
             new = self.session.variables.per_atom(word[2:], self.system.n)[self.rows]
             bad = np.flatnonzero(~np.isfinite(new))
             if bad.size:

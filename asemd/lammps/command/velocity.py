@@ -133,8 +133,8 @@ class Velocity:
             raise InputError(f"{self.what}: vz cannot be set in a 2d simulation")
         low, high = (self._number(w) * self.spacings[v] for w in words[1:3])
         first, last = (self._number(w) * self.spacings[c] for w in words[4:6])
-        if first >= last:
-            raise InputError(f"{self.what}: the lower bound {words[4]} must be below the upper bound {words[5]}")
+        if first == last:
+            raise InputError(f"{self.what}: the bounds must differ, got {words[4]} twice")
         fraction = np.clip((self.system.x[self.rows, c] - first) / (last - first), 0.0, 1.0)
         new = low + fraction * (high - low)
         self.system.v[self.rows, v] = self.system.v[self.rows, v] + new if self.sum else new
