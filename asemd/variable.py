@@ -104,7 +104,9 @@ class Variables:
         if style == "internal":
             _number(words[0], f"variable {name} internal")
         if style == "format":
-            if words[0] in self.table and self.table[words[0]].style not in ("equal", "internal", "python", "timer"):
+            if words[0] not in self.table:
+                raise InputError(f"variable {name} format: undefined variable {words[0]}{nearest(words[0], self.table)}")
+            if self.table[words[0]].style not in ("equal", "internal", "python", "timer"):
                 raise InputError(f"variable {name} format: variable {words[0]} of style {self.table[words[0]].style} is no number")
             if not re.fullmatch(FORMAT, words[1]):
                 raise InputError(f"variable {name}: format {words[1]} must be one of %e, %f, %g")

@@ -8,7 +8,8 @@ import pytest
 from asemd import cli, style
 from asemd.errors import InputError
 from asemd.lammps import catalog
-from asemd.lammps.coverage import CATALOG, PARTIAL, REFUSED, categories, counts, coverage, inventory, present
+from asemd.lammps.catalog import inventory
+from asemd.lammps.coverage import CATALOG, PARTIAL, REFUSED, categories, counts, coverage, present
 
 
 def test_inventory_is_complete_and_unique():

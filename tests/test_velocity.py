@@ -91,7 +91,7 @@ def test_temperature_compute():
     ("velocity all creat 1 1", "did you mean create"), ("velocity nope set 0 0 0", "unknown group"),
     ("velocity all create 1 5 distt gaussian", "did you mean dist"), ("velocity all create 1 5 dist gauss", "gaussian"),
     ("velocity all create 1 5 loop some", "all local geom"), ("velocity all create 1 5 temp nope", "no compute"),
-    ("velocity all create 1 5 rigid f", "not supported"), ("velocity all ramp vx 0 1 x 2 1", "below"),
+    ("velocity all create 1 5 rigid f", "not supported"), ("velocity all ramp vx 0 1 x 2 2", "differ"),
     ("velocity all scale 1.0", "temperature of group all is 0"), ("velocity all zero all", "linear angular"),
     ("velocity none create 1 5", "no atoms"), ("velocity all create 1 5 mom", "1 value"),
 ])

