@@ -40,6 +40,7 @@ class Engine:
         self.system, self.interactions, self.settings = system, interactions, settings or Settings()
         self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
+        self.sparse = False
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
         self.parallel = Team(self.threads)
         self.groups: dict[str, np.ndarray] = {}
@@ -64,6 +65,7 @@ class Engine:
         self.reach = self.cutoff + s.skin
         self.exclusions = Exclusions(system, inter, s.exclude, bool(self.pair_terms))
         self._choose_list()
+        self.k = kernels(self.ortho, s.outdated or self.sparse)
         self.terms = self._make_terms()
         self.bonds = Bonds(self)
         self.changed = True      # loops look whether their kernels are still the right ones
@@ -74,7 +76,8 @@ class Engine:
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
         width = 16 if s.precision == "mixed" else 8
-        self.list = ClusterList(self.threads, self.reach, width, s.outdated) if self.mode == "cluster" else PlainList(self.reach)
+        marked = s.outdated or self.sparse
+        self.list = ClusterList(self.threads, self.reach, width, marked) if self.mode == "cluster" else PlainList(self.reach)
         self.state = None
         self._offset = None
         self.ns = 0
@@ -124,7 +127,7 @@ class Engine:
         self.cell = cell_arrays(self.vectors, self.periodic)
         self.shifts27 = IMAGES @ self.cell.reduced
         self.periodic27 = (IMAGES[:, ~self.periodic] == 0).all(axis=1)
-        self.k = kernels(self.ortho, self.settings.outdated)
+        self.k = kernels(self.ortho, self.settings.outdated or self.sparse)
         self._bins = None
 
     def set_groups(self, groups, bits) -> None:

@@ -88,11 +88,11 @@ class ClusterList:
     first (nth, ncluster+1), entries (nth, m), unshifted (ncluster,), shifts (27, 3), bounds (nth+1,)
         See `asemd.kernels.cluster`.
     hide (nth, m)
-        For lists that may be outdated, see `asemd.kernels.pair_cluster`.
+        If `marked`: bits of the atoms of its cluster that each entry is out of reach of, for lists that may be outdated and for `rows`.
     """
 
-    def __init__(self, threads: int, reach: float, width: int = 8, outdated: bool = False):
-        self.threads, self.reach, self.width, self.outdated = threads, reach, width, outdated
+    def __init__(self, threads: int, reach: float, width: int = 8, marked: bool = False):
+        self.threads, self.reach, self.width, self.marked = threads, reach, width, marked
         self.hide = np.zeros((threads, 1), np.uint8)
         self.capacity = 0
         self.nx = self.ny = self.nz = 0
@@ -103,7 +103,6 @@ class ClusterList:
         self.row_length = np.zeros((threads, 1), np.int64)
         self.bins, self.n = None, -1
         self.row_start, self.neighbors = np.zeros((threads, 0), np.int32), np.zeros((threads, 0), np.int32)
-        self.row_work = np.zeros((threads, 4, 512))
 
     def shape(self, bins: BinCell, n: int) -> bool:
         """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
@@ -160,7 +159,7 @@ class ClusterList:
         self.shifts = IMAGES @ cell_vectors
         again = self.shares is None and self.threads > 1
         while True:
-            if self.outdated and self.hide.shape[1] < self.entries.shape[1]:
+            if self.marked and self.hide.shape[1] < self.entries.shape[1]:
                 self.hide = np.zeros(self.entries.shape, np.uint8)
             self._split(ncl)
             results = [0] * self.threads
@@ -197,14 +196,12 @@ class ClusterList:
 
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-            results[t] = k.rows(state.x, state.row, self.first[t], self.entries[t], self.own, self.span, c0, c1, self.shifts,
-                                self.reach**2, *partners, self.row_start[t], self.neighbors[t], self.row_work[t])
+            results[t] = k.rows(state.row, self.first[t], self.entries[t], self.hide[t], self.own, self.span, c0, c1, *partners,
+                                self.row_start[t], self.neighbors[t])
         while True:
             parallel(work)
             if -1 in results:
                 self.neighbors = np.zeros((self.threads, 2 * self.neighbors.shape[1] + 16 * ns), np.int32)
-            elif -2 in results:
-                self.row_work = np.zeros((self.threads, 4, 2 * self.row_work.shape[2]))
             else:
                 return self.row_start, self.neighbors
 

@@ -121,7 +121,7 @@ class ShortClusterTerm(PairTerm):
     def rebuild(self, engine):
         whole = engine.list
         if self.near is None:
-            self.near = ClusterList(engine.threads, self.within, whole.width, whole.outdated)
+            self.near = ClusterList(engine.threads, self.within, whole.width, whole.marked)
         near = self.near
         near.shape(whole.bins, engine.system.n)
         near.cell_start, near.column_start, near.column_of = whole.cell_start, whole.column_start, whole.column_of     # same slots

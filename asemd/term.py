@@ -132,7 +132,7 @@ class PairTerm:
 
     def rebuild(self, engine):
         clusters = self.clusters(engine)
-        self.outdated = clusters.outdated
+        self.outdated = engine.settings.outdated
         self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(clusters.longest())
         if row > self.row:

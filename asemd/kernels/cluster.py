@@ -312,6 +312,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         n = start + kept + CLUSTER
         while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)
+            if MARK:
+                hide[n] = np.uint8(255)
             n += 1
         longest[0] = max(longest[0], n - start)
     first[c1] = n

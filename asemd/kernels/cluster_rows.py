@@ -96,49 +96,33 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
     return n
 
 
-def rows(x, row, first, entries, own, span, c0, c1, shifts, reach2, partner_start, partners, start, neighbors, work):
+def rows(row, first, entries, hide, own, span, c0, c1, partner_start, partners, start, neighbors):
     """The cluster list as rows of single atoms, for sparse systems: slots of clusters c0..c1-1, entries as in the cluster list.
 
-    Partners (special pairs) are left out. `start (nslots+1,)`, `neighbors (m,)`, `work (4, w)`; returns the number of entries, or -1 if
-    `neighbors` is too small, -2 if `work` is.
+    `hide` says which atoms of the cluster each entry is out of reach of. Partners (special pairs) are left out. `start (nslots+1,)`,
+    `neighbors (m,)`; returns the number of entries, or -1 if `neighbors` is too small.
     """
     n = 0
-    px, py, pz, distance = work[0], work[1], work[2], work[3]
     for ci in range(c0, c1):
         s = ci * CLUSTER
         f0 = np.int64(first[ci])
-        full = np.int64(first[ci + 1]) - f0
-        if full > work.shape[1]:
-            return -2
-        if n + CLUSTER * full > neighbors.shape[0]:
+        if n + CLUSTER * (np.int64(first[ci + 1]) - f0) > neighbors.shape[0]:
             return -1
-        for k in range(full):
-            e = entries[np.uint64(f0 + k)]
-            j = np.uint32(e & np.int32(SLOT_BITS))
-            c = np.uint32(e >> 26)
-            px[k] = x[0, j] + shifts[c, 0]
-            py[k] = x[1, j] + shifts[c, 1]
-            pz[k] = x[2, j] + shifts[c, 2]
-        mine = np.int64(own[ci])
+        mine = f0 + own[ci]
         for a in range(CLUSTER):
             start[s + a] = n
-            px[mine + a] = 1e150      # atoms of the cluster that have had their turn, and the atom itself
             r = row[s + a]
             if r < 0:
                 continue
-            low = np.int64(span[ci, a - a % 2])
-            count = np.int64(span[ci, a - a % 2 + 1]) - low
-            xi, yi, zi = x[0, s + a], x[1, s + a], x[2, s + a]
-            for k in range(count):
-                dx = xi - px[np.uint64(low + k)]
-                dy = yi - py[np.uint64(low + k)]
-                dz = zi - pz[np.uint64(low + k)]
-                distance[k] = dx * dx + dy * dy + dz * dz
             at = n
-            e0 = f0 + low
-            for k in range(count):
-                neighbors[np.uint64(n)] = entries[np.uint64(e0 + k)]
-                n += distance[k] < reach2
+            low = f0 + np.int64(span[ci, a - a % 2])
+            high = f0 + np.int64(span[ci, a - a % 2 + 1])
+            for k in range(low, mine):      # all entries are copied; the counter moves for those in reach: no branches to mispredict
+                neighbors[np.uint64(n)] = entries[np.uint64(k)]
+                n += ((hide[np.uint64(k)] >> a) & 1) ^ 1
+            for k in range(mine + a + 1, high):      # atoms of the cluster before this one have had their turn
+                neighbors[np.uint64(n)] = entries[np.uint64(k)]
+                n += ((hide[np.uint64(k)] >> a) & 1) ^ 1
             p0 = partner_start[r]
             p1 = partner_start[r + 1]
             if p1 > p0:
