@@ -315,6 +315,14 @@ class Box:
         box.initial = self.initial
         return box
 
+    def widened(self) -> Box:
+        """The box with every face ``s`` moved out by its margin: atoms on the face are inside."""
+        margin = MARGIN * (self.hi - self.lo)
+        lo = self.lo - margin * [b[0] == "s" for b in self.boundary]
+        wide = Box.from_lammps(lo, self.hi + margin * [b[1] == "s" for b in self.boundary], self.tilt, self.boundary, self.triclinic)
+        wide.initial = self.initial
+        return wide
+
     def beyond(self, x: np.ndarray) -> np.ndarray:
         """(n, 3) bool: which atoms are beyond a fixed face along each cell vector."""
         s = self.fractional(x)

@@ -46,6 +46,9 @@ class Moment:
         self.progress, self.counters = progress or Progress(), counters
         self._cache: dict[tuple[str, str], Any] = {}
 
+    def __getstate__(self):
+        return {**self.__dict__, "counters": None}      # they are the engine's
+
     @property
     def system(self):
         return self.scene.need_system("thermo")

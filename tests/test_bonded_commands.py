@@ -21,6 +21,7 @@ CASES = {
     "undo any": ["delete_bonds g multi any", "delete_bonds all atom 1 undo any"], "atom": ["delete_bonds g atom 1 remove"],
     "atom any": ["delete_bonds two atom 2 any remove special"],
     "undo remove": ["delete_bonds all multi", "delete_bonds two bond 1*2 undo remove special"],
+    "remove those of other kinds": ["delete_bonds all bond 1", "delete_bonds g angle 1", "delete_bonds h dihedral 1 remove"],
     "remove those off": ["delete_bonds all bond 1", "delete_bonds g bond 1 remove special"],
     "dihedrals": ["delete_bonds all dihedral 1*2 remove", "delete_bonds all improper 2", "delete_bonds all stats"],
     "off, then pairs": ["delete_bonds all bond 1 remove", "create_bonds single/angle 1 1 2 3 special no"],

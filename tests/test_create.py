@@ -36,6 +36,59 @@ create_box 2 NULL 0 2 -1 1 0 3
 PAIR = "pair_style lj/cut 2.5\npair_coeff * * 1 1\n"
 
 
+FLAKE = [[(1, 1, 1), (3, 1, 1), (1, 3.1, 1.5)], [(3, 1, 1), (3, 3, 2), (1, 3.1, 1.5)], [(0.5, 0.5, 3.2), (3.8, 1.1, 2), (2.2, 3.9, 3.1)],
+         [(1, 1, 1), (2, 2, 1), (2, 1, 2)], [(1, 1, 1), (1, 1, 1), (2, 2, 2)], [(3, 3, 3), (5, 3, 3), (3, 5, 5)]]
+
+
+def stl(folder, kind: str) -> str:
+    """An STL file of some triangles: with equal sides, without area, beyond the box."""
+    path = folder / f"{kind}.stl"
+    if kind == "text":
+        path.write_text("solid flake\n" + "".join(
+            "facet normal 0 0 1\n outer loop\n" + "".join(f"  vertex {a} {b} {c}\n" for a, b, c in t) + " endloop\nendfacet\n"
+            for t in FLAKE) + "endsolid flake\n")
+    else:
+        path.write_bytes(b"flake".ljust(80) + len(FLAKE).to_bytes(4, "little")
+                         + b"".join(bytes(12) + np.array(t, "<f4").tobytes() + bytes(2) for t in FLAKE))
+    return str(path)
+
+
+MESH = """
+units lj
+atom_style {style}
+region b block 0 4 0 4 0 4
+create_box 1 b
+"""
+
+
+@pytest.mark.parametrize("style", ["sphere", "molecular"])
+def test_mesh_is_that_of_lammps(tmp_path, style):
+    start = MESH.format(style=style) + "create_atoms 1 single 1 1 1 units box\n"
+    ways = ["", "meshmode bisect 0.4", "meshmode qrand 4", *(["radscale 1.5", "radscale 0.7 meshmode qrand 2"] * (style == "sphere"))]
+    cases = {f"{kind} {words}": f"{start}create_atoms 1 mesh {stl(tmp_path, kind)} units box {words}"
+             for kind in ("text", "binary") for words in ways}
+    theirs = lammps(cases)
+    for name, script in cases.items():
+        session = asemd(script)
+        assert_same(session, theirs[name], x=1e-14)
+        assert f"Reading STL object flake from {name.split()[0]} file" in "".join(session.told) and session.scene.system.n > 7
+    if style == "sphere":
+        radii = session.scene.system.extra["radius"][1:]
+        areas = [0.5 * np.linalg.norm(np.cross(np.subtract(t[1], t[0]), np.subtract(t[2], t[0]))) for t in FLAKE]
+        assert radii[0] == pytest.approx(0.7 * np.sqrt(areas[0] / np.pi / np.ceil(2 * areas[0])), rel=1e-7)     # of a binary file
+
+
+@pytest.mark.parametrize("text, words", [("nothing", "no STL file"), ("solid a\nfacet normal 0 0\n", "line 2"),
+                                         ("solid a\n\nfacet\n", "line 3"),
+                                         ("solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 x\n", "'vertex' and 3 numbers in line 4"),
+                                         ("solid a\nfacet normal 0 0 1\n", "the end of the file")])
+def test_faulty_meshes(tmp_path, text, words):
+    path = tmp_path / "a.stl"
+    path.write_text(text)
+    with pytest.raises(InputError, match=words):
+        asemd(MESH.format(style="atomic") + f"create_atoms 1 mesh {path} units box")
+
+
 def lattice(words: str, units: str = "metal", boundary: str = "p p p", region: str = "block 0 3 0 2 0 3", more: str = "") -> str:
     return f"units {units}\nboundary {boundary}\nlattice {words}\nregion b {region}\ncreate_box 2 b\ncreate_atoms 1 box {more}"
 
@@ -154,7 +207,11 @@ def test_groups_follow_the_atoms():
     ("create_atoms 1 region q", "unknown region"), ("create_atoms 1 single 1 1", "3 values"),
     ("create_atoms 1 box basis 5 1", "4 basis atoms"), ("create_atoms 0 box", "valid range"),
     ("create_atoms 1 box mol m 1", "no molecule m"),
-    ("create_atoms 1 random 5 0 NULL", "seed"),
+    ("create_atoms 1 random 5 0 NULL", "seed"), ("create_atoms 1 mesh a.stl", "units box"),
+    ("create_atoms 1 mesh a.stl units box", "cannot open"),
+    ("create_atoms 1 box radscale 2", "only for style mesh"), ("create_atoms 1 box meshmode qrand 3", "only for style mesh"),
+    ("create_atoms 1 box overlap 1", "only for style random"), ("create_atoms 1 mesh a.stl meshmode qrand 0", "positive"),
+    ("create_atoms 1 mesh a.stl meshmode rand 1", "bisect qrand"),
     ("create_atoms 1 random 5 9 far", "does not overlap"), ("mass 3 1.0", "valid range"), ("mass 1 0", "positive"),
     ("mass 1 x", "number"), ("mass 1", "1 words"), ("mass 1 nan", "finite"), ("labelmap atom 3 C", "valid range"),
     ("labelmap atom 1 2B", "digit"), ("labelmap atom 1 'A b'", "one word"), ("labelmap clear x", "0 values"),

@@ -74,11 +74,11 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-def session(*lines):
+def session(*lines, before=()):
     s = Session(passive=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        for line in (*START, *lines):
+        for line in (*before, *START, *lines):
             s.execute(line)
     return s
 
@@ -106,6 +106,43 @@ def test_add_is_that_of_lammps(folder, words):
     for name in ("id", "type", "molecule", "image", "x", "v", "mass"):
         np.testing.assert_allclose(getattr(mine, name), getattr(want, name), rtol=1e-14, err_msg=name)
     assert mine.topology == want.topology and mine.box == want.box
+
+
+BOX = """
+lmp = start()
+answer = {}
+for name, lines in given["cases"].items():
+    lmp.command("clear")
+    for line in lines:
+        lmp.command(line)
+    answer[name] = lmp.extract_box()[:2]
+lmp.close()
+"""
+
+
+def test_shrink_wrapped_faces_of_files_are_those_of_lammps(folder):
+    """The margin is a part of a box that is larger by a margin itself, other than after create_box."""
+    cases = {}
+    for boundary in ("s s s", "f s m", "fs p sm", "sm m p"):
+        for more in ([], ["read_data first.data add append shift 6 1 1"]):
+            cases[f"{boundary} {len(more)}"] = [f"boundary {boundary}", *START, "read_data first.data", *more]
+    settled = ["pair_style zero 2.0", "pair_coeff * *", "bond_style zero", "bond_coeff *", "run 0 post no"]
+    absolute = {name: [line.replace("read_data ", f"read_data {folder}/") for line in lines] + settled for name, lines in cases.items()}
+    for name, box in ask(BOX, cases=absolute).items():
+        mine = session(*cases[name][1:], before=cases[name][:1]).scene.system.box
+        np.testing.assert_allclose([mine.lo, mine.hi], box, rtol=1e-14, atol=1e-15, err_msg=name)
+
+
+@pytest.mark.parametrize(("words", "warned"), [("", "1 pair_coeff of unlike types"), ("pair ij", None)])
+def test_coefficients_of_unlike_types(folder, words, warned):
+    pair = ["pair_style lj/cut 2.5", "pair_coeff * * 1 1", "pair_coeff 1 2 3 1"]
+    s = session("read_data first.data", *pair, "bond_style zero", "bond_coeff *")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        s.execute(f"write_data out.data {words}")
+    assert [warned in str(w.message) for w in caught] == [True] * bool(warned)
+    section = (folder / "out.data").read_text().partition("Coeffs # lj/cut")[2].split("\n\n")[1].splitlines()
+    assert len(section) == (3 if words else 2)
 
 
 def test_merge_interleaves_ids_and_groups(folder):

@@ -96,7 +96,7 @@ class Dump(Modify):
         return ()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_file": None, "variables": None}
+        return {**self.__dict__, "_file": None}
 
     @property
     def path(self) -> str:

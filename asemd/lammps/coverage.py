@@ -17,7 +17,6 @@ CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 PARTIAL = {
     ("command", "atom_modify"): "id no is refused: atoms always have ids",
     ("command", "atom_style"): "the styles listed under atom",
-    ("command", "create_atoms"): "no style mesh",
     ("command", "create_box"): "no general triclinic box in 2d",
     ("command", "molecule"): "no files in JSON format, no bodies",
     ("command", "read_dump"): "formats native (text) and xyz; no general triclinic boxes",

@@ -28,6 +28,8 @@ class DataFile:
     ----------
     system : System
         Atoms in order of id, inside the box.
+    box : Box
+        As the file has it, or together with the one it extends, before shrink-wrapped faces move to the atoms.
     coeffs : dict
         Section -> list of (place, words); types as numbers, without comments.
     styles_hint : dict
@@ -39,6 +41,7 @@ class DataFile:
     """
 
     system: System
+    box: Box
     coeffs: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
     styles_hint: dict[str, str] = field(default_factory=dict)
     headings: dict[str, Where] = field(default_factory=dict)
@@ -105,7 +108,7 @@ class _Reader(DataText):
         system = self.read_atoms(box, rotation, counts, mass)
         coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
         self.check_hints()
-        return DataFile(system, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
+        return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
                         {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip())
 
     def check_hints(self) -> None:
@@ -259,7 +262,10 @@ class _Reader(DataText):
             self.drop_flags(image, box, line)
         if rotation is not None:
             x = (x - box.origin) @ rotation + box.origin
-        whole = box if self.onto is None else self.union(box)
+        whole = self.whole = box if self.onto is None else self.union(box)
+        if rotation is None:
+            whole = whole.widened()
+            whole.initial = np.array([whole.lo, whole.hi])      # unlike those of create_box
         self.check_inside(x, ids, whole, line)
         far = (np.abs(whole.fractional(x)) + np.abs(image.astype(float)) > FARTHEST) & whole.periodic
         if far.any():
@@ -301,8 +307,8 @@ class _Reader(DataText):
             row = int(np.argmax(outside.any(axis=1)))
             k = int(np.argmax(outside[row]))
             more = int(outside.any(axis=1).sum()) - 1
-            kind = {"f": "fixed"}.get(box.boundary[k][0], "shrink-wrapped")
-            raise self.fail(f"atom {ids[row]} at {'xyz'[k]}={x[row, k]:g} is outside the {kind} box [{box.lo[k]:g}, {box.hi[k]:g}]"
+            kind, file = {"f": "fixed"}.get(box.boundary[k][0], "shrink-wrapped"), self.whole
+            raise self.fail(f"atom {ids[row]} at {'xyz'[k]}={x[row, k]:g} is outside the {kind} box [{file.lo[k]:g}, {file.hi[k]:g}]"
                             + (f", and {more} more" if more else ""), line(row))
 
     def check_images(self, system: System, line) -> None:

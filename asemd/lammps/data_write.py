@@ -48,7 +48,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     Warns
     -----
     InputWarning
-        Coefficients that a data file cannot hold (hybrid pair styles with several lines for one type).
+        Coefficients that a data file cannot hold (hybrid pair styles with several lines for one type), or does not (with ``ii`` those of
+        unlike types), types without labels where ``labels`` are asked for.
     """
     if not atom_styles.known(system.atom_style):
         raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
@@ -83,7 +84,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
     yield f"{s.n} atoms"
     yield f"{s.counts['ntypes']} atom types"
     for section, kind in TOPOLOGY.items():
-        if kind in atom_styles.bonded(s.atom_style):
+        if kind in atom_styles.bonded(s.atom_style) and s.counts[f"n{kind}types"]:
             yield f"{np.count_nonzero(s.topology.items(kind)[1])} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
     yield ""
@@ -214,6 +215,9 @@ def _bonded_sections(interactions: Interactions, category: str, count: int) -> d
 def _pair_sections(interactions: Interactions, s: System, pair: str) -> dict[str, list[list[str]]]:
     lines = interactions.coeff_lines("pair")
     if pair == "ii":
+        if unlike := sum(line[0] != line[1] for line in lines):
+            warnings.warn(f"write_data: {unlike} pair_coeff{'s' * (unlike > 1)} of unlike types {'are' if unlike > 1 else 'is'} not in the "
+                          "file: use pair ij, or repeat the commands in the script", InputWarning, stacklevel=2)
         return {"Pair Coeffs": [[line[0], *line[2:]] for line in lines if line[0] == line[1]]}
     if not interactions.hybrid["pair"]:
         use = interactions.uses["pair"][0]

@@ -39,6 +39,10 @@ class Log:
         self.to_file(f"LAMMPS ({LANGUAGE} - asemd {__version__})\n")       # readers of logs look for the first word
         self.to_screen(f"asemd {__version__} (LAMMPS input language)\n")
 
+    def __getstate__(self):
+        """Copies write nowhere, so that two sessions do not write to one file."""
+        return {**self.__dict__, "file": None, "screen": None}
+
     def open(self, path: str, append: bool = False) -> None:
         """Write to another file from now on; ``none`` for none."""
         self.close()

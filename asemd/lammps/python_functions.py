@@ -33,7 +33,21 @@ class PythonFunctions:
     def __init__(self, session):
         self.session = session
         self.table: dict[str, Function] = {}
-        self.names: dict[str, Any] = {"__name__": "__main__", "__builtins__": {**vars(builtins), "__import__": self._import}}
+        self.texts: list[tuple[str, str]] = []      # what was executed, and where it comes from
+        self.names = self._names()
+
+    def _names(self) -> dict[str, Any]:
+        return {"__name__": "__main__", "__builtins__": {**vars(builtins), "__import__": self._import}}
+
+    def __getstate__(self):
+        return {**self.__dict__, "names": None}
+
+    def __setstate__(self, state):
+        """A copy has the functions that the same code defines anew."""
+        vars(self).update(state)
+        self.names = self._names()
+        for text, origin in self.texts:
+            exec(compile(text, f"<python {origin}>", "exec"), self.names)
 
     def command(self, words: list[str]) -> None:
         """``python NAME keywords...`` or ``python source FILE``."""
@@ -144,6 +158,7 @@ class PythonFunctions:
 
     def _execute(self, text: str, origin: str) -> None:
         self._guarded(origin, lambda: exec(compile(text, f"<python {origin}>", "exec"), self.names))
+        self.texts.append((text, origin))
 
     def _guarded(self, name: str, work: Callable[[], Any]) -> Any:
         self.session.refuse_if_safe("python")

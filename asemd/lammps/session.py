@@ -89,6 +89,10 @@ class Session:
         self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Copies have no log, no terminal and no compiled loop: the next run makes the loop anew."""
+        return {**self.__dict__, "loop": None, "observer": None}
+
     def _fresh_scene(self) -> Scene:
         scene = Scene()
         scene.threads, scene.precision, scene.compat = self.switches.threads, self.switches.precision, self.switches.compat

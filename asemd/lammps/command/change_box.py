@@ -7,7 +7,7 @@ import numpy as np
 
 from asemd.box import Box
 from asemd.errors import InputError, nearest
-from asemd.lammps.command.create_box import describe, widened
+from asemd.lammps.command.create_box import describe
 from asemd.words import choice, number, take
 
 AXES = ("x", "y", "z")
@@ -110,7 +110,7 @@ class Change:
         if not np.all(lo < hi):
             raise InputError(f"change_box: the box would have no volume, bounds ({' '.join(f'{v:g}' for v in lo)}) to "
                              f"({' '.join(f'{v:g}' for v in hi)})")
-        self.box = widened(Box.from_lammps(lo, hi, tilt, boundary, triclinic))      # LAMMPS takes every step for a new box
+        self.box = Box.from_lammps(lo, hi, tilt, boundary, triclinic).widened()      # LAMMPS takes every step for a new box
 
     def _length(self, name: str, words: list[str]) -> None:
         box, k, what = self.box, AXES.index(name), f"change_box {name}"

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from asemd.atom_style import fresh
+from asemd.atom_style import fresh, has
 from asemd.errors import InputError, nearest
+from asemd.lammps import mesh
 from asemd.lammps.command.create_box import describe
 from asemd.lattice import Lattice
 from asemd.marsaglia import Marsaglia
@@ -19,8 +20,12 @@ from asemd.words import bounds, choice, number, take, whole, yes_no
 
 EPSILON = 1.0e-6        # part of the box by which lattice points may miss a periodic face
 WARMUP = 30             # draws thrown away by style random
-STYLES = {"box": 0, "region": 1, "single": 3, "random": 3}
-VALUES = {"mol": 2, "basis": 2, "ratio": 2, "subset": 2, "remap": 1, "var": 1, "set": 2, "rotate": 4, "overlap": 1, "maxtry": 1, "units": 1}
+STYLES = {"box": 0, "region": 1, "single": 3, "random": 3, "mesh": 1}
+VALUES = {"mol": 2, "basis": 2, "ratio": 2, "subset": 2, "remap": 1, "var": 1, "set": 2, "rotate": 4, "overlap": 1, "maxtry": 1,
+          "meshmode": 2, "radscale": 1, "units": 1}
+ONLY = {"meshmode": ("mesh",), "radscale": ("mesh",), "overlap": ("random",), "maxtry": ("random",), "var": ("box", "region", "random"),
+        "set": ("box", "region", "random")}     # styles that a keyword is for; others take no notice of it where LAMMPS takes none
+MESH = {"bisect": "recursive bisection", "qrand": "quasi-random"}
 SEEDS = 900_000_000     # the largest of Marsaglia's generator
 
 
@@ -37,19 +42,19 @@ class _Options:
     turns: Marsaglia | None = None      # draws the rotations of molecules
     rotate: np.ndarray | None = None
     overlap: float | None = None
+    meshmode: tuple[str, float] | None = None       # bisect and the largest radius, or qrand and the density
+    radscale: float = 1.0
 
 
 def run(session, args):
     started = time.perf_counter()
     scene, system = session.scene, session.scene.need_system("create_atoms")
     kind, style = take(args, 2, "create_atoms")[:2]
-    if style == "mesh":
-        raise InputError("create_atoms mesh is not supported: make the points of the surface beforehand and read them with read_data")
     if style not in STYLES:
         raise InputError(f"create_atoms: style {style!r} is unknown or not supported{nearest(style, STYLES)}; there are {' '.join(STYLES)}")
     values = take(args[2:], STYLES[style], f"create_atoms {style}")
     lattice = scene.lattice or Lattice()
-    options = _options(session, args[2 + len(values):], system, lattice)
+    options = _options(session, args[2 + len(values):], system, lattice, style)
     kind = _type(kind, system, options.template)
     if options.template is not None:
         options.template.check(system, "create_atoms mol", kind)
@@ -57,7 +62,11 @@ def run(session, args):
     if style in ("region", "random") and values[-1] != "NULL":
         region = scene.region(values[-1], f"create_atoms {style}")
     wanted = _test(session, options)
-    if style == "single":
+    radii = None
+    if style == "mesh":
+        x, radii = _mesh(session, values[0], system, options)
+        types = np.full(len(x), kind)
+    elif style == "single":
         x, types = _single(values, system, lattice, options, kind, wanted)
     elif style == "random":
         x, types = _random(session, values, system, region, lattice, options, kind, wanted)
@@ -73,6 +82,11 @@ def run(session, args):
     else:
         new = System(box=system.box, x=x, type=types, units=system.units, dimension=system.dimension, counts=dict(system.counts),
                      **fresh(system.atom_style, len(x)))
+    if radii is not None:
+        if "radius" in new.extra:
+            new.extra["radius"] = options.radscale * radii
+        if new.molecular:
+            new.molecule = np.ones(new.n, np.int64)      # one that is new: numbers follow those that are there
     scene.system = system.append(new)
     session.stale()
     session.print(f"Created {new.n} atoms")
@@ -90,13 +104,15 @@ def _type(word: str, system, template: Molecule | None = None) -> int:
     return first
 
 
-def _options(session, words: list[str], system, lattice: Lattice) -> _Options:
+def _options(session, words: list[str], system, lattice: Lattice, style: str) -> _Options:
     out = _Options()
     while words:
         key, what = words[0], f"create_atoms {words[0]}"
         if key not in VALUES:
             raise InputError(f"create_atoms: unknown keyword {key!r}{nearest(key, VALUES)}")
         values = take(words[1:], VALUES[key], what)
+        if style not in ONLY.get(key, STYLES):
+            raise InputError(f"{what} is only for style {' '.join(ONLY[key])}, not for {style}")
         if key == "basis":
             number_of_basis = 0 if lattice.style == "none" else len(lattice.basis)
             basis = whole(values[0], what)
@@ -113,6 +129,12 @@ def _options(session, words: list[str], system, lattice: Lattice) -> _Options:
             out.overlap = number(values[0], what)
             if out.overlap < 0.0:
                 raise InputError(f"{what}: the distance must not be negative, got {values[0]}")
+        elif key == "meshmode":
+            out.meshmode = choice(values[0], MESH, what), _positive(number(values[1], what), what)
+        elif key == "radscale":
+            if not has(system.atom_style, "diameter"):
+                raise InputError(f"{what}: atoms of style {system.atom_style} have no radius")
+            out.radscale = _positive(number(values[0], what), what)
         elif key in ("ratio", "subset"):
             out.part = _part(key, values, what)
         elif key == "var":
@@ -295,6 +317,22 @@ def _random(session, values, system, region, lattice, options: _Options, kind: i
         session.warn(f"Only inserted {len(found)} particles out of {n}")
     x = np.array(found).reshape(-1, *((options.template.natoms,) if options.template is not None else ()), 3)
     return x, np.full(len(x), kind)
+
+
+def _mesh(session, path: str, system, options: _Options) -> tuple[np.ndarray, np.ndarray]:
+    """Points on the triangles of an STL file, and their radii."""
+    if options.lattice:
+        raise InputError("create_atoms mesh: the keyword units box is needed")
+    name, kind, triangles = mesh.read_stl(path)
+    mode, value = options.meshmode or ("bisect", 1.0)
+    parts = [(mesh.bisected if mode == "bisect" else mesh.quasirandom)(triangle, value) for triangle in triangles]
+    x = np.concatenate([np.zeros((0, 3)), *(np.reshape(points, (-1, 3)) for points, _ in parts)])
+    radii = np.concatenate([[], *(r for _, r in parts)])
+    keep = _inside(x, system.box)
+    session.print(f"Reading STL object {name} from {kind} file {path}")
+    each = keep.sum() / max(1, len(triangles))
+    session.print(f"  read {len(triangles)} triangles with {each:.2f} atoms per triangle added in {MESH[mode]} mode")
+    return x[keep], radii[keep]
 
 
 class _Crowd:

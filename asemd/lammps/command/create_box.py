@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.atom_style import bonded, fresh
-from asemd.box import MARGIN, Box
+from asemd.box import Box
 from asemd.errors import InputError, nearest
 from asemd.region.prism import Prism
 from asemd.system import COUNTS, System
@@ -42,7 +42,7 @@ def run(session, args):
                           dimension=scene.dimension, step=scene.step, **fresh(scene.atom_style, 0))
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
-    scene.system.box = widened(scene.system.box)
+    scene.system.box = scene.system.box.widened()
 
 
 def _general(scene, words: list[str]) -> Box:
@@ -81,16 +81,6 @@ def _box(scene, region) -> Box:
     if scene.dimension == 2 and not (lo[2] < 0.0 < hi[2]):
         raise InputError(f"create_box: a 2d box must have z = 0 between zlo {lo[2]:g} and zhi {hi[2]:g}")
     return Box.from_lammps(lo, hi, tilt, scene.boundary, triclinic)
-
-
-def widened(box: Box) -> Box:
-    """The box with every shrink-wrapped face (s) moved out by its margin: atoms on the face are inside."""
-    margin = MARGIN * (box.hi - box.lo)
-    lo = box.lo - margin * [b[0] == "s" for b in box.boundary]
-    hi = box.hi + margin * [b[1] == "s" for b in box.boundary]
-    wide = Box.from_lammps(lo, hi, box.tilt, box.boundary, box.triclinic)
-    wide.initial = box.initial
-    return wide
 
 
 def describe(box: Box) -> str:

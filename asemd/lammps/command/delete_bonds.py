@@ -1,5 +1,6 @@
 """``delete_bonds group style args keyword ...``: turn bonds, angles, dihedrals and impropers off or on, or remove them for good.
 
+``remove`` takes away all of the group that is off, of any kind, also what earlier commands turned off.
 Source: LAMMPS manual, delete_bonds.
 """
 from __future__ import annotations
@@ -35,15 +36,15 @@ def run(session, args):
     kinds = () if style == "stats" else KINDS if style in ("multi", "atom") else (style,)
     parts = {}
     for kind, atoms, now in topology:
-        new, chosen = now.copy(), np.zeros(len(atoms), bool)
+        new, member = now.copy(), mask[atoms].any(axis=1) if "any" in words else mask[atoms].all(axis=1)
         if kind in kinds:
-            chosen = mask[atoms].any(axis=1) if "any" in words else mask[atoms].all(axis=1)
+            chosen = member.copy()
             if style == "atom":
                 chosen &= types[system.type[atoms]].any(axis=1)
             elif style != "multi":
                 chosen &= types[np.abs(new)]
             new[chosen & ((new < 0) if "undo" in words else (new > 0))] *= -1
-        stays = (new > 0) | ~chosen if "remove" in words else np.ones(len(new), bool)
+        stays = (new > 0) | ~member if "remove" in words else np.ones(len(new), bool)
         parts[kind] = atoms[stays], new[stays]
     system.topology = topology.replaced(parts, "special" in words)
     session.print("Deleting bonds ...")

@@ -63,7 +63,7 @@ def run(session, args):
     if not options.nocoeff:
         _set_coefficients(session, data, types)
     session.stale()
-    _report(session, new, time.perf_counter() - started)
+    _report(session, data.box, new, time.perf_counter() - started)
 
 
 def _read_options(words: list[str]) -> _Options:
@@ -191,8 +191,8 @@ def _coeff_words(section: str, mark: str, words: list[str], types: np.ndarray) -
     return [*numbers, *rest]
 
 
-def _report(session, new: System, seconds: float) -> None:
-    session.print(f"  {describe(new.box)}")
+def _report(session, box, new: System, seconds: float) -> None:
+    session.print(f"  {describe(box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
     session.print("  reading atoms ...")
     session.print(f"  {new.n} atoms")
