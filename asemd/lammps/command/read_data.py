@@ -155,6 +155,7 @@ def _join(scene, old: System, new: System) -> None:
     joined = base.append(new, keep_ids=True)
     order = np.argsort(joined.id, kind="stable")
     scene.system = joined.select(order)
+    scene.system.box = new.box.shrink_wrapped(scene.system.x)
     scene.system.topology.frozen = None
     scene.groups.resize(joined.n)
     scene.groups.select(order)
