@@ -37,21 +37,29 @@ CASES = {
 }
 
 
-def session(tmp_path, monkeypatch, more: str) -> Session:
+@pytest.fixture
+def session(tmp_path, monkeypatch):
+    """A function that makes a session in a folder of its own; all are closed afterwards."""
     monkeypatch.chdir(tmp_path)
-    switches = Switches()
-    switches.log, switches.screen = "log.first", "none"
-    out = Session(switches=switches)
-    out.commands(START)
-    for line in more.split("\n"):
-        out.execute(line.replace("\\n", "\n"))
-    return out
+    made = []
+
+    def make(more: str) -> Session:
+        switches = Switches()
+        switches.log, switches.screen = "log.first", "none"
+        made.append(Session(switches=switches))
+        made[-1].commands(START)
+        for line in more.split("\n"):
+            made[-1].execute(line.replace("\\n", "\n"))
+        return made[-1]
+    yield make
+    for one in made:
+        one.close()
 
 
 @pytest.mark.parametrize("way", [copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))], ids=["deepcopy", "pickle"])
 @pytest.mark.parametrize("name", CASES)
-def test_a_copied_session_goes_on_alike(tmp_path, monkeypatch, name, way):
-    first = session(tmp_path, monkeypatch, CASES[name])
+def test_a_copied_session_goes_on_alike(tmp_path, session, name, way):
+    first = session(CASES[name])
     first.execute("run 3")
     second = way(first)
     first.close_dumps()
@@ -63,11 +71,12 @@ def test_a_copied_session_goes_on_alike(tmp_path, monkeypatch, name, way):
     length = (tmp_path / "log.first").stat().st_size
     second.execute("variable a equal 9")
     assert (tmp_path / "log.first").stat().st_size == length and first.variables.value("a") != "9"
+    second.close()
 
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
-def test_atoms_of_such_scenes(tmp_path, monkeypatch, name):
-    atoms = session(tmp_path, monkeypatch, CASES[name]).scene.to_atoms()
+def test_atoms_of_such_scenes(session, name):
+    atoms = session(CASES[name]).scene.to_atoms()
     for other in (copy.deepcopy(atoms), pickle.loads(pickle.dumps(atoms))):
         assert other.get_potential_energy() == atoms.get_potential_energy()
