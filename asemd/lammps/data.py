@@ -107,17 +107,9 @@ class _Reader(DataText):
         mass = self.read_masses(counts["ntypes"])
         system = self.read_atoms(box, rotation, counts, mass)
         coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
-        self.check_hints()
+        self.check_hints(self.units)
         return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
                         {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip())
-
-    def check_hints(self) -> None:
-        hint = self.sections["Atoms"].hint if "Atoms" in self.sections else ""
-        if hint and hint != self.atom_style.split()[0]:
-            self.warn(f"Atoms section is said to be of style {hint}, but atom_style is {self.atom_style}", self.sections["Atoms"].line)
-        said = self.lines[0].rpartition("units = ")[2].split()[:1] if "units = " in self.lines[0] else []
-        if said and said[0] != self.units and self.units != "ase":
-            self.warn(f"the file was written in units {said[0]}, but units is {self.units}", 0)
 
     def read_box(self) -> tuple[Box, np.ndarray | None]:
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""

@@ -128,6 +128,15 @@ class DataText:
         if not self.number("atom types") and self.number("atoms"):
             raise self.fail(f'the header of {self.path} has no "atom types" line')
 
+    def check_hints(self, units: str) -> None:
+        """Warn of an atom style or units that the file names and that are others here."""
+        hint = self.sections["Atoms"].hint if "Atoms" in self.sections else ""
+        if hint and hint != self.atom_style.split()[0]:
+            self.warn(f"Atoms section is said to be of style {hint}, but atom_style is {self.atom_style}", self.sections["Atoms"].line)
+        said = self.lines[0].rpartition("units = ")[2].split()[:1] if "units = " in self.lines[0] else []
+        if said and said[0] != units and units != "ase":
+            self.warn(f"the file was written in units {said[0]}, but units is {units}", 0)
+
 
 def _leading_numbers(words: list[str]) -> tuple[list[float], str]:
     """The numbers a header line begins with, and the words that follow."""
