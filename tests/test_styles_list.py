@@ -22,7 +22,7 @@ def test_inventory_is_complete_and_unique():
 def test_states_follow_from_the_code():
     state = {(n.category, n.style): n.state for n in coverage()}
     assert state["pair", "lj/cut"] == "done" and state["fix", "nve"] == "done" and state["command", "run"] == "done"
-    assert state["command", "create_atoms"] == "partial" and state["units", "real"] == "done" and state["min_style", "cg"] == "done"
+    assert state["command", "create_box"] == "partial" and state["units", "real"] == "done" and state["min_style", "cg"] == "done"
     assert state["command", "kspace_modify"] == "missing" and state["bond", "bpm/rotational"] == "missing"
     assert state["pair", "zero"] == "extra" and state["run_style", "verlet"] == "done" and state["atom", "full"] == "done"
     for category in catalog.FORCE_FIELD:
