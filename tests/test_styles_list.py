@@ -57,7 +57,7 @@ def test_filters():
 def test_command(capsys):
     assert cli.main(["styles"]) == 0
     out = capsys.readouterr().out
-    assert "lj/cut" in out and "create_atoms*" in out
+    assert "lj/cut" in out and "create_box*" in out
     assert out.splitlines()[1].split() == ["category", "done", "partial", "missing", "extra", "all"]
     assert cli.main(["styles", "--json", "dihedral", "--word", "table"]) == 0
     answer = json.loads(capsys.readouterr().out)
