@@ -349,6 +349,11 @@ class Box:
             rotation, cell = q * sign, np.tril((sign[:, None] * r).T)
         return Box(np.zeros(3), cell, self.boundary, bool(self.triclinic or np.tril(cell, -1).any())), rotation
 
+    def turned(self) -> tuple[Box, np.ndarray]:
+        """As `to_lammps`, but the origin stays: ``x_lammps = (x - origin) @ rotation + origin``. The box counts as triclinic."""
+        box, rotation = self.to_lammps()
+        return Box.from_lammps(self.origin, self.origin + np.diag(box.cell), box.tilt, self.boundary, triclinic=True), rotation
+
 
 def _orthogonal(cell: np.ndarray, k: int) -> np.ndarray:
     """A unit vector orthogonal to the non-zero rows of `cell`; right-handed with them if that decides it, else along axis k."""

@@ -127,10 +127,12 @@ class Lattice:
             raise InputError(f"lattice {self.style}: spacings must be positive")
         if np.dot(edges[0], np.cross(edges[1], edges[2])) == 0.0:
             raise InputError(f"lattice {self.style}: the vectors a1, a2, a3 lie in one plane")
-        if self.general and (self.style != "custom" or self.orient != Lattice.orient):
-            raise InputError("lattice triclinic/general needs style custom and the default orientation")
+        if self.general and (self.style != "custom" or self.orient != Lattice.orient or any(self.origin)):
+            raise InputError("lattice triclinic/general needs style custom, the default orientation and the default origin")
         if self.general and np.dot(edges[0], np.cross(edges[1], edges[2])) < 0.0:
             raise InputError("lattice triclinic/general: a1, a2, a3 must be right-handed")
+        if self.general and self.dimension == 2 and tuple(edges[2]) != (0.0, 0.0, 1.0):
+            raise InputError("lattice triclinic/general: a3 of a 2d lattice must be 0 0 1")
         if self.dimension == 2 and (edges[0, 2] or edges[1, 2] or edges[2, 0] or edges[2, 1]):
             raise InputError(f"lattice {self.style}: in 2d a1 and a2 must lie in the plane and a3 along z")
 

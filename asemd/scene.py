@@ -147,7 +147,6 @@ class Scene:
     molecules: dict[str, Any] = field(default_factory=dict)      # templates: lists of asemd.molecule.Molecule
     dynamic_groups: dict[str, Any] = field(default_factory=dict)      # group -> fix that chooses its members
     seeds: dict[str, int] = field(default_factory=dict)
-    general: Any = None     # rotation (3, 3) of a general triclinic box into LAMMPS's frame
     respa: Any = None       # asemd.respa.Levels of run_style respa
     map_style: str | None = None
     newton: tuple[bool, bool] = (True, True)

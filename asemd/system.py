@@ -62,6 +62,8 @@ class System:
     units, atom_style, dimension, step
     extra : dict, optional
         Further per-atom arrays (n, ...) by name.
+    rotation : (3, 3) float, optional
+        For a general triclinic box, which LAMMPS turns into its own frame: ``x = (x_general - box.origin) @ rotation + box.origin``.
     """
 
     box: Box
@@ -83,6 +85,7 @@ class System:
     dimension: int = 3
     step: int = 0
     extra: dict[str, np.ndarray] = field(default_factory=dict)
+    rotation: np.ndarray | None = None
 
     def __post_init__(self):
         self.x = np.ascontiguousarray(self.x, float).reshape(-1, 3)

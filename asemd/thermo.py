@@ -75,6 +75,13 @@ def _angle(i: int, j: int) -> Callable[[Moment], float]:
     return angle
 
 
+def _vector(i: int, j: int) -> Callable[[Moment], float]:
+    def component(m: Moment) -> float:
+        cell, rotation = m.system.box.cell, m.system.rotation
+        return float((cell @ rotation.T)[i, j] if m.scene.thermo.general and rotation is not None else cell[i, j])
+    return component
+
+
 def _edge(i: int) -> Callable[[Moment], float]:
     return lambda m: float(np.linalg.norm(m.system.box.cell[i]))
 
@@ -149,7 +156,7 @@ KEYWORDS: dict[str, Keyword] = {
     **{t: Keyword(t.capitalize(), lambda m, i=i: float(m.system.box.tilt[i])) for i, t in enumerate(("xy", "xz", "yz"))},
     **{d + "lat": Keyword(d.upper() + "lat", _lattice(i)) for i, d in enumerate("xyz")},
     **{"p" + t: _pressure("P" + t, i) for i, t in enumerate(("xx", "yy", "zz", "xy", "xz", "yz"))},
-    **{f"{v}vec{d}": Keyword(f"{v.upper()}vec{d}", lambda m, i=i, j=j: float(m.system.box.cell[i, j]))
+    **{f"{v}vec{d}": Keyword(f"{v.upper()}vec{d}", _vector(i, j))
        for i, v in enumerate("abc") for j, d in enumerate("xyz")},
     **{"cell" + v: Keyword("Cell" + v, _edge(i)) for i, v in enumerate("abc")},
     "cellalpha": Keyword("CellAlpha", _angle(1, 2)),
@@ -235,6 +242,7 @@ class Thermo:
     lost_bond: str = "error"
     lost_told: bool = False                # the user knows that atoms were lost
     flush: bool = False
+    general: bool = False                  # box vectors as they were given, for a general triclinic box
     temp: str = "thermo_temp"
     press: str = "thermo_press"
     format_line: tuple[str, ...] = ()

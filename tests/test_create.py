@@ -244,7 +244,7 @@ def test_mistakes(line, message):
     ("region b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 box", "no lattice"),
     ("create_box 1 NULL 0 1 0 1 0 1", "triclinic/general"), (GENERAL.replace("-1 1", "1 1"), "blo 1 must be less"),
     (GENERAL.replace(" 0 3", ""), "6 values"), (GENERAL.replace("a1 1", "a1 -1"), "right-handed"),
-    ("lattice fcc 1 triclinic/general", "style custom"), ("boundary f p p\n" + GENERAL, "periodic in all"),
+    ("lattice fcc 1 triclinic/general", "style custom"),
     (GENERAL + "lattice sc 2\ncreate_atoms 1 box", "needs a lattice with triclinic/general"),
 ])
 def test_mistakes_before_the_box(script, message):

@@ -289,7 +289,7 @@ BAD = {   # name: (text, line of the place or text in it, words of the message)
     "label twice": (LABELLED.replace("2 H\n", "2 c3\n"), "1 c3", ["label c3", "twice"]),
     "label unknown": (LABELLED.replace("2 1 H 0.0", "2 1 Hx 0.0"), "2 1 Hx", ["'Hx'", "did you mean H"]),
     "labels missing": (LABELLED.replace("1 c3\n", ""), "Atom Type Labels", ["1 lines", "2 atom types"]),
-    "left-handed": (swap("0.0 10.0 xlo xhi", "0 10 0 avec\n1 0 0 bvec\n0 0 1 cvec"), "avec", ["right-handed"]),
+    "bounds and vectors": (swap("0.0 10.0 xlo xhi", "0 10 0 avec\n1 0 0 bvec\n0 0 1 cvec"), "avec", ["cannot have both"]),
 }
 
 

@@ -168,7 +168,7 @@ def test_merge_interleaves_ids_and_groups(folder):
     ("read_data second.data add append fix mycmap crossterm CMAP", "fix is not supported"),
     ("read_data second.data add append shift 1 2", "3 values"),
     ("write_data x.data pair jj", "ii ij"),
-    ("write_data x.data triclinic/general", "not supported"),
+    ("write_data x.data triclinic/general", "not general triclinic"),
     ("replicate 2 2", "3 values"),
     ("replicate 2 2 0", "at least 1"),
     ("replicate 2 2 2 bond/periodi", "did you mean bond/periodic"),

@@ -59,7 +59,7 @@ class Dump(Modify):
         self.group, self.columns = group, columns
         self.files, self.schedule = Series(path), Schedule(every)
         self.variables, self.regions = variables, regions if regions is not None else {}
-        self.first = self.append = self.image = self.unit = self.time = self.pbc = False
+        self.first = self.append = self.image = self.unit = self.time = self.pbc = self.general = False
         self.flush = self.header = True
         self.sort, self.line, self.skip, self.refresh = "id", "", "", ""
         self.formats: dict[str | int, str] = {}
@@ -163,14 +163,14 @@ class Dump(Modify):
             mask &= OPERATORS[relation](values, value if value is not None else self._values_before(k, everything.id, values))
         if self.pbc:
             snapshot = _wrapped(snapshot)
-        view = View(snapshot, np.flatnonzero(mask), self.element, self.variables)
+        view = View(snapshot, np.flatnonzero(mask), self.element, self.variables, self.general)
         if self.sort == "off":
             return view
         order = np.argsort(view.id, kind="stable")
         if self.sort != "id":
             values = np.asarray(column_of(view, self.columns[abs(int(self.sort)) - 1]))[order]
             order = order[np.argsort(values if int(self.sort) > 0 else -values, kind="stable")]
-        return View(snapshot, view.rows[order], self.element, self.variables)
+        return View(snapshot, view.rows[order], self.element, self.variables, self.general)
 
     def _values_before(self, k: int, ids: np.ndarray, values: np.ndarray) -> np.ndarray:
         """What the atoms had at the last snapshot (now, if there was none); the values of now are kept for the next."""
@@ -204,9 +204,9 @@ class Dump(Modify):
     def head(self, snapshot, step: int, n: int) -> str:
         """Everything before the lines of atoms."""
         box, _ = frame(snapshot.system.box)
-        bounds = bounds_of(box)
-        word = "xy xz yz " if box.triclinic else ""
-        text = ""
+        bounds, word, text = bounds_of(box), "xy xz yz " if box.triclinic else "", ""
+        if self.general:
+            bounds, word = np.column_stack([vectors_of(snapshot.system), box.origin]), "abc origin "
         if self.needs_units():
             text = f"ITEM: UNITS\n{snapshot.system.units}\n"
         if self.time:
@@ -231,6 +231,8 @@ class Dump(Modify):
             box, _ = frame(snapshot.system.box)
             bounds = bounds_of(box)
             bounds = np.concatenate([bounds[:, :2].ravel(), bounds[:, 2:].ravel()])
+            if self.general:
+                bounds = np.append(vectors_of(snapshot.system), box.origin)
             columns = [column_of(view, "type" if self.kind(c) == "string" else c) for c in self.columns]
             return _binary.head(self.style, step, len(view.rows), box, bounds, self.column_names(), snapshot.system.units
                                 if self.needs_units() else "", step * snapshot.dt if self.time else None) + _binary.body(columns)
@@ -291,6 +293,11 @@ class Dump(Modify):
 def frame(box):
     """The box in LAMMPS's frame and the rotation into it, or None if it is there already."""
     return (box, None) if box.is_lammps_frame else box.to_lammps()
+
+
+def vectors_of(system) -> np.ndarray:
+    """Rows a b c of a general triclinic box, as they were given."""
+    return system.box.cell @ system.rotation.T
 
 
 def bounds_of(box) -> np.ndarray:

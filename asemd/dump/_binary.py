@@ -14,8 +14,8 @@ def head(style: str, step: int, n: int, box, bounds: np.ndarray, columns: list[s
 
     Parameters
     ----------
-    bounds : (6,) or (9,) float
-        xlo xhi ylo yhi zlo zhi (of the box around a tilted box), and its tilt factors.
+    bounds : (6,), (9,) or (12,) float
+        xlo xhi ylo yhi zlo zhi (of the box around a tilted box), and its tilt factors; of a general triclinic box its vectors and origin.
     units : str
         Written if not empty.
     time : float or None
@@ -23,7 +23,7 @@ def head(style: str, step: int, n: int, box, bounds: np.ndarray, columns: list[s
     """
     magic, names = MAGIC[style], " ".join(columns).encode()
     faces = [FACES.index(c) for pair in box.boundary for c in pair]
-    parts = [struct.pack("=q", -len(magic)), magic, struct.pack("=2i2q", 1, 2, step, n), struct.pack("=7i", len(bounds) == 9, *faces),
+    parts = [struct.pack("=q", -len(magic)), magic, struct.pack("=2i2q", 1, 2, step, n), struct.pack("=7i", len(bounds) // 3 - 2, *faces),
              struct.pack(f"={len(bounds)}d", *bounds), struct.pack("=2i", len(columns), len(units)), units.encode(),
              b"\0" if time is None else struct.pack("=bd", 1, time), struct.pack("=i", len(names)), names, struct.pack("=i", 1)]
     return b"".join(parts)

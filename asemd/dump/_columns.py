@@ -22,16 +22,22 @@ class View:
     element : list of str
         Names of the types from 1 on; C if empty, as in LAMMPS.
     variables : asemd.variable.Variables, optional
+    general : bool
+        Positions and vectors in the frame in which a general triclinic box was given; scaled positions are the same there.
     """
 
-    def __init__(self, snapshot, rows: np.ndarray, element: Sequence[str], variables=None):
+    def __init__(self, snapshot, rows: np.ndarray, element: Sequence[str], variables=None, general: bool = False):
         self.system, self.rows, self.variables, self._element = snapshot.system, rows, variables, element
         box = self.system.box
         self.box, self.rotation = (box, None) if box.is_lammps_frame else box.to_lammps()
+        self.back = self.system.rotation.T if general else None
 
     def _vector(self, array: np.ndarray) -> np.ndarray:
-        values = array[self.rows]
-        return values if self.rotation is None else values @ self.rotation
+        values = array[self.rows] if self.rotation is None else array[self.rows] @ self.rotation
+        return values if self.back is None else values @ self.back
+
+    def _position(self, x: np.ndarray) -> np.ndarray:
+        return x if self.back is None else (x - self.box.origin) @ self.back + self.box.origin
 
     @cached_property
     def id(self):
@@ -39,6 +45,11 @@ class View:
 
     @cached_property
     def x(self):
+        return self._position(self._inside)
+
+    @cached_property
+    def _inside(self):
+        """Positions in LAMMPS's frame."""
         if self.rotation is None:
             return self.system.x[self.rows]
         return (self.system.x[self.rows] - self.system.box.origin) @ self.rotation + self.box.origin
@@ -58,7 +69,7 @@ class View:
     @cached_property
     def xs(self):
         """Scaled positions, by the arithmetic of an upper triangular inverse: last digits as LAMMPS has them."""
-        box, d = self.box, self.x - self.box.lo
+        box, d = self.box, self._inside - self.box.lo
         lx, ly, lz = box.hi - box.lo
         if not box.triclinic:
             return d * (1.0 / lx, 1.0 / ly, 1.0 / lz)
@@ -68,7 +79,7 @@ class View:
 
     @cached_property
     def xu(self):
-        return self.x + self.image @ self.box.cell
+        return self._position(self._inside + self.image @ self.box.cell)
 
     @cached_property
     def xsu(self):

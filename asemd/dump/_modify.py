@@ -184,8 +184,10 @@ class Modify:
         self.thresholds.append((name, relation, None if limit == "LAST" else number(limit, what)))
 
     def _modify_triclinic_general(self, values, what, session):
-        if yes_no(values[0], what):
-            raise InputError(f"{what} yes needs a general triclinic box; this one has LAMMPS's frame")
+        self.general = yes_no(values[0], what)
+        if self.general and session.scene.system.rotation is None:
+            self.general = False
+            raise InputError(f"{what} cannot be used if the simulation box is not general triclinic")
 
     def _modify_types(self, values, what, session):
         if values[0] not in ("labels", "numeric"):

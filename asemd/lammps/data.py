@@ -13,6 +13,7 @@ import numpy as np
 from asemd import atom_style as atom_styles
 from asemd.box import FARTHEST, Box
 from asemd.errors import InputError, Where, nearest
+from asemd.lammps.data_box import general_box, is_general, same_frame
 from asemd.lammps.data_format import COEFFS, IMAGE, KIND_OF, LABELS, REAL_HEADER, TOPOLOGY
 from asemd.lammps.data_table import parse_table
 from asemd.lammps.data_text import DataText
@@ -115,20 +116,13 @@ class _Reader(DataText):
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""
         head = self.header
         try:
-            if general := [w for w in ("avec", "bvec", "cvec") if w in head]:
-                if len(general) < 3:
-                    raise InputError("the header needs all of avec, bvec, cvec").at(self.where(self.header_line[general[0]]))
-                origin = np.array(head.get("abc origin", [0.0] * 3)) + self.shift
-                cell = np.array([head[w] for w in general])
-                if np.linalg.det(cell) < 0:
-                    raise InputError("avec, bvec, cvec must be right-handed").at(self.where(self.header_line["avec"]))
-                box, rotation = Box(origin, cell, self.boundary).to_lammps()
-                return Box(origin, box.cell, self.boundary, triclinic=True), rotation
+            if is_general(head):
+                return general_box(head, self.boundary, self.dimension, self.shift)
             bounds = np.array([head.get(f"{a}lo {a}hi", [-0.5, 0.5]) for a in "xyz"]) + self.shift[:, None]
             box = Box.from_lammps(*bounds.T, head.get("xy xz yz", (0, 0, 0)), self.boundary, triclinic="xy xz yz" in head)
         except InputError as e:
             line = next((self.header_line[f"{a}lo {a}hi"] for a in "xyz" if f"{a}lo" in e.message and f"{a}lo {a}hi" in head),
-                        max((self.header_line[w] for w in head if w in REAL_HEADER), default=0))
+                        self.header_line.get("avec", max((self.header_line[w] for w in head if w in REAL_HEADER), default=0)))
             raise e.at(self.where(line)) from None
         if self.dimension == 2 and not box.lo[2] < 0.0 < box.hi[2]:
             raise self.fail("zlo and zhi of a 2d system must lie on both sides of 0", self.header_line.get("zlo zhi", 0))
@@ -254,6 +248,8 @@ class _Reader(DataText):
             self.drop_flags(image, box, line)
         if rotation is not None:
             x = (x - box.origin) @ rotation + box.origin
+        if self.onto is not None and not same_frame(rotation, self.onto.rotation):
+            raise self.fail("read_data add: box vectors must be those of the first file", self.header_line.get("avec"))
         whole = self.whole = box if self.onto is None else self.union(box)
         if rotation is None:
             whole = whole.widened()
@@ -277,7 +273,7 @@ class _Reader(DataText):
         system = System(
             box=whole.shrink_wrapped(x), x=x, id=ids, type=a["type"][order], image=image, v=v, mass=mass, topology=top, counts=counts,
             molecule=a["molecule"][order] if "molecule" in a else None, q=a["q"][order] if "q" in a else None, labels=self.labels,
-            units=self.units, atom_style=self.atom_style, dimension=self.dimension, rmass=rmass, extra=extra)
+            units=self.units, atom_style=self.atom_style, dimension=self.dimension, rmass=rmass, extra=extra, rotation=rotation)
         if flagged and self.onto is None:
             self.check_images(system, line)
         return system

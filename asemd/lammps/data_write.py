@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from asemd import atom_style as atom_styles
+from asemd.box import Box
 from asemd.cross_terms import CrossTermStyle
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
@@ -21,7 +22,7 @@ MARKS = {category: {mark: name for name, (c, mark) in COEFFS.items() if c == cat
 
 
 def write_data(path: str | os.PathLike, system: System, interactions: Interactions | None = None, *, pair: str = "ii",
-               types: str = "numeric", labels: bool = True,
+               types: str = "numeric", labels: bool = True, general: bool = False,
                progress: Callable[[int, int], None] | None = None) -> None:
     """Write a data file; a path ending in ``.gz`` is compressed.
 
@@ -37,6 +38,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         ``numeric``, or ``labels``: type labels instead of numbers in Atoms, Bonds, ... (of kinds where all types have one).
     labels : bool
         Whether sections of type labels are written.
+    general : bool
+        Box vectors, positions and velocities of a general triclinic box as it was given.
     progress : callable, optional
         Told from time to time how many lines are written, and how many there are.
 
@@ -55,7 +58,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
     if system.rmass is not None and not atom_styles.has(system.atom_style, "density"):
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
-    parts = _file(_lammps_frame(system), interactions, pair, types, labels, progress)
+    inside = _lammps_frame(system)
+    parts = _file(_general_frame(inside) if general else inside, interactions, pair, types, labels, general, progress)
     path = os.fspath(path)
     try:
         with (gzip.open if path.endswith(".gz") else open)(path, "wt", encoding="utf-8") as f:
@@ -64,6 +68,15 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
                 f.write("\n")
     except OSError as e:
         raise InputError(f"write_data: cannot write {path}: {e.strerror or e}") from None
+
+
+def _general_frame(system: System) -> System:
+    """The system turned back to where the general triclinic box was given."""
+    out, back = system.copy(), system.rotation.T
+    out.box = Box(system.box.origin, system.box.cell @ back, system.box.boundary, True)
+    out.x, out.v = (system.x - system.box.origin) @ back + system.box.origin, system.v @ back
+    out.extra |= {name: system.extra[name] @ back for name in ("mu", "omega") if name in system.extra}
+    return out
 
 
 def _lammps_frame(system: System) -> System:
@@ -77,7 +90,7 @@ def _lammps_frame(system: System) -> System:
     return out
 
 
-def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool, progress) -> Iterator[str]:
+def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool, general: bool, progress) -> Iterator[str]:
     units = "" if s.units == "ase" else f", units = {s.units}"
     yield f"LAMMPS data file written by asemd, timestep = {s.step}{units}"
     yield ""
@@ -88,10 +101,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
             yield f"{np.count_nonzero(s.topology.items(kind)[1])} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
     yield ""
-    for axis, lo, hi in zip("xyz", s.box.lo.tolist(), s.box.hi.tolist()):
-        yield f"{lo!r} {hi!r} {axis}lo {axis}hi"
-    if s.box.triclinic:
-        yield " ".join(map(repr, s.box.tilt.tolist())) + " xy xz yz"
+    yield from _box(s.box, general)
     names = {kind: {t: str(t) for t in range(1, _count(s, kind) + 1)} for kind in LABELLED}
     for section, kind in LABELS.items():
         if not s.labels[kind] or not _complete(s, kind, types):
@@ -117,6 +127,17 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         if len(atoms):
             columns = {"number": np.arange(1, len(atoms) + 1), "type": item_types, **dict(enumerate(s.id[atoms].T))}
             yield from _section(section, _table(columns, {"type": names[kind]}, told))
+
+
+def _box(box, general: bool) -> Iterator[str]:
+    if general:
+        for numbers, name in zip([*box.cell.tolist(), box.origin.tolist()], ("avec", "bvec", "cvec", "abc origin")):
+            yield f"{' '.join(map(repr, numbers))} {name}"
+        return
+    for axis, lo, hi in zip("xyz", box.lo.tolist(), box.hi.tolist()):
+        yield f"{lo!r} {hi!r} {axis}lo {axis}hi"
+    if box.triclinic:
+        yield " ".join(map(repr, box.tilt.tolist())) + " xy xz yz"
 
 
 def _count(s: System, kind: str) -> int:

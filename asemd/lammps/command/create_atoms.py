@@ -71,10 +71,10 @@ def run(session, args):
     elif style == "random":
         x, types = _random(session, values, system, region, lattice, options, kind, wanted)
     else:
-        if lattice.general != (scene.general is not None):
+        if lattice.general != (system.rotation is not None):
             raise InputError("create_atoms: a general triclinic box needs a lattice with triclinic/general, and such a lattice a box of "
-                             "create_box NULL")
-        x, types = _lattice(system, lattice, region, options, kind, wanted, scene.general)
+                             "create_box NULL or read_data with avec, bvec, cvec")
+        x, types = _lattice(system, lattice, region, options, kind, wanted, system.rotation)
     if options.template is not None:
         if x.ndim == 2:
             x = np.array([_molecule(point, options, system.dimension) for point in x]).reshape(-1, options.template.natoms, 3)

@@ -23,8 +23,10 @@ def run(session, args):
     if counts["ntypes"] < 1:
         raise InputError(f"create_box: the number of atom types must be positive, got {count}")
     words = args[2:]
+    rotation = None
     if name == "NULL":
-        box, words = _general(scene, take(words, 6, "create_box NULL")), words[6:]
+        box, rotation = _general(scene, take(words, 6, "create_box NULL"))
+        words = words[6:]
     else:
         box = _box(scene, scene.region(name, "create_box"))
     while words:
@@ -39,29 +41,25 @@ def run(session, args):
         counts[KEYWORDS[key]], words = value, words[2:]
     empty = np.zeros(0)
     scene.system = System(box=box, x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
-                          dimension=scene.dimension, step=scene.step, **fresh(scene.atom_style, 0))
+                          dimension=scene.dimension, step=scene.step, rotation=rotation, **fresh(scene.atom_style, 0))
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
     scene.system.box = scene.system.box.widened()
 
 
-def _general(scene, words: list[str]) -> Box:
-    """The general triclinic box of edges ``alo ahi blo bhi clo chi`` along the vectors of the lattice, in LAMMPS's frame."""
+def _general(scene, words: list[str]) -> tuple[Box, np.ndarray]:
+    """The general triclinic box of edges ``alo ahi blo bhi clo chi`` along the vectors of the lattice, in LAMMPS's frame; the rotation."""
     lattice, what = scene.lattice, "create_box NULL"
     if lattice is None or not lattice.general:
         raise InputError(f"{what}: a general triclinic box needs a lattice with the keyword triclinic/general before")
-    if scene.dimension == 2:
-        raise InputError(f"{what}: general triclinic boxes in 2d are not supported, use a region of style prism")
-    if scene.boundary != ("pp", "pp", "pp"):
-        raise InputError(f"{what}: a general triclinic box must be periodic in all directions")
     ends = np.array([number(w, what) for w in words]).reshape(3, 2)
     edges = lattice.primitive.T * lattice.factor
     for (lo, hi), axis in zip(ends, "abc"):
         if not lo < hi:
             raise InputError(f"{what}: {axis}lo {lo:g} must be less than {axis}hi {hi:g}")
-    origin = ends[:, 0] @ edges
-    box, scene.general = Box(origin, (ends[:, 1] - ends[:, 0])[:, None] * edges, scene.boundary).to_lammps()
-    return Box.from_lammps(origin, origin + np.diag(box.cell), box.tilt, scene.boundary, triclinic=True)
+    if scene.dimension == 2 and tuple(ends[2]) != (-0.5, 0.5):
+        raise InputError(f"{what}: clo and chi of a 2d box must be -0.5 and 0.5, got {ends[2, 0]:g} and {ends[2, 1]:g}")
+    return Box(ends[:, 0] @ edges, (ends[:, 1] - ends[:, 0])[:, None] * edges, scene.boundary).turned()
 
 
 def _box(scene, region) -> Box:

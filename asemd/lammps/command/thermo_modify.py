@@ -38,8 +38,11 @@ def run(session, args):
             set_temp(scene, value)
         elif key == "press":
             thermo.press = _compute(scene, value, "pressure", what)
-        elif yes_no(value, what):
-            raise InputError("thermo_modify triclinic/general yes needs a general triclinic box, which is not supported")
+        else:
+            thermo.general = yes_no(value, what)
+            if thermo.general and (scene.system is None or scene.system.rotation is None):
+                thermo.general = False
+                raise InputError("thermo_modify triclinic/general cannot be used if the simulation box is not general triclinic")
 
 
 def set_format(thermo, words: list[str]) -> int:

@@ -7,7 +7,7 @@ from asemd.errors import InputError, InputWarning, nearest
 from asemd.lammps.data_write import write_data
 from asemd.words import choice, take
 
-KEYWORDS = ("pair", "nocoeff", "nofix", "nolabelmap", "types")
+KEYWORDS = ("pair", "nocoeff", "nofix", "nolabelmap", "types", "triclinic/general")
 
 
 def run(session, args):
@@ -27,7 +27,9 @@ def run(session, args):
         elif key == "nolabelmap":
             options["labels"] = False
         elif key == "triclinic/general":
-            raise InputError("write_data triclinic/general is not supported: the file has LAMMPS's frame")
+            if system.rotation is None:
+                raise InputError("write_data triclinic/general: the simulation box is not general triclinic")
+            options["general"] = True
         elif key != "nofix":       # no fix of asemd writes to data files
             raise InputError(f"write_data: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
     with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
