@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from both import asemd
 from wheel import ask
 
 from asemd.errors import InputError, SimulationError
@@ -84,6 +85,18 @@ CASES = {
     "fire options": ("fire", "0 1e-3 1000 10000",
                      "alpha0 0.1 tmax 4 tmin .1 delaystep 5 dtgrow 1.2 dtshrink .7 alphashrink .9 dmax .05", False, 0.005, 3),
     "fire long step": ("fire", "0 1e-6 300 10000", "", False, 0.05, 4),
+    "cg force zero": ("cg", "0 1e-6 40 10000", "line forcezero", True, 0.005, 1),
+    "sd force zero": ("sd", "0 1e-6 40 10000", "line forcezero dmax 0.05", False, 0.005, 2),
+    "fire abc": ("fire", "0 1e-3 1000 10000", "abcfire yes", False, 0.005, 1),
+    "fire abc short": ("fire", "0 1e-3 1000 10000", "abcfire yes dmax 0.01 alpha0 0.1 integrator verlet halfstepback no", False, 0.005, 2),
+    "fire abc leapfrog": ("fire", "1e-4 1e-3 100 10000", "abcfire yes integrator leapfrog", False, 0.01, 1),
+    "fire abc explicit": ("fire", "0 1e-3 100 10000", "abcfire yes integrator eulerexplicit tmax 3", True, 0.01, 3),
+    "hftn": ("hftn", "0 1e-2 1000 10000", "", False, 0.005, 1),
+    "hftn normalised": ("hftn", "0 1e-2 1000 10000", "norm inf", True, 0.005, 4),
+    "hftn energy": ("hftn", "1e-2 1e-8 1000 10000", "dmax 0.2", False, 0.005, 1),
+    "hftn few evaluations": ("hftn", "0 1e-8 1000 100", "", False, 0.005, 3),
+    "hftn no evaluations": ("hftn", "0 1e-8 1000 0", "", False, 0.005, 3),
+    "hftn large tolerance": ("hftn", "0 1e8 1000 100", "", False, 0.005, 3),
     "fire limits": ("fire", "0 0 60 50", "", False, 0.005, 1),
 }
 THEIRS = r"""
@@ -143,11 +156,12 @@ def minimized(style, words, modify="", norm=False, dt=0.005, x=None, evaluate=le
 def test_same_path_as_lammps(theirs, name):
     *case, seed = CASES[name]
     expected, result = theirs[name], minimized(*case, x=cluster(seed))
+    noise = 1e-6 if case[0] == "hftn" else 1e-9     # Newton's directions come from differences of forces
     assert result.criterion == expected["criterion"]
     ours, counted = [result.energy_initial, result.energy_previous, result.energy_final], slice(None, None, 1 if result.iterations else 2)
-    assert ours[counted] == pytest.approx(expected["energies"][counted], rel=1e-9)      # without a step LAMMPS's second one is not set
+    assert ours[counted] == pytest.approx(expected["energies"][counted], rel=noise)      # without a step LAMMPS's second one is not set
     assert [result.iterations, result.evaluations] == expected["counts"]
-    assert np.abs(result.x - expected["x"]).max() < 1e-6
+    assert np.abs(result.x - expected["x"]).max() < 1e3 * noise
 
 
 def test_text_of_the_log(theirs):
@@ -164,7 +178,7 @@ def test_molecule(theirs):
 
 @pytest.mark.parametrize("style, modify", [
     ("cg", ""), ("cg", "line backtrack"), ("cg", "line forcezero"), ("sd", ""), ("sd", "line forcezero"), ("fire", ""),
-    ("fire", "integrator verlet"),
+    ("fire", "integrator verlet"), ("hftn", ""),
 ])
 def test_reaches_the_minimum_of_a_parabola(style, modify):
     stiffness = np.array([1.0, 3.0, 10.0])
@@ -200,7 +214,7 @@ def test_callback_and_interruption():
     def stop(iteration, x, v, energy, forces):
         calls.append(iteration)
         return iteration == 5
-    for style in ("cg", "sd", "fire", "quickmin"):
+    for style in ("cg", "sd", "fire", "quickmin", "hftn"):
         calls.clear()
         result = minimized(style, "0 1e-12 100 10000", callback=stop)
         assert calls == [1, 2, 3, 4, 5] and result.criterion == "interrupted" and result.iterations == 5 and not result.converged
@@ -241,11 +255,56 @@ def test_from_ase():
 @pytest.mark.parametrize("words, message", [
     ("dmx 0.1", "did you mean dmax"), ("dmax", "no value"), ("dmax x", "number"), ("dmax -1", "positive"),
     ("line cubic", "quadratic"), ("norm three", "two max inf"), ("halfstepback maybe", "yes or no"), ("dmax nan", "positive"),
-    ("", "keyword"),
+    ("", "keyword"), ("line spin_cubic", "spins"), ("discrete_factor 10", "spins"), ("abcfire maybe", "yes or no"),
 ])
 def test_mistakes(words, message):
     with pytest.raises(InputError, match=message):
         Options().modify(words.split())
+
+
+def test_newton_steps_converge_in_few_iterations():
+    start = minimized("cg", "0 1e-3 1000 10000").x
+    result = minimized("hftn", "0 1e-7 100 10000", x=start)
+    assert result.criterion == "force tolerance" and result.iterations <= 3 and result.steps == result.iterations + 1
+    assert minimized("hftn", "0 1e-7 4 10000").energy_final < -50.0      # LAMMPS's log has the first energy where iterations ran out
+
+
+def test_region_too_small():
+    x = np.zeros((1, 3))
+
+    def uphill(at):     # the energy rises whatever the forces say
+        return float(np.abs(at).sum()), np.ones_like(at) - at
+    result = minimized("hftn", "0 1e-8 100 1000", x=x, evaluate=uphill)
+    assert result.criterion == "trust region too small" and np.array_equal(result.x, x)
+
+
+def test_norm_that_hftn_does_not_have():
+    with pytest.raises(InputError, match="norm max is not possible"):
+        minimized("hftn", "0 1e-6 10 100", "norm max")
+
+
+def test_style_forgets_settings():
+    session = asemd("region b block 0 9 0 9 0 9\nmin_modify dmax 0.2\ncreate_box 1 b\nmin_modify norm max\nmin_style cg")
+    assert session.scene.min_modify == Options()
+
+
+def test_log_of_fire():
+    told = "".join(asemd("""
+        region b block 0 4 0 4 0 4
+        create_box 1 b
+        create_atoms 1 random 50 71 NULL
+        mass 1 1
+        pair_style soft 1.0
+        pair_coeff * * 5.0
+        min_style fire
+        min_modify tmin 1e-7 alpha0 0.1 abcfire yes
+        thermo 2
+        minimize 0 1e-12 4 10
+        """).told)
+    assert ("  Parameters for fire:\n"
+            "    dmax  delaystep dtgrow dtshrink alpha0 alphashrink tmax tmin   integrator   halfstepback   abcfire  \n"
+            "     0.1     20      1.1     0.5     0.1      0.99      10  1e-07 eulerimplicit      yes          yes    \n") in told
+    assert [line.split()[0] for line in told.split("Step")[1].splitlines()[1:4]] == ["0", "2", "4"] and told.count("\n         4 ") == 1
 
 
 def test_unknown_style():

@@ -1,4 +1,4 @@
-r"""Energy minimisers on a plain function of positions. One minimiser, one file: ``cg``, ``sd``, ``fire``, ``quickmin``.
+r"""Energy minimisers on a plain function of positions. One minimiser, one file: ``cg``, ``sd``, ``fire``, ``quickmin``, ``hftn``.
 
 A minimiser is a class with one static method::
 
@@ -35,6 +35,7 @@ ZEROALPHA = "linesearch alpha is zero"
 ZEROFORCE = "forces are zero"
 ZEROQUAD = "quadratic factors are zero"
 MAXVDOTF = "max iterations with v.f negative"
+SMALLREGION = "trust region too small"
 INTERRUPTED = "interrupted"
 
 
@@ -57,6 +58,8 @@ class Problem:
     norm : float
         Energies are divided by this in the energy criterion, in the line search and in the result: the number of atoms
         if thermodynamic output is normalised (units lj), else 1.
+    shown : callable, optional
+        ``iteration -> bool``: whether output is due; LAMMPS's count of evaluations has one more (hftn) where a step was taken back.
     """
 
     x0: np.ndarray
@@ -65,6 +68,7 @@ class Problem:
     dt: float = 0.005
     units: Any = None
     norm: float = 1.0
+    shown: Callable[[int], bool] | None = None
 
     @property
     def ftm2v(self) -> float:
@@ -83,7 +87,7 @@ class Options:
         ``quadratic``, ``backtrack`` or ``forcezero``.
     norm : str
         ``two`` (length of the whole force vector), ``max`` (longest force on an atom) or ``inf`` (largest component).
-    integrator, tmax, tmin, delaystep, dtgrow, dtshrink, alpha0, alphashrink, vdfmax, halfstepback, initialdelay
+    integrator, tmax, tmin, delaystep, dtgrow, dtshrink, alpha0, alphashrink, vdfmax, halfstepback, initialdelay, abcfire
         Of style fire; see ``min_modify``.
     """
 
@@ -101,6 +105,7 @@ class Options:
     vdfmax: int = 2000
     halfstepback: bool = True
     initialdelay: bool = True
+    abcfire: bool = False
 
     WORDS = {"line": ("quadratic", "backtrack", "forcezero"), "norm": ("two", "max", "inf"),
              "integrator": ("eulerimplicit", "verlet", "leapfrog", "eulerexplicit")}
@@ -119,6 +124,8 @@ class Options:
         if len(words) % 2:
             raise InputError(f"min_modify: keyword {words[-1]!r} has no value")
         for key, word in zip(words[::2], words[1::2]):
+            if key == "line" and word in ("spin_cubic", "spin_none") or key in ("alpha_damp", "discrete_factor"):
+                raise InputError(f"min_modify {key} {word} is for spins, which are not supported")
             if key not in kinds:
                 raise InputError(f"min_modify: unknown keyword {key!r}{nearest(key, kinds)}")
             setattr(self, key, self._read(key, word, kinds[key]))
@@ -163,6 +170,7 @@ class Result(NamedTuple):
     v: np.ndarray
     forces: np.ndarray
     dt: float
+    steps: int          # of output: `iterations`, and one more where a style does not count the one that converges
 
     @property
     def converged(self) -> bool:

@@ -14,7 +14,10 @@ BACKTRACK_SLOPE = 0.4   # part of the linear estimate the energy must fall by
 QUADRATIC_TOL = 0.1     # how well the energy must look like a parabola
 EMACH = 1.0e-8          # energy changes below this are noise
 EPS_QUAD = 1.0e-28      # slopes below this are zero
-GRADIENT_TOL = 0.1      # forcezero: part of the first slope that may be left
+GRADIENT_TOL = 0.1      # forcezero: part of the first slope that may be left,
+FIRST_FALL = 0.1        # part of the energy by which the first step may lower it,
+SHORTEST = 1.0e-14      # shortest step,
+NOISE = 1.0e-12         # rise of the energy that counts for nothing
 
 
 class State:
@@ -34,7 +37,7 @@ class State:
         self.x = np.array(problem.x0, dtype=float)
         self.v = np.zeros_like(self.x)
         self.dt = float(problem.dt)
-        self.alpha, self.iterations, self.evaluations = 0.0, 0, 0
+        self.alpha, self.iterations, self.evaluations, self.uncounted = 0.0, 0, 0, 0
         self._look()
         self.initial, self.previous = self.energy, 0.0
         self.first = self._norms()
@@ -85,7 +88,8 @@ class State:
     def result(self, criterion: str) -> Result:
         norm, largest = self._norms()
         return Result(criterion, self.initial, self.previous, self.energy, self.first[0], norm, self.first[1], largest,
-                      self.alpha, self.alpha * largest, self.iterations, self.evaluations, self.x, self.v, self.f, self.dt)
+                      self.alpha, self.alpha * largest, self.iterations, self.evaluations, self.x, self.v, self.f, self.dt,
+                      self.iterations + self.uncounted)
 
     def search(self, h: np.ndarray) -> str:
         """Move along the direction `h` by the line search of the options; why it failed, or an empty string."""
@@ -95,7 +99,9 @@ class State:
         largest = float(np.abs(h).max())
         if largest == 0.0:
             return ZEROFORCE
-        alpha = min(ALPHA_MAX, self.options.dmax / largest)
+        alpha = self.options.dmax / largest
+        if self.options.line != "forcezero":
+            alpha = min(ALPHA_MAX, alpha)
         lines = {"quadratic": self._quadratic, "backtrack": self._backtrack, "forcezero": self._force_zero}
         return lines[self.options.line](h, slope, alpha)
 
@@ -149,24 +155,27 @@ class State:
                 return self._give_up(x0, start, ZEROALPHA)
 
     def _force_zero(self, h, slope, alpha):
-        """Walk along the direction by secants until the slope has all but vanished; a step uphill in energy is halved."""
+        """Walk by secants until the slope has all but vanished, as long as the energy falls; shorten the step where it does not."""
         x0, start, longest = self.x, self.energy, alpha
-        low, low_slope = 0.0, slope
-        alpha = min(longest, self.alpha or longest)     # the last search is the best guess
-        while True:
-            self.alpha = alpha
+        before, before_slope, before_energy = 0.0, slope, start
+        delta = min(0.5 * longest, max(FIRST_FALL * abs(start) / slope, EPS_QUAD))
+        while delta > SHORTEST:
+            alpha = before + delta
             energy, now = self.evaluate(x0 + alpha * h), self._slope(h)
-            if energy - start > EMACH:
-                alpha = low + ALPHA_REDUCE * (alpha - low)
-                if alpha - low <= 1e-10 * longest:
-                    return self._give_up(x0, start, ZEROALPHA)
-                continue
-            if abs(now) <= GRADIENT_TOL * slope or alpha == longest and now > 0.0:
+            fell = energy - before_energy <= NOISE
+            if fell and abs(now) <= GRADIENT_TOL * slope:
+                self.alpha = alpha
                 return ""
-            if now < 0.0:       # past the zero: interpolate
-                alpha = low + (alpha - low) * max(0.1, min(0.9, low_slope / (low_slope - now)))
-                if alpha - low <= 1e-10 * longest:
+            if now < 0.0:       # past the zero
+                delta *= before_slope / (before_slope - now)
+            elif not fell:
+                delta *= 0.1
+            else:               # on; not where the slope does not fall, and not too far
+                ahead = delta * now / (before_slope - now) if now < before_slope else longest
+                if alpha + ahead > longest:
+                    self.alpha = alpha
                     return ""
-            else:               # not there yet: extrapolate, at most double
-                step = (alpha - low) * now / (low_slope - now) if low_slope > now else alpha - low
-                low, low_slope, alpha = alpha, now, min(longest, alpha + min(step, 2.0 * alpha))
+                before, before_slope, before_energy, delta = alpha, now, energy, ahead
+        self.alpha = before
+        self.evaluate(x0)
+        return ZEROALPHA

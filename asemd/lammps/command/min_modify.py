@@ -3,5 +3,4 @@ from __future__ import annotations
 
 
 def run(session, args):
-    session.scene.need_system("min_modify")
     session.scene.min_modify.modify(list(args))

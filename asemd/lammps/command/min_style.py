@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from asemd.lammps import catalog
+from asemd.minimize import Options
 from asemd.registry import plain_name
 from asemd.words import take
 
@@ -11,4 +12,4 @@ def run(session, args):
     style = plain_name(take(args, 1, "min_style")[0])
     if not catalog.exists("minimize", style):
         raise catalog.unknown("minimize", args[0])
-    session.scene.min_style = style
+    session.scene.min_style, session.scene.min_modify = style, Options()     # settings of min_modify go with the old style

@@ -70,6 +70,8 @@ class Minimization(Driver):
         fixes = [f for f in scene.fixes.values() if f.minimizes]
         loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
         loop.setup(begin, begin + self.plan.steps)
+        if scene.min_style == "fire":
+            session.log.write(find("fire").parameters(scene.min_modify) + "\n")
         session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         self.progress = Progress(begin, begin, begin + self.plan.steps, builds=loop.engine.builds, dangerous=loop.engine.dangerous)
         session.running = True
@@ -99,14 +101,19 @@ class Minimization(Driver):
         self.output_seconds = 0.0
         landscape = Landscape(loop)
         system, norm = scene.system, scene.thermo.is_normalised(scene.units)
-        problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0)
+        def shown(iteration: int) -> bool:
+            step = begin + iteration
+            return self._is_thermo(step) or any(d.schedule.next == step for d in scene.dumps.values())
+
+        problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0,
+                          shown)
 
         def look(iteration: int, x, v, energy, forces) -> bool:
             loop.step = scene.step = begin + iteration
             if scene.min_style in DAMPED:
                 system.v[:] = v
             self._watch("update", iteration)
-            if self._is_thermo(scene.step) or any(d.schedule.next == scene.step for d in scene.dumps.values()):
+            if shown(iteration):
                 began = time.perf_counter()
                 self._provide(scene.step, scene.step, fresh=True)
                 self._output(scene.step, ends=False)
@@ -119,10 +126,12 @@ class Minimization(Driver):
         if scene.min_style in DAMPED:
             system.v[:] = result.v
         landscape(result.x)
-        loop.step = scene.step = begin + result.iterations
-        if result.iterations:
+        loop.step = scene.step = begin + result.steps
+        told = session.last_thermo_step == scene.step       # by the last iteration's output
+        if result.steps:
             self._provide(scene.step, scene.step, fresh=True)
-            self._output(scene.step, ends=session.last_thermo_step != scene.step, dumps=result.iterations < self.plan.steps)
+            if not told or session.interrupted:
+                self._output(scene.step, ends=not told, dumps=result.iterations < self.plan.steps)
             restart.write_due(session, scene.step, all_of_them=True)
         return result
 
