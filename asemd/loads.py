@@ -54,10 +54,10 @@ def loads_of(fixes: Iterable[Fix]) -> tuple[list[Load], list[str]]:
 
 def constraints_of(fixes: Iterable[Fix], groups: Mapping[str, np.ndarray]) -> tuple[list, list[str]]:
     """ASE constraints for fixes that set forces to zero, and the names of those that set them to something else."""
-    from ase.constraints import FixAtoms, FixCartesian
     out, left_out = [], []
     for fix in fixes:
         if isinstance(fix, SetForce):
+            from ase.constraints import FixAtoms, FixCartesian      # a quarter of a second that most scenes need not wait
             if fix.region is not None or any(f is not None and (callable(f) or f != 0.0) for f in fix.force):
                 left_out.append(f"{_named(fix)} with a force that is not zero everywhere in its group")
                 continue
