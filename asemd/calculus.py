@@ -1,4 +1,4 @@
-"""Derivatives of formulas by sympy, and the source that computes value and derivative.
+"""Derivatives of formulas by sympy, and the source that computes value, derivative and second derivative.
 
 A formula arrives as a program, one operation a line (``mul t0 c1``), of its variable ``x`` and its constants ``c0``, ``c1``, ... What
 sympy makes of a program is kept on disk, so that sympy is imported for new formulas only. The energy is first rewritten without
@@ -21,12 +21,15 @@ from asemd.cache_folder import cache_folder
 
 
 class Source(NamedTuple):
-    """Statements that set names from ``x`` and ``p0``, ``p1``, ..., energy and slope thereafter, and each ``p`` from ``c0``, ``c1``, ..."""
+    """Statements that set names from ``x`` and ``p0``, ``p1``, ..., energy and slope thereafter, and each ``p`` from ``c0``, ``c1``, ...;
+    the second derivative after statements of its own."""
 
     lines: tuple[str, ...]
     energy: str
     slope: str
     constants: tuple[str, ...]
+    bend_lines: tuple[str, ...]
+    bend: str
 
 
 @lru_cache(4096)
@@ -35,8 +38,7 @@ def source_of(program: tuple[str, ...]) -> Source:
     key = hashlib.sha256(Path(__file__).read_bytes() + "\n".join(program).encode()).hexdigest()
     file = cache_folder() / "expressions" / f"{key}.json"
     with contextlib.suppress(OSError, ValueError, TypeError):
-        lines, energy, slope, constants = json.loads(file.read_text())
-        return Source(tuple(lines), energy, slope, tuple(constants))
+        return Source(*(tuple(part) if isinstance(part, list) else part for part in json.loads(file.read_text())))
     source = differentiated(program)
     with contextlib.suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -84,15 +86,21 @@ def differentiated(program: tuple[str, ...]) -> Source:
             return functions["whole"](root if e.exp > 0 else functions["recip"](root), abs(e.exp.p))
         return e.func(*map(fold, e.args))
 
-    temporaries, results = sympy.cse([fold(energy), fold(sympy.diff(divided(energy, x), x))], sympy.numbered_symbols("s"), order="none")
-    write, lines = printer()
-    for name, e in temporaries:
-        text = write(e)
-        lines.append(f"{name} = {text}")
-    texts = [write(e) for e in results]
-    formulas = [write(e) for e in constants]
-    lines, formulas, texts = ([text.replace("numpy.", "np.") for text in each] for each in (lines, formulas, texts))
-    return Source(tuple(lines), *texts, tuple(formulas))
+    def written(*expressions):
+        """Statements, and what the expressions are thereafter."""
+        temporaries, results = sympy.cse(expressions, sympy.numbered_symbols("s"), order="none")
+        write, lines = printer()
+        for name, e in temporaries:
+            text = write(e)
+            lines.append(f"{name} = {text}")
+        texts = [write(e) for e in results]
+        return [[text.replace("numpy.", "np.") for text in each] for each in (lines, texts)]
+
+    slope = sympy.diff(divided(energy, x), x)
+    lines, texts = written(fold(energy), fold(slope))
+    bend_lines, (bend,) = written(fold(sympy.diff(slope, x)))
+    write = printer()[0]
+    return Source(tuple(lines), *texts, tuple(write(e).replace("numpy.", "np.") for e in constants), tuple(bend_lines), bend)
 
 
 def divided(energy, x):

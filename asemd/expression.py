@@ -224,17 +224,21 @@ class Compiled:
         What the value and its derivative are then.
     constants : tuple of float
         ``p0``, ``p1``, ...
+    bend_lines, bend : tuple of str, str
+        Statements of the second derivative, and what it is then.
     """
 
     lines: tuple[str, ...]
     energy: str
     slope: str
     constants: tuple[float, ...]
+    bend_lines: tuple[str, ...]
+    bend: str
 
     @property
-    def code(self) -> tuple[tuple[str, ...], str, str]:
+    def code(self) -> tuple[tuple[str, ...], str, str, tuple[str, ...], str]:
         """What expressions have in common that differ in numbers only."""
-        return self.lines, self.energy, self.slope
+        return self.lines, self.energy, self.slope, self.bend_lines, self.bend
 
     def value(self, x: float) -> float:
         """The value at one place; not finite where it is not defined."""
@@ -279,4 +283,4 @@ def differentiate(text: str, variable: str, given: tuple[tuple[str, float], ...]
     lines = f"def constants({names}):\n    return ({''.join(f'{c}, ' for c in source.constants)})\n"
     with np.errstate(all="ignore"):
         values = compiled_function("constants", lines)(*map(np.float64, program.constants))
-    return Compiled(source.lines, source.energy, source.slope, tuple(map(float, values)))
+    return Compiled(source.lines, source.energy, source.slope, tuple(map(float, values)), source.bend_lines, source.bend)

@@ -18,17 +18,20 @@ DOMAIN = "the value of its expression or of the derivative is not finite there"
 
 
 class Plan(NamedTuple):
-    """The function for some expressions: its source, its arguments and their values by type."""
+    """The function for some expressions: its source and that of the second derivative, its arguments and their values by type."""
 
     source: str
+    bend: str
     arguments: tuple[str, ...]
     rows: dict[int, list[float]]
 
 
 class Written(NamedTuple):
-    """One function for several expressions: its source, its arguments after the coordinate, and the kinds of code it tells apart."""
+    """One function for several expressions: its source and that of the second derivative, its arguments after the coordinate, and the
+    kinds of code it tells apart."""
 
     source: str
+    bend: str
     arguments: tuple[str, ...]
     kinds: list[tuple]
 
@@ -42,14 +45,17 @@ def write(name: str, coordinate: str, argument: str, leading: list[str], compile
     compiled = list(compiled)
     kinds = list(dict.fromkeys(c.code for c in compiled))
     names = leading + ["kind"] * (len(kinds) > 1) + [f"p{k}" for k in range(max((len(c.constants) for c in compiled), default=0))]
-    lines = [f"def {name}({', '.join((coordinate, *names))}):", f"    {ARGUMENT} = {argument}"]
-    for k, (statements, energy, slope) in enumerate(kinds):
-        body = [*statements, f"return {energy}{' - offset' if 'offset' in names else ''}, {slope}"]
-        if k < len(kinds) - 1:
-            lines += [f"    if kind == {k}.0:", *("        " + line for line in body)]
-        else:
-            lines += ["    " + line for line in body]
-    return Written("\n".join(lines) + "\n", tuple(names), kinds)
+    offset = " - offset" if "offset" in names else ""
+
+    def text(bodies) -> str:
+        lines = [f"def {name}({', '.join((coordinate, *names))}):", f"    {ARGUMENT} = {argument}"]
+        for k, body in enumerate(bodies):
+            other = k < len(bodies) - 1
+            lines += [f"    if kind == {k}.0:"] * other + ["        " * other + "    " * (not other) + line for line in body]
+        return "\n".join(lines) + "\n"
+
+    return Written(text([(*lines, f"return {energy}{offset}, {slope}") for lines, energy, slope, *_ in kinds]),
+                   text([(*lines, f"return {bend}") for *_, lines, bend in kinds]), tuple(names), kinds)
 
 
 def present(text: str, text_of: Callable[[str], str]) -> tuple[str, tuple[tuple[str, float], ...]]:
@@ -84,7 +90,7 @@ class ExpressionStyle(Style):
                          domain=DOMAIN, **options)
         self.coordinates = (variable,)
         example = self.bind({}, {1: self.parse_coeff(self.example.split(), {})})
-        self.function, self.arguments = example.function, example.arguments
+        self.function, self.d2, self.arguments = example.function, example.d2, example.arguments
 
     def parse_settings(self, words):
         command = f"{self.category}_style {self.name}"
@@ -144,11 +150,11 @@ class ExpressionStyle(Style):
             if rest:
                 given[rest] = radians(coeffs[t][rest]) if self.category == "angle" else coeffs[t][rest]
             rows[t] = [given.get(name, 0.0) for name in written.arguments]
-        return Plan(written.source, written.arguments, rows)
+        return Plan(written.source, written.bend, written.arguments, rows)
 
     def bind(self, settings, coeffs, compat=""):
         plan = self.plan(settings, coeffs)
-        return bound(self, plan.source, plan.arguments)
+        return bound(self, plan.source, plan.bend, plan.arguments)
 
     def pack(self, settings, coeffs, ntypes, units):
         plan = self.plan(settings, coeffs)
@@ -159,10 +165,10 @@ class ExpressionStyle(Style):
 
 
 @cache
-def bound(style: ExpressionStyle, source: str, arguments: tuple[str, ...]) -> ExpressionStyle:
-    """The style with a written function; one object for each source, so that its kernels are found again."""
+def bound(style: ExpressionStyle, source: str, bend: str, arguments: tuple[str, ...]) -> ExpressionStyle:
+    """The style with written functions; one object for each source, so that its kernels are found again."""
     twin = copy.copy(style)
-    twin.function, twin.arguments = compiled_function(style.name, source), arguments
+    twin.function, twin.d2, twin.arguments = compiled_function(style.name, source), compiled_function(style.name, bend), arguments
     return twin
 
 

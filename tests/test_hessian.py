@@ -33,8 +33,8 @@ def differences(atoms, h=1e-3):
     return np.array(out)
 
 
-def compare(atoms, tolerance=1e-8, **options):
-    got, want = atoms.calc.get_hessian(atoms, **options).toarray(), differences(atoms)
+def compare(atoms, tolerance=1e-8, h=1e-3, **options):
+    got, want = atoms.calc.get_hessian(atoms, **options).toarray(), differences(atoms, h)
     scale = np.abs(want).max()
     assert scale > 0.0
     assert np.abs(got - want).max() < tolerance * scale
@@ -50,22 +50,21 @@ def items_of(style, seed=3):
     atoms = asemd.Atoms("H" * len(x), positions=x, cell=[styles.BOX] * 3, pbc=True)
     atoms.topology = Topology(**{f"{c}s": np.arange(len(x)).reshape(-1, k), f"{c}_types": np.ones(len(x) // k, int)})
     words = style.example.split()
-    if style.weight_14:
+    if style.weight_14 or hasattr(style, "repulsion"):      # no pairs of the ends
         words[-1] = "0.0"
     atoms.calc = asemd.ForceField(**{c: {f"{style.name} {style.settings_example}".strip(): {1: " ".join(words)}}})
     return atoms
 
 
-def test_common_styles_have_second_derivatives():
-    assert {("bond", "harmonic"), ("bond", "morse"), ("bond", "fene"), ("bond", "class2"), ("angle", "harmonic"), ("angle", "charmm"),
-            ("angle", "cosine"), ("angle", "cosine/squared"), ("angle", "quartic"), ("dihedral", "harmonic"), ("dihedral", "charmm"),
-            ("dihedral", "opls"), ("dihedral", "multi/harmonic"), ("dihedral", "quadratic"), ("improper", "harmonic"),
-            ("improper", "cvff")} <= set(CURVED)
+def test_all_scalar_styles_but_tables_have_second_derivatives():
+    scalar = {(c, n) for c in ATOMS for n in registry.names(c) if (s := registry.find(c, n)).function and not s.history}
+    without = {(c, n) for c, n in scalar - set(CURVED) if not {"ax", "gamma"} & set(registry.find(c, n).coordinates)}
+    assert without == {("bond", "table"), ("angle", "table"), ("dihedral", "table"), ("dihedral", "table/cut")}
 
 
 @pytest.mark.parametrize(("category", "name"), CURVED)
 def test_bonded_styles(category, name):
-    compare(items_of(registry.find(category, name)), 2e-8)
+    compare(items_of(registry.find(category, name)), 2e-8, 2e-4 if "restricted" in name else 1e-3)     # steep where they diverge
 
 
 @pytest.mark.parametrize(("category", "name"), [("angle", "charmm"), ("dihedral", "opls"), ("improper", "umbrella")])
@@ -88,7 +87,7 @@ def test_numerical(category, name):
 
 PAIRS = {
     "lj/cut 4.0": "0.01 2.0", "coul/cut 5.0": "", "lj/cut/coul/cut 4.0 6.0": "0.01 2.0", "morse 5.0": "0.3 1.2 2.0",
-    "lj96/cut 4.0": "0.01 2.0", "lj/charmm/coul/charmm 2.5 4.0 3.0 5.0": "0.01 2.0",
+    "lj96/cut 4.0": "0.01 2.0", "lepton 4.0": "e*((s/r)^9-exp(-r/s));e=0.01;s=2", "lj/charmm/coul/charmm 2.5 4.0 3.0 5.0": "0.01 2.0",
 }
 
 

@@ -12,7 +12,13 @@ from asemd.style import angle
 MARKS = {"bb": "M bb_r1 bb_r2", "ba": "N1 N2 ba_r1 ba_r2"}
 
 
-@angle("class2", cls=CrossTermStyle, marks=MARKS, example="110.1 75.0 5.2 1.0 bb 10.0 1.5 1.4 ba 20.0 10.0 1.5 1.3", equilibrium="theta0")
+def class2_d2(theta, r12, r32, theta0, K2, K3, K4, M, bb_r1, bb_r2, N1, N2, ba_r1, ba_r2):
+    d = theta - theta0
+    return (2.0 * K2 + d * (6.0 * K3 + d * 12.0 * K4), N1, N2), (N1, 0.0, M), (N2, M, 0.0)
+
+
+@angle("class2", cls=CrossTermStyle, marks=MARKS, example="110.1 75.0 5.2 1.0 bb 10.0 1.5 1.4 ba 20.0 10.0 1.5 1.3", equilibrium="theta0",
+       d2=class2_d2)
 def class2(theta, r12, r32, theta0: "angle", K2: "energy", K3: "energy", K4: "energy", M: "energy/distance^2", bb_r1: "distance",
            bb_r2: "distance", N1: "energy/distance", N2: "energy/distance", ba_r1: "distance", ba_r2: "distance"):
     d = theta - theta0

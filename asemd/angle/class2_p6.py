@@ -11,7 +11,12 @@ from asemd.cross_terms import CrossTermStyle
 from asemd.style import angle
 
 
-@angle("class2/p6", cls=CrossTermStyle, marks=MARKS, equilibrium="theta0",
+def class2_p6_d2(theta, r12, r32, theta0, K2, K3, K4, K5, K6, M, bb_r1, bb_r2, N1, N2, ba_r1, ba_r2):
+    d = theta - theta0
+    return (2.0 * K2 + d * (6.0 * K3 + d * (12.0 * K4 + d * (20.0 * K5 + d * 30.0 * K6))), N1, N2), (N1, 0.0, M), (N2, M, 0.0)
+
+
+@angle("class2/p6", cls=CrossTermStyle, marks=MARKS, equilibrium="theta0", d2=class2_p6_d2,
        example="110.1 75.0 5.2 1.0 -0.5 0.3 bb 10.0 1.5 1.4 ba 20.0 10.0 1.5 1.3")
 def class2_p6(theta, r12, r32, theta0: "angle", K2: "energy", K3: "energy", K4: "energy", K5: "energy", K6: "energy",
               M: "energy/distance^2", bb_r1: "distance", bb_r2: "distance", N1: "energy/distance", N2: "energy/distance",

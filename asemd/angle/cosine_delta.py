@@ -9,7 +9,11 @@ import math
 from asemd.style import angle
 
 
-@angle("cosine/delta", example="75.0 110.1", equilibrium="theta0")
+def cosine_delta_d2(theta, K, theta0):
+    return K * math.cos(theta - theta0)
+
+
+@angle("cosine/delta", example="75.0 110.1", equilibrium="theta0", d2=cosine_delta_d2)
 def cosine_delta(theta, K: "energy", theta0: "angle"):
     d = theta - theta0
     s = math.sin(0.5 * d)

@@ -21,7 +21,11 @@ def rest(coeff):
     return 180.0 if coeff["B"] == 1 else 180.0 - 180.0 / coeff["n"]
 
 
-@angle("cosine/periodic", example="75.0 -1 3", rest=rest, check=check)
+def cosine_periodic_d2(theta, C, B, n):
+    return 2.0 * C * (B if n % 2.0 == 0.0 else -B) * math.cos(n * theta)
+
+
+@angle("cosine/periodic", example="75.0 -1 3", rest=rest, check=check, d2=cosine_periodic_d2)
 def cosine_periodic(theta, C: "energy", B: "integer", n: "integer"):
     wide = theta > 0.5 * math.pi
     # cos(n (pi - theta)) = (-1)^n cos(n theta), and n (pi - theta) keeps its digits near a straight angle

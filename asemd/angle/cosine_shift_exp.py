@@ -11,7 +11,17 @@ import math
 from asemd.style import angle
 
 
-@angle("cosine/shift/exp", example="10.0 45.0 2.0", equilibrium="theta0")
+def cosine_shift_exp_d2(theta, Umin, theta0, a):
+    d = theta - theta0
+    c, s = math.cos(0.5 * d), math.sin(0.5 * d)
+    u, first, second = c * c, -s * c, -0.5 * math.cos(d)       # (1 + cos(d)) / 2 and its derivatives
+    if abs(a) < 0.001:
+        return -Umin * (second * (1.0 + a * (u - 0.5)) + a * first * first)
+    weight = -math.exp(-a * s * s) / math.expm1(-a) if a > 0.0 else math.exp(a * u) / math.expm1(a)
+    return -Umin * a * weight * (second + a * first * first)
+
+
+@angle("cosine/shift/exp", example="10.0 45.0 2.0", equilibrium="theta0", d2=cosine_shift_exp_d2)
 def cosine_shift_exp(theta, Umin: "energy", theta0: "angle", a):
     d = theta - theta0
     c, s = math.cos(0.5 * d), math.sin(0.5 * d)

@@ -10,7 +10,24 @@ import math
 from asemd.style import angle
 
 
-@angle("cosine/squared/restricted", example="75.0 110.1", equilibrium="theta0", domain="the energy diverges at 0 and 180 degrees")
+def cosine_squared_restricted_d2(theta, K, theta0):
+    s, c = math.sin(0.5 * theta), math.cos(0.5 * theta)
+    if theta0 == 0.0:                      # K tan^2(theta/2)
+        t = s / c
+        return K * (0.5 / (c * c) + t * t) / (c * c)
+    if abs(theta0) == math.pi:
+        t = c / s
+        return K * (0.5 / (s * s) + t * t) / (s * s)
+    s0, c0 = math.sin(0.5 * theta0), math.cos(0.5 * theta0)
+    p, m = math.sin(0.5 * (theta + theta0)), math.sin(0.5 * (theta - theta0))
+    q = -p * m / (s * c)                    # the energy is K q^2
+    first = -0.25 * (p * p + m * m) / (s * c * s * c)
+    second = 0.5 * (s0 * s0 * c / (s * s * s) - c0 * c0 * s / (c * c * c))
+    return 2.0 * K * (first * first + q * second)
+
+
+@angle("cosine/squared/restricted", example="75.0 110.1", equilibrium="theta0", domain="the energy diverges at 0 and 180 degrees",
+       d2=cosine_squared_restricted_d2)
 def cosine_squared_restricted(theta, K: "energy", theta0: "angle"):
     p, m = math.sin(0.5 * (theta + theta0)), math.sin(0.5 * (theta - theta0))
     s = math.sin(theta)

@@ -16,6 +16,10 @@ def rest(coeff):
     return math.degrees(math.acos(-0.25 * coeff["C1"] / coeff["C2"]))
 
 
-@angle("fourier", example="75.0 1.0 0.5 0.3", rest=rest)
+def fourier_d2(theta, K, C0, C1, C2):
+    return -K * (C1 * math.cos(theta) + 4.0 * C2 * math.cos(2.0 * theta))
+
+
+@angle("fourier", example="75.0 1.0 0.5 0.3", rest=rest, d2=fourier_d2)
 def fourier(theta, K: "energy", C0, C1, C2):
     return K * (C0 + C1 * math.cos(theta) + C2 * math.cos(2.0 * theta)), -K * (C1 * math.sin(theta) + 2.0 * C2 * math.sin(2.0 * theta))

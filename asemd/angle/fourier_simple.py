@@ -22,7 +22,12 @@ def fourier_simple_lammps(theta, K: "energy", c, n):
     return K * (1.0 + c * math.cos(n * theta)), -K * c * n * ratio * math.sin(theta)
 
 
-@angle("fourier/simple", example="100.0 -1.0 3.0", rest=lambda coeff: 180.0 / coeff["n"], lammps=fourier_simple_lammps)
+def fourier_simple_d2(theta, K, c, n):
+    return -K * c * n * n * math.cos(n * theta)
+
+
+@angle("fourier/simple", example="100.0 -1.0 3.0", rest=lambda coeff: 180.0 / coeff["n"], lammps=fourier_simple_lammps,
+       d2=fourier_simple_d2)
 def fourier_simple(theta, K: "energy", c, n):
     a = n * theta
     return K * (1.0 + c * math.cos(a)), -K * c * n * math.sin(a)

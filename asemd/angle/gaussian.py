@@ -44,7 +44,25 @@ class GaussianAngle(Style):
         return Packed(out, (np.array(rows),))
 
 
-@angle("gaussian", cls=GaussianAngle, coeff=(Parameter("T", "temperature"), Parameter("n", "integer")),
+def gaussian_d2(theta, kT, first, count, terms):
+    begin, end = int(first), int(first + count)
+    top = -math.inf
+    for k in range(begin, end):
+        q = (theta - terms[k, 2]) / terms[k, 1]
+        top = max(top, terms[k, 0] - 2.0 * q * q)
+    total = pull = bend = 0.0
+    for k in range(begin, end):
+        w = terms[k, 1]
+        q = (theta - terms[k, 2]) / w
+        p = math.exp(terms[k, 0] - 2.0 * q * q - top)
+        total += p
+        pull += p * q / w
+        bend += p * (1.0 - 4.0 * q * q) / (w * w)
+    pull /= total
+    return 4.0 * kT * (bend / total + 4.0 * pull * pull)
+
+
+@angle("gaussian", cls=GaussianAngle, d2=gaussian_d2, coeff=(Parameter("T", "temperature"), Parameter("n", "integer")),
        example="300.0 2 0.0128 0.375 80.0 0.0730 0.148 123.0", rest=lambda coeff: coeff["terms"][0][2])
 def gaussian(theta, kT, first, count, terms: "array"):
     begin, end = int(first), int(first + count)

@@ -52,7 +52,11 @@ def constants(coeff, units) -> dict:
     return out
 
 
-@angle("mesocnt", cls=Bend, coeff=COEFF, rest=lambda coeff: 180.0, example="buckling custom 400.0 50.0 15.0")
+def mesocnt_d2(theta, K_H, K_B, theta_B):
+    return 2.0 * K_H if math.pi - theta < theta_B else 0.0
+
+
+@angle("mesocnt", cls=Bend, coeff=COEFF, d2=mesocnt_d2, rest=lambda coeff: 180.0, example="buckling custom 400.0 50.0 15.0")
 def mesocnt(theta, K_H: "energy", K_B: "energy", theta_B: "angle"):
     d = math.pi - theta
     if d < theta_B:

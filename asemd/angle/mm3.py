@@ -17,7 +17,12 @@ def mm3_lammps(theta, K: "energy", theta0: "angle"):
     return e, 2.0 * K * d * (1.0 + d * (-1.203211 + d * (0.367674 + d * (-0.3239159 + d * 0.711270))))
 
 
-@angle("mm3", example="75.0 110.1", equilibrium="theta0", lammps=mm3_lammps)
+def mm3_d2(theta, K, theta0):
+    d = theta - theta0
+    return K * (2.0 + d * (-4.812846 + d * (2.206044 + d * (-2.63328 + d * 7.1127))))
+
+
+@angle("mm3", example="75.0 110.1", equilibrium="theta0", lammps=mm3_lammps, d2=mm3_d2)
 def mm3(theta, K: "energy", theta0: "angle"):
     d = theta - theta0
     e = K * d * d * (1.0 + d * (-0.802141 + d * (0.183837 + d * (-0.131664 + d * 0.237090))))

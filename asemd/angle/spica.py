@@ -8,6 +8,7 @@ Source: Shinoda, DeVane and Klein, Mol. Simul. 33, 27 (2007); LAMMPS manual, ang
 """
 from __future__ import annotations
 
+from asemd.angle.harmonic import harmonic_d2
 from asemd.errors import InputError
 from asemd.style import Parameter, Style, angle
 
@@ -27,7 +28,7 @@ class SpicaAngle(Style):
         return values
 
 
-OPTIONS = dict(cls=SpicaAngle, example="300.0 107.0 1.0", equilibrium="theta0",
+OPTIONS = dict(cls=SpicaAngle, example="300.0 107.0 1.0", equilibrium="theta0", d2=harmonic_d2,
                coeff=(Parameter("K", "energy"), Parameter("theta0", "angle"), Parameter("repulsion", "", optional=True)))
 
 

@@ -11,8 +11,20 @@ import math
 from asemd.style import bond
 
 
+def fene_expand_d2(r, K, R0, epsilon, sigma, shift):
+    d = r - shift
+    rest = (R0 - d) * (R0 + d)
+    curvature = K * (R0 / rest) * (R0 / rest) * (R0 * R0 + d * d)
+    if sigma != 0.0:
+        s2 = (sigma / d) * (sigma / d)
+        s6 = s2 * s2 * s2
+        if s6 > 0.5:
+            curvature += 4.0 * epsilon * s6 * (156.0 * s6 - 42.0) / (d * d)
+    return curvature
+
+
 @bond("fene/expand", example="30.0 1.5 1.0 1.0 0.2", rest=lambda coeff: coeff["shift"] + 0.97 * coeff["sigma"],
-      domain="r - shift must be shorter than R0 and, with repulsion, not 0")
+      domain="r - shift must be shorter than R0 and, with repulsion, not 0", d2=fene_expand_d2)
 def fene_expand(r, K: "energy/distance^2", R0: "distance", epsilon: "energy", sigma: "distance", shift: "distance"):
     d = r - shift
     rest = (R0 - d) * (R0 + d)

@@ -20,8 +20,17 @@ def check(coeff, settings):
         raise InputError(f"bond_coeff fene/nm: n and m must be different, both are {coeff['n']:g}")
 
 
+def fene_nm_d2(r, K, R0, E0, r0, n, m):
+    rest = (R0 - r) * (R0 + r)
+    curvature = K * (R0 / rest) * (R0 / rest) * (R0 * R0 + r * r)
+    if r < r0:
+        s = r0 / r
+        curvature += E0 * n * m / (n - m) * ((n + 1.0) * s**n - (m + 1.0) * s**m) / (r * r)
+    return curvature
+
+
 @bond("fene/nm", example="30.0 1.5 1.0 1.12246 12 6", check=check, rest=lambda coeff: 0.97 * coeff["r0"],
-      domain="the bond must be longer than 0 and shorter than R0")
+      domain="the bond must be longer than 0 and shorter than R0", d2=fene_nm_d2)
 def fene_nm(r, K: "energy/distance^2", R0: "distance", E0: "energy", r0: "distance", n: "", m: ""):
     rest = (R0 - r) * (R0 + r)
     if not (rest > 0.0 and r > 0.0):

@@ -50,7 +50,24 @@ COEFF = (Parameter("T", "temperature"), Parameter("n", "integer"), Parameter("A_
          Parameter("r_1", "distance"))
 
 
-@bond("gaussian", cls=Gaussians, coeff=COEFF, example="300.0 2 0.0128 0.375 1.37 0.0730 0.148 1.63", equilibrium="r_1")
+def gaussian_d2(r, kT, first, last, terms):
+    least = math.inf
+    for k in range(int(first), int(last)):
+        y = (r - terms[k, 2]) / terms[k, 1]
+        least = min(least, y * y)
+    total = pull = bend = 0.0
+    for k in range(int(first), int(last)):
+        w = terms[k, 1]
+        y = (r - terms[k, 2]) / w
+        weight = terms[k, 0] * math.exp(2.0 * (least - y * y))
+        total += weight
+        pull += weight * y / w
+        bend += weight * (1.0 - 4.0 * y * y) / (w * w)
+    pull /= total
+    return 4.0 * kT * (bend / total + 4.0 * pull * pull)
+
+
+@bond("gaussian", cls=Gaussians, coeff=COEFF, example="300.0 2 0.0128 0.375 1.37 0.0730 0.148 1.63", equilibrium="r_1", d2=gaussian_d2)
 def gaussian(r, kT: "energy", first, last, terms: "array"):
     # the largest exponential is taken out of the sum, so that it cannot underflow
     least = math.inf

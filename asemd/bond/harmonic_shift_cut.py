@@ -14,7 +14,11 @@ def check(coeff, settings):
         raise InputError(f"bond_coeff harmonic/shift/cut: r0 and rc must be different, both are {coeff['r0']:g}")
 
 
-@bond("harmonic/shift/cut", example="10.0 0.8 1.3", check=check, equilibrium="r0")
+def harmonic_shift_cut_d2(r, Umin, r0, rc):
+    return 0.0 if r > rc else 2.0 * Umin / ((r0 - rc) * (r0 - rc))
+
+
+@bond("harmonic/shift/cut", example="10.0 0.8 1.3", check=check, equilibrium="r0", d2=harmonic_shift_cut_d2)
 def harmonic_shift_cut(r, Umin: "energy", r0: "distance", rc: "distance"):
     if r > rc:
         return 0.0, 0.0

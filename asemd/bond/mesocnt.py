@@ -37,7 +37,11 @@ def stiffness(coeff, units) -> float:
     return force * nanotube.electronvolt(units, "bond_style mesocnt") / units.angstrom / coeff["r0"]
 
 
-@bond("mesocnt", cls=Segment, coeff=COEFF, example="custom 800.0 1.1", equilibrium="r0")
+def mesocnt_d2(r, K, r0):
+    return 2.0 * K
+
+
+@bond("mesocnt", cls=Segment, coeff=COEFF, example="custom 800.0 1.1", equilibrium="r0", d2=mesocnt_d2)
 def mesocnt(r, K: "energy/distance^2", r0: "distance"):
     d = r - r0
     return K * d * d, 2.0 * K * d

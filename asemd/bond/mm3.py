@@ -22,7 +22,12 @@ class MM3(Style):
         return Packed(out)
 
 
-@bond("mm3", cls=MM3, coeff=COEFF, example="100.0 1.07", equilibrium="r0")
+def mm3_d2(r, K, r0, third, fourth):
+    d = r - r0
+    return K * (2.0 + d * (6.0 * third + 12.0 * d * fourth))
+
+
+@bond("mm3", cls=MM3, coeff=COEFF, example="100.0 1.07", equilibrium="r0", d2=mm3_d2)
 def mm3(r, K: "energy/distance^2", r0: "distance", third: "1/distance", fourth: "1/distance^2"):
     d = r - r0
     return K * d * d * (1.0 + d * (third + d * fourth)), K * d * (2.0 + d * (3.0 * third + 4.0 * d * fourth))

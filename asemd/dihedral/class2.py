@@ -23,7 +23,22 @@ EXAMPLE = ("100 75 100 70 80 60 mbt 3.5945 0.1704 -0.5490 1.5228 ebt 0.3417 0.32
            "at 0.4 -0.1850 -0.7963 -2.0220 0.0 -0.3991 110.2453 105.1270 aat -13.5271 110.2453 105.1270 bb13 2.5 1.0119 1.1010")
 
 
-@dihedral("class2", cls=CrossTermStyle, marks=MARKS, example=EXAMPLE)
+def class2_d2(phi, r12, r23, r34, theta1, theta2, K1, phi1, K2, phi2, K3, phi3, A1, A2, A3, mbt_r2, B1, B2, B3, C1, C2, C3, ebt_r1, ebt_r3,
+              D1, D2, D3, E1, E2, E3, at_theta1, at_theta2, M, aat_theta1, aat_theta2, N, bb13_r1, bb13_r3):
+    c1, c2, c3 = math.cos(phi), 4.0 * math.cos(2.0 * phi), 9.0 * math.cos(3.0 * phi)             # minus the second derivatives
+    s1, s2, s3 = -math.sin(phi), -2.0 * math.sin(2.0 * phi), -3.0 * math.sin(3.0 * phi)          # the first ones
+    b2, b1, b3, t1, t2 = r23 - mbt_r2, r12 - ebt_r1, r34 - ebt_r3, theta1 - at_theta1, theta2 - at_theta2
+    u1, u2 = theta1 - aat_theta1, theta2 - aat_theta2
+    pp = K1 * math.cos(phi - phi1) + 4.0 * K2 * math.cos(2.0 * phi - phi2) + 9.0 * K3 * math.cos(3.0 * phi - phi3)
+    pp -= b2 * (A1 * c1 + A2 * c2 + A3 * c3) + b1 * (B1 * c1 + B2 * c2 + B3 * c3) + b3 * (C1 * c1 + C2 * c2 + C3 * c3)
+    pp -= t1 * (D1 * c1 + D2 * c2 + D3 * c3) + t2 * (E1 * c1 + E2 * c2 + E3 * c3) + M * u1 * u2 * c1
+    middle, end1, end3 = A1 * s1 + A2 * s2 + A3 * s3, B1 * s1 + B2 * s2 + B3 * s3, C1 * s1 + C2 * s2 + C3 * s3
+    bend1, bend2, both = D1 * s1 + D2 * s2 + D3 * s3 + M * u2 * s1, E1 * s1 + E2 * s2 + E3 * s3 + M * u1 * s1, M * c1
+    return ((pp, end1, middle, end3, bend1, bend2), (end1, 0.0, 0.0, N, 0.0, 0.0), (middle, 0.0, 0.0, 0.0, 0.0, 0.0),
+            (end3, N, 0.0, 0.0, 0.0, 0.0), (bend1, 0.0, 0.0, 0.0, 0.0, both), (bend2, 0.0, 0.0, 0.0, both, 0.0))
+
+
+@dihedral("class2", cls=CrossTermStyle, marks=MARKS, example=EXAMPLE, d2=class2_d2)
 def class2(phi, r12, r23, r34, theta1, theta2, K1: "energy", phi1: "angle", K2: "energy", phi2: "angle", K3: "energy", phi3: "angle",
            A1: "energy/distance", A2: "energy/distance", A3: "energy/distance", mbt_r2: "distance",
            B1: "energy/distance", B2: "energy/distance", B3: "energy/distance",

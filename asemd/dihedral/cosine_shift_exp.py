@@ -28,7 +28,17 @@ def on_line(Umin, theta, a):          # u = 1/2
     return -0.5 * Umin * (1.0 - 0.25 * a) if abs(a) < 0.001 else -Umin / (1.0 + math.exp(0.5 * a))
 
 
-@dihedral("cosine/shift/exp", example="10.0 45.0 2.0", lammps=lammps_force, straight=on_line)
+def cosine_shift_exp_d2(phi, Umin, theta, a):
+    d = phi - theta
+    c, s = math.cos(0.5 * d), math.sin(0.5 * d)
+    u, first, second = c * c, -s * c, -0.5 * math.cos(d)       # (1 + cos(d)) / 2 and its derivatives
+    if abs(a) < 0.001:
+        return -Umin * (second * (1.0 + a * (u - 0.5)) + a * first * first)
+    weight = -math.exp(-a * s * s) / math.expm1(-a) if a > 0.0 else math.exp(a * u) / math.expm1(a)
+    return -Umin * a * weight * (second + a * first * first)
+
+
+@dihedral("cosine/shift/exp", example="10.0 45.0 2.0", lammps=lammps_force, straight=on_line, d2=cosine_shift_exp_d2)
 def cosine_shift_exp(phi, Umin: "energy", theta: "angle", a):
     s = math.sin(0.5 * (phi - theta))
     c = math.cos(0.5 * (phi - theta))

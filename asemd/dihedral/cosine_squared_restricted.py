@@ -10,7 +10,23 @@ import math
 from asemd.style import dihedral
 
 
-@dihedral("cosine/squared/restricted", example="10.0 120.0",
+def cosine_squared_restricted_d2(phi, K, phi0):
+    s, c = math.sin(0.5 * phi), math.cos(0.5 * phi)
+    if phi0 == 0.0:                      # K tan^2(phi/2)
+        t = s / c
+        return K * (0.5 / (c * c) + t * t) / (c * c)
+    if abs(phi0) == math.pi:
+        t = c / s
+        return K * (0.5 / (s * s) + t * t) / (s * s)
+    s0, c0 = math.sin(0.5 * phi0), math.cos(0.5 * phi0)
+    p, m = math.sin(0.5 * (phi + phi0)), math.sin(0.5 * (phi - phi0))
+    q = -p * m / (s * c)                    # the energy is K q^2
+    first = -0.25 * (p * p + m * m) / (s * c * s * c)
+    second = 0.5 * (s0 * s0 * c / (s * s * s) - c0 * c0 * s / (c * c * c))
+    return 2.0 * K * (first * first + q * second)
+
+
+@dihedral("cosine/squared/restricted", example="10.0 120.0", d2=cosine_squared_restricted_d2,
           domain="the four atoms must not lie in a plane, unless phi0 is that angle")
 def cosine_squared_restricted(phi, K: "energy", phi0: "angle"):
     s = math.sin(0.5 * phi)

@@ -29,7 +29,14 @@ def on_line(first, count, terms):
     return e
 
 
-@dihedral("fourier", cls=SeriesStyle, count="m", term=TERM, check=check, straight=on_line,
+def fourier_d2(phi, first, count, terms):
+    bend = 0.0
+    for k in range(int(first), int(first) + int(count)):
+        bend -= terms[k, 0] * terms[k, 1] * terms[k, 1] * math.cos(terms[k, 1] * phi - terms[k, 2])
+    return bend
+
+
+@dihedral("fourier", cls=SeriesStyle, count="m", term=TERM, check=check, straight=on_line, d2=fourier_d2,
           example="3 -0.846200 3 0.0 7.578800 1 0 0.138000 2 -180.0")
 def fourier(phi, first, count, terms: "array"):
     # beyond 90 degrees the angle counts from trans, so that terms whose forces cancel in a planar molecule do so to the last digit

@@ -10,7 +10,11 @@ import math
 from asemd.style import dihedral
 
 
-@dihedral("helix", example="80.0 100.0 40.0")
+def helix_d2(phi, A, B, C):
+    return A * math.cos(phi) - 9.0 * B * math.cos(3.0 * phi) - C * math.cos(phi + 0.25 * math.pi)
+
+
+@dihedral("helix", example="80.0 100.0 40.0", d2=helix_d2)
 def helix(phi, A: "energy", B: "energy", C: "energy"):
     s = math.sin(0.5 * phi)           # 1 - cos(x) = 2 sin^2(x/2), 1 + cos(x) = 2 cos^2(x/2)
     c3 = math.cos(1.5 * phi)

@@ -34,7 +34,23 @@ class Spherical(SeriesStyle):
         return factor, self.function
 
 
-@dihedral("spherical", cls=Spherical, count="n", term=TERM, example=EXAMPLE)
+def spherical_d2(phi, theta1, theta2, first, count, terms):
+    pp = p1 = p2 = t11 = t12 = t22 = 0.0
+    for k in range(int(first), int(first) + int(count)):
+        C, K, L, M = terms[k, 0], terms[k, 1], terms[k, 4], terms[k, 7]
+        x, y, z = K * (phi - terms[k, 2]), L * (theta1 - terms[k, 5]), M * (theta2 - terms[k, 8])
+        f, g, h = factor(terms[k, 3], x), factor(terms[k, 6], y), factor(terms[k, 9], z)
+        df, dg, dh = K * math.sin(x), L * math.sin(y), M * math.sin(z)
+        pp += C * K * K * math.cos(x) * g * h
+        t11 += C * f * L * L * math.cos(y) * h
+        t22 += C * f * g * M * M * math.cos(z)
+        p1 += C * df * dg * h
+        p2 += C * df * g * dh
+        t12 += C * f * dg * dh
+    return (pp, p1, p2), (p1, t11, t12), (p2, t12, t22)
+
+
+@dihedral("spherical", cls=Spherical, count="n", term=TERM, example=EXAMPLE, d2=spherical_d2)
 def spherical(phi, theta1, theta2, first, count, terms: "array"):
     e = slope = bend1 = bend2 = 0.0
     for k in range(int(first), int(first) + int(count)):

@@ -76,7 +76,14 @@ def plane_distance(ax, ay, az, bx, by, bz, cx, cy, cz):
     Positive where the ends, seen from the origin, turn counter-clockwise.
     The derivatives are the weights of the ends at the foot of the height, times the normal of the plane.
     """
-    nx, ny, nz = cross(bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az)
+    ux, uy, uz, vx, vy, vz, wx, wy, wz = bx - ax, by - ay, bz - az, cx - bx, cy - by, cz - bz, ax - cx, ay - cy, az - cz
+    uu, vv, ww = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz, wx * wx + wy * wy + wz * wz
+    if uu >= vv and uu >= ww:                         # the two short edges have the most digits
+        nx, ny, nz = cross(vx, vy, vz, wx, wy, wz)
+    elif vv >= ww:
+        nx, ny, nz = cross(wx, wy, wz, ux, uy, uz)
+    else:
+        nx, ny, nz = cross(ux, uy, uz, vx, vy, vz)
     n = math.sqrt(nx * nx + ny * ny + nz * nz)
     if n == 0.0:
         return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

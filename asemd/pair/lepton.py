@@ -47,21 +47,22 @@ class PairExpression(PairStyle):
 
     def bind(self, settings, coeffs, compat=""):
         written = write(self.name, "r", "r", [], [self.compiled(c) for c in coeffs.values()])
-        return bound(self, written.source, written.arguments)
+        return bound(self, written.source, written.bend, written.arguments)
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         each = {pair: self.compiled(c, units) for pair, c in filled.items()}
         written = write(self.name, "r", "r", [], each.values())
         full = {pair: dict.fromkeys(written.arguments, 0.0) | c | written.values(each[pair]) for pair, c in filled.items()}
-        parts = bound(self, written.source, written.arguments).parts
+        parts = bound(self, written.source, written.bend, written.arguments).parts
         return pack_parts(parts, {}, full, ntypes, lambda c: self.cutoffs(c, settings), shift)
 
 
 @cache
-def bound(style: PairExpression, source: str, arguments: tuple[str, ...]) -> PairExpression:
+def bound(style: PairExpression, source: str, bend: str, arguments: tuple[str, ...]) -> PairExpression:
     """The style with a written function; one object for each source, so that its kernels are found again."""
     twin = copy.copy(style)
     twin.function = compiled_function(style.name, source, __name__)
+    twin.function.d2 = compiled_function(style.name, bend, __name__)
     twin.parts = (make_part(twin.function, "cut", arguments),)
     return twin
 
