@@ -151,6 +151,10 @@ def geometries(pairs):
     ordinary = np.array([[0, 0, 0.3], [1.1, 0.1, 0], [-0.5, 0.9, 0], [-0.4, -0.8, 0.1]])
     out = {"ordinary": ordinary, "small": 1e-3 * ordinary, "large": 1e3 * ordinary}
     out["one arm short"] = np.array([[0, 0, 0], [1.1, 0.1, 0], [-0.5e-6, 0.9e-6, 1e-7], [-0.4, -0.8, 0.3]])
+    out["two arms short"] = np.array([[0, 0, 0], [1.1, -1.1, -0.6], [-2.5e-5, -0.9e-5, -2.4e-5], [-0.7e-7, -1.1e-6, 0.8e-6]])
+    out["two others close"] = np.array([[0, 0, 0], [1.1, 0.1, 0], [-0.5, 0.9, 0.2], [-0.5 + 1e-6, 0.9 - 3e-6, 0.2 + 2e-6]])
+    out["two others close, long"] = np.array([[0, 0, 0], [0.4, 0.1, 0], [-5e2, 9e2, 2e2], [-5e2 + 1e-3, 9e2 - 3e-3, 2e2 + 2e-3]])
+    out["arms folded, of all lengths"] = [[0, 0, 0], [0.24, 0.88, 0.95], [1.1541e-6, 4.2587e-6, 4.592953e-6], [1.047e-4, 3.8636e-4, 4.1669e-4]]
     for e in (1e-3, 1e-8):
         out[f"planar, {e:g}"] = [[0, 0, 0], [1, 0.1, 0], [-0.5, 0.9, 0], [-0.4, -0.8, e]]
         out[f"planar, all on one side, {e:g}"] = [[0, 0, 0], [1, 0.1, 0], [0.5, 0.9, 0], [0.9, 0.7, e]]
@@ -158,6 +162,7 @@ def geometries(pairs):
         out[f"two arms in line, {e:g}"] = [[0, 0, 0], [1, 0, 0], [-1.2, e, 0.2 * e], [-0.1, -0.8, 0.3]]
         out[f"two arms folded, {e:g}"] = [[0, 0, 0], [1, 0, 0], [1.2, e, 0], [-0.1, -0.8, 0.3]]
         out[f"all in line, {e:g}"] = [[0, 0, 0], [1, 0, 0], [-1.2, 0.6 * e, 0.8 * e], [-0.7, -e, 0]]
+        out[f"all folded, {e:g}"] = [[0, 0, 0], [1, 0, 0], [1.2, 0.6 * e, 0.8 * e], [0.7, -e, 0]]
         out[f"others in line, {e:g}"] = [[0.1, 0.7, 0.3], [1, 0, 0], [-1.2, e, 0], [0.2, 0, 0.7 * e]]
     if pairs is SECOND:
         out = {title: np.array(x)[[1, 0, 2, 3]] for title, x in out.items()}

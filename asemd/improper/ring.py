@@ -24,9 +24,13 @@ def ring(ax, ay, az, bx, by, bz, cx, cy, cz, K: "energy", theta0: "angle"):
     u, uax, uay, uaz, ubx, uby, ubz = angle_between(ax, ay, az, bx, by, bz)
     v, vax, vay, vaz, vcx, vcy, vcz = angle_between(ax, ay, az, cx, cy, cz)
     w, wbx, wby, wbz, wcx, wcy, wcz = angle_between(bx, by, bz, cx, cy, cz)
-    # cos(u) + cos(theta0) = 2 cos((u + theta0)/2) cos((u - theta0)/2)
-    s = 2.0 * (math.cos(0.5 * (u + theta0)) * math.cos(0.5 * (u - theta0)) + math.cos(0.5 * (v + theta0)) * math.cos(0.5 * (v - theta0))
-               + math.cos(0.5 * (w + theta0)) * math.cos(0.5 * (w - theta0)))
+    if theta0 > 0.5 * math.pi:          # cos(u) - cos(r) = -2 sin((u + r)/2) sin((u - r)/2): small u and r keep their digits
+        r = math.pi - theta0
+        s = -2.0 * (math.sin(0.5 * (u + r)) * math.sin(0.5 * (u - r)) + math.sin(0.5 * (v + r)) * math.sin(0.5 * (v - r))
+                    + math.sin(0.5 * (w + r)) * math.sin(0.5 * (w - r)))
+    else:                               # cos(u) + cos(theta0) = 2 cos((u + theta0)/2) cos((u - theta0)/2)
+        s = 2.0 * (math.cos(0.5 * (u + theta0)) * math.cos(0.5 * (u - theta0)) + math.cos(0.5 * (v + theta0)) * math.cos(0.5 * (v - theta0))
+                   + math.cos(0.5 * (w + theta0)) * math.cos(0.5 * (w - theta0)))
     s2 = s * s
     k = -K * s2 * s2 * s
     su, sv, sw = k * math.sin(u), k * math.sin(v), k * math.sin(w)
