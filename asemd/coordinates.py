@@ -62,7 +62,7 @@ def torsion_gradient(v):
     return np.stack([_one(-length) * a, _one(dot(f, g) / length) * a - _one(dot(h, g) / length) * b, _one(length) * b], axis=1)
 
 
-def _vectors(style) -> dict[str, tuple]:
+def weights_of(style) -> dict[str, tuple]:
     """Lengths and angles of a style's chart: name -> the vector, or the two vectors, as weights of the style's vectors."""
     if style.category == "bond":
         return {"r": ((1,),)}
@@ -83,7 +83,7 @@ def values(style, v: np.ndarray) -> np.ndarray:
         elif name == "chi":
             out.append(np.abs(torsion(v)))
         else:
-            ends = [np.tensordot(v, np.array(w, float), (1, 0)) for w in _vectors(style)[name]]
+            ends = [np.tensordot(v, np.array(w, float), (1, 0)) for w in weights_of(style)[name]]
             out.append(norm(ends[0]) if len(ends) == 1 else angle_between(*ends))
     return np.stack(out, axis=1)
 
@@ -100,7 +100,7 @@ def gradients(style, v: np.ndarray) -> np.ndarray:
             if name == "chi":
                 g = g * np.where(torsion(v.real) < 0.0, -1.0, 1.0)[:, None, None]
         else:
-            weights = [np.array(w, float) for w in _vectors(style)[name]]
+            weights = [np.array(w, float) for w in weights_of(style)[name]]
             ends = [np.tensordot(v, w, (1, 0)) for w in weights]
             parts = [ends[0] / _one(norm(ends[0]))] if len(ends) == 1 else angle_gradient(*ends)
             g = sum(w[None, :, None] * p[:, None, :] for w, p in zip(weights, parts))

@@ -10,15 +10,16 @@ import math
 import re
 import tempfile
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
-from asemd import units
-from asemd.kernels import bonded
+from asemd.errors import InputError
+from asemd.kernels import bonded, curvature
 from asemd.kernels.state import Cell, cell_arrays
 from asemd.result import COMPONENTS
 from asemd.style import Packed, Style
+from asemd.testing import digits
+from asemd.testing.function import check_function, constants, example, example_words
 from asemd.topology import ATOMS
 
 ITEMS = 12
@@ -66,27 +67,10 @@ class Sample:
         return out
 
 
-def example_words(style: Style, folder: str) -> list[str]:
-    """One valid line of coefficients; a style that reads a table gets one written into `folder`."""
-    if not any(p.unit == "path" for p in style.coeff):
-        return style.example.split()
-    lo, hi = {"bond": (0.2, 3.0), "angle": (0.0, 180.0), "dihedral": (-170.0, 180.0)}[style.category]
-    x = np.linspace(lo, hi, 36)
-    scale = 1.0 if style.category == "bond" else math.pi / 180.0
-    e, f = 5.0 * np.cos(scale * x - 0.4), 5.0 * scale * np.sin(scale * x - 0.4)
-    rows = "".join(f"{i} {a!r} {b!r} {c!r}\n" for i, (a, b, c) in enumerate(zip(x.tolist(), e.tolist(), f.tolist()), 1))
-    path = Path(folder) / f"{style.category}.table"
-    path.write_text(f"# written by asemd\n\nEXAMPLE\nN {len(x)}\n\n{rows}")
-    return [{"file": str(path), "KEYWORD": "EXAMPLE"}.get(word, word) for word in style.example.split()]
-
-
 def sample(style: Style, seed: int = 7) -> Sample:
     """Random items with the example coefficients; bonds about as long as their rest length."""
-    with tempfile.TemporaryDirectory() as folder:
-        settings = style.parse_settings(style.settings_example.split())
-        coeff = style.parse_coeff(example_words(style, folder), settings)
-        out = Sample(style, style.pack(settings, {1: coeff}, 1, units.get("lj")))
-    length = float(coeff.get(style.equilibrium, 1.0)) if style.category == "bond" else 1.0
+    packed, length = example(style)
+    out = Sample(style, packed)
     rng = np.random.default_rng(seed)
     k, good = ATOMS[style.category], []
     for _ in range(50 * ITEMS):
@@ -122,7 +106,6 @@ def _derivative(function, step: float):
 
 def check_text(style: Style) -> None:
     """Coefficients and settings survive being written and read again; a word too many and a word that is no number are refused."""
-    from asemd.errors import InputError
     with tempfile.TemporaryDirectory() as folder:
         words = example_words(style, folder)
         for text in {"", style.settings_example}:
@@ -244,6 +227,47 @@ def check_virial(style: Style) -> None:
                a.acc[2 + i], -_derivative(energy, STEP), 1e-5, np.abs(a.acc).max() + 1e-12)
 
 
+def check_curvature(style: Style) -> None:
+    """The second derivatives d2 are those of the energy."""
+    packed, length = example(style)
+    coefficients, names = constants(style, packed), style.coordinates
+    loop, rng, count = curvature.of_style(style, style.d2), np.random.default_rng(5), len(names)
+    unused, one = np.zeros(0), np.ones(1, np.int32)
+    for _ in range(20):
+        values = [length * rng.uniform(0.9, 1.2) if n.startswith("r") else rng.uniform(0.2, 2.9) for n in names]
+        slope, second = np.zeros((1, count)), np.zeros((1, count, count))
+        loop(np.array([values]), one, one, unused, packed.coeff, unused, packed.arrays, slope, second)
+        if not np.isfinite(slope).all():
+            continue
+        for i, first in enumerate(names):
+            def slopes(h, i=i, values=values):
+                return np.array(style.function(*(v + h * (j == i) for j, v in enumerate(values)), *coefficients)[1:])
+            want = _derivative(slopes, STEP)
+            for j, other in enumerate(names):
+                if math.isfinite(want[j]):
+                    _close(style, f"d2E/d{other} d{first} is not that of the energy at {first} = {values[i]:.4g}", second[0, j, i], want[j],
+                           1e-6, np.abs(want).max() + np.abs(slope).max() + 1e-9)
+
+
+def check_digits(style: Style) -> None:
+    """Forces keep their digits near singular geometry and far from rest, against the energy with 60 digits."""
+    packed, length = example(style)
+    s, exact = Sample(style, packed), digits.Exact(style, packed)
+    for title, x in digits.geometries(style, length).items():
+        a = s.run(np.ascontiguousarray(x.T))
+        if a.bad[0]:
+            advice = "return math.inf for the energy and all derivatives where the style is not defined"
+            try:
+                answer = style.function(*exact.place(x), *constants(style, packed))
+            except Exception as e:
+                raise AssertionError(f"{style}: plain Python raises {type(e).__name__} ({e}) at {title}: {advice}") from None
+            assert not any(map(math.isnan, answer)), f"{style}: not a number at {title}: {advice}"
+            continue
+        error = exact.error(x, a.forces.T)
+        assert error <= digits.LIMIT, (f"{style}: at {title} forces are off by {error:.2g} times the rounding that the geometry asks for "
+                                       f"(limit {digits.LIMIT:g}): digits cancel in the function, or its derivative is wrong there")
+
+
 def check_singular(style: Style) -> None:
     """On a line, in a plane and at one place an item either is reported or has finite forces that sum to zero."""
     s = sample(style)
@@ -263,13 +287,27 @@ def check_singular(style: Style) -> None:
         _close(style, f"forces do not sum to zero at {x.T.tolist()}", a.forces.sum(axis=1), 0.0, 1e-13, np.abs(a.forces).max() + 1e-300)
 
 
-CHECKS = {"text": check_text, "slope": check_slope, "twin": check_twin, "invariance": check_invariance, "balance": check_balance,
-          "gradient": check_gradient, "virial": check_virial, "singular": check_singular}
+CHECKS = {"function": check_function, "text": check_text, "slope": check_slope, "curvature": check_curvature, "twin": check_twin,
+          "invariance": check_invariance, "balance": check_balance, "gradient": check_gradient, "virial": check_virial,
+          "digits": check_digits, "singular": check_singular}
+
+
+def left_out(style: Style, name: str) -> str:
+    """Why a check does not apply to a style; empty if it does."""
+    if style.function is None and name != "text":
+        return "the style has no forces"
+    if name in style.xfail:
+        return style.xfail[name]
+    if name == "curvature" and style.d2 is None:
+        return "it has no second derivatives, the option d2"
+    if name == "digits" and style.history:
+        return "its energy depends on the past"
+    return style.xfail.get("gradient", "") if name == "digits" else ""
 
 
 def checks_of(style: Style) -> list[str]:
-    """Names of the checks that apply: all but those the style excuses, and only ``text`` without forces."""
-    return [name for name in CHECKS if name not in style.xfail and (style.function is not None or name == "text")]
+    """Names of the checks that apply."""
+    return [name for name in CHECKS if not left_out(style, name)]
 
 
 def check_style(style: Style, checks: list[str] | None = None) -> None:
@@ -295,15 +333,16 @@ def check_style(style: Style, checks: list[str] | None = None) -> None:
 
 def report_style(style: Style) -> str:
     """What the shipped checks say about a bonded style, a line for each: passed, FAILED and why, or left out and why."""
-    lines = []
+    lines, usable = [], True
     for name, check in CHECKS.items():
-        said = (check.__doc__ or "").split(";")[0].rstrip(".")
-        if name not in checks_of(style):
-            lines.append(f"{name:11}left out  {style.xfail.get(name, 'the style has no forces')}")
+        said, reason = (check.__doc__ or "").split(";")[0].rstrip("."), left_out(style, name)
+        if reason or not usable:
+            lines.append(f"{name:11}left out  {reason or 'the function must be right first'}")
             continue
         try:
             check(style)
             lines.append(f"{name:11}passed    {said}")
         except AssertionError as e:
+            usable = name != "function"
             lines.append(f"{name:11}FAILED    {str(e).removeprefix(f'{style}: ')}")
     return "\n".join([str(style), *lines])
