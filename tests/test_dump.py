@@ -63,7 +63,7 @@ DUMPS = {
     "region": (SLAB, "custom", "id type x y", "sort id region r"),
     "threshold": (SLAB, "custom", "id q", "sort id thresh q != 0 thresh type == 2"),
     "no header": (SLAB, "custom", "id x", "sort id header no"),
-    "names": (SLAB, "custom", "id x", "sort id colname id ident colname 2 place"),
+    "names": (SLAB, "custom", "id x", "sort id colname id ident colname -1 place"),
     "xyz": (SLAB, "xyz", "", "sort id"),
     "xyz elements": (SLAB, "xyz", "", 'sort id element Cu Ni format line "%s  %.3f %g   %g" time yes'),
     "xyz labels": (SLAB, "xyz", "", "sort id types labels"),

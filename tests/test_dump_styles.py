@@ -58,6 +58,9 @@ dump f1 all custom 2 time.txt id
 dump_modify f1 every/time 2.5 sort id
 dump g1 all custom 2 delayed.txt id
 dump_modify g1 every/time 1.7 sort id delay 7
+variable later equal time+2.7
+dump g2 all custom 2 timed.txt id
+dump_modify g2 every/time v_later sort id
 dump f2 all custom 2 mf.*.txt id
 dump_modify f2 maxfiles 2 pad 5 sort id
 dump f3 all custom 2 last.txt id type x
@@ -248,6 +251,18 @@ def test_picture_words(tmp_path):
         assert len(np.unique(a.reshape(-1, 3), axis=0)) > 25, words
 
 
+def test_bonds_across_the_boundary_end_flat(tmp_path):
+    """Half a bond that leads out of the box is closed by a disc, in the colour of its atom."""
+    lines = BONDED.replace("single 3 6 6", "single 0.4 6 6").replace("single 5 6 6", "single 11.5 6 6")
+    session = asemd(lines + f"dump i all image 1 {tmp_path}/i.*.ppm type type adiam 1 box no 0 view 90 0 bond type 0.8 size 120 120\n"
+                    "dump_modify i acolor 1 red acolor 2 blue bcolor 1 white\nrun 0")
+    session.close()
+    from PIL import Image
+    a = np.asarray(Image.open(tmp_path / "i.0.ppm")).astype(int)
+    middle = a[58:62, 58:62].reshape(-1, 3)      # seen along the bond: its end hides the atom behind
+    assert (middle.min(axis=1) > 100).all() and np.ptp(middle, axis=0).max() < 10
+
+
 def test_endings_of_pictures(tmp_path):
     for ending, magic in (("png", b"\x89PNG"), ("jpg", b"\xff\xd8"), ("ppm", b"P6")):
         picture(tmp_path, "type type", name=f"p.*.{ending}")
@@ -294,7 +309,9 @@ def test_colour_maps():
     ("dump_modify t every v_s", "equal intervals"),
     ("dump_modify x precision 5", "expected one of"), ("dump_modify x sfactor 0", "positive"), ("dump_modify t thresh x > 1", "not supp"),
     ("dump_modify c maxfiles 2", "with \\*"), ("dump_modify c skip 3", "v_name"), ("dump_modify c every/time -1", "positive"),
-    ("dump_modify c refresh c_st", "stored anew"), ("dump_modify c triclinic/general yes", "general triclinic"),
+    ("dump d all image 1 F.* type type up 0 0 0", "direction"), ("dump d all image 1 F.* type type ssao yes 0 0.5", "seed"),
+    ("dump_modify i amap 1 0 cf 0 2 min red max blue", "above the upper"), ("dump_modify c pad -1", "negative"),
+    ("dump_modify c triclinic/general yes", "general triclinic"),
     ("dump_modify c thermo yes", "not supported"), ("dump d all custom 1 F id i_no", "no property"),
 ])
 def test_mistakes(line, message, tmp_path):

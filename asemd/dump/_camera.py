@@ -59,6 +59,8 @@ class Camera:
                 variables.find(word[2:])
         if key == "view" and not values[0].startswith("v_") and not 0.0 <= float(values[0]) <= 180.0:
             raise InputError(f"{what}: theta must be between 0 and 180 degrees, got {values[0]}")
+        if key == "up" and not any(w.startswith("v_") or float(w) for w in values):
+            raise InputError(f"{what}: the direction must not be 0 0 0")
         if key == "zoom" and not values[0].startswith("v_") and float(values[0]) <= 0.0:
             raise InputError(f"{what}: must be positive, got {values[0]}")
         return len(values) + (key == "center")

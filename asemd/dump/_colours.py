@@ -96,6 +96,8 @@ class ColourMap:
                 raise InputError(f"{what}: the entries of a continuous map must run from min to max, in order")
         if style[0] == "d" and entries[-1][:2] != (-np.inf, np.inf):
             raise InputError(f"{what}: the last entry of a discrete map must be min max colour")
+        if out.lo is not None and out.hi is not None and out.lo > out.hi:
+            raise InputError(f"{what}: the lower bound {lo} is above the upper bound {hi}")
         return out, 5 + n * size
 
     def __call__(self, values: np.ndarray) -> np.ndarray:

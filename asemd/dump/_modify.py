@@ -66,7 +66,8 @@ class Modify:
             self.names.clear()
             return
         column = self.columns.index(values[0]) + 1 if values[0] in self.columns else whole(values[0], what)
-        self.names[self._column(column, what)] = values[1]
+        column = self._column(column, what)
+        self.names[column if column > 0 else len(self.columns) + 1 + column] = values[1]
 
     def _column(self, column: int, what: str) -> int:
         if not 1 <= abs(column) <= len(self.columns):
@@ -82,7 +83,7 @@ class Modify:
     def _modify_every(self, values, what, session):
         if values[0].startswith("v_"):
             session.variables.find(values[0][2:])
-            self.schedule.variable, self.schedule.interval = values[0][2:], 0.0
+            self.schedule.variable, self.schedule.interval, self.schedule.timed = values[0][2:], 0.0, False
             return
         every = whole(values[0], what)
         if every <= 0:
@@ -91,7 +92,9 @@ class Modify:
 
     def _modify_every_time(self, values, what, session):
         if values[0].startswith("v_"):
-            raise InputError(f"{what}: give a number, in units of time")
+            session.variables.find(values[0][2:])
+            self.schedule.variable, self.schedule.interval, self.schedule.timed = values[0][2:], 0.0, True
+            return
         interval = number(values[0], what)
         if interval <= 0.0:
             raise InputError(f"{what}: the interval must be positive, got {values[0]}")
@@ -144,14 +147,17 @@ class Modify:
         self.files.most = max(most, 0)
 
     def _modify_pad(self, values, what, session):
-        self.files.pad = max(0, whole(values[0], what))
+        self.files.pad = whole(values[0], what)
+        if self.files.pad < 0:
+            raise InputError(f"{what}: must not be negative, got {values[0]}")
 
     def _modify_refresh(self, values, what, session):
         id = values[0][2:]
         if values[0][:2] != "c_" or id not in session.scene.computes:
             raise InputError(f"{what}: there is no compute {values[0]!r}, give c_ID")
         if not hasattr(session.scene.computes[id], "refresh"):
-            raise InputError(f"{what}: compute {id} (style {session.scene.computes[id].style}) has no values that could be stored anew")
+            session.warn(f"{what}: compute {id} (style {session.scene.computes[id].style}) has no values that could be stored anew")
+            return
         self.refresh = id
 
     def _modify_region(self, values, what, session):

@@ -21,6 +21,8 @@ class Schedule:
     ----------
     variable : str
         Name of a variable that gives the next step, instead of `every`.
+    timed : bool
+        Whether it gives the next time instead.
     interval : float
         Interval in units of time, instead of `every`; 0 for none.
     delay : int
@@ -31,6 +33,7 @@ class Schedule:
 
     def __init__(self, every: int):
         self.every, self.variable, self.interval, self.delay = every, "", 0.0, 0
+        self.timed = False
         self.next = NEVER
         self._time = 0.0        # time of the next snapshot
 
@@ -61,7 +64,12 @@ class Schedule:
         InputError
             The variable names no later step.
         """
-        if self.variable:
+        if self.variable and self.timed:
+            wanted = number(self.variable)
+            if wanted <= time:
+                raise InputError(f"dump_modify every/time v_{self.variable}: the variable gave {wanted:g}, which is not after {time:g}")
+            self.next = step + max(1, math.ceil((wanted - time) / dt - EARLY))
+        elif self.variable:
             self.next = int(number(self.variable))
             if self.next <= step:
                 raise InputError(f"dump_modify every v_{self.variable}: the variable gave step {self.next}, which is not after step {step}")

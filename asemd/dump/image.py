@@ -107,17 +107,17 @@ class Image(Dump):
 
     def _read_box(self, words, what) -> int:
         flag, diameter = take(words, 2, what)
-        self.box = _fraction(diameter, what) if yes_no(flag, what) else 0.0
+        self.box = _length(diameter, what) if yes_no(flag, what) else 0.0
         return 2
 
     def _read_subbox(self, words, what) -> int:     # one process: its part is the box
         flag, diameter = take(words, 2, what)
-        self.box = max(self.box, _fraction(diameter, what) if yes_no(flag, what) else 0.0)
+        self.box = max(self.box, _length(diameter, what) if yes_no(flag, what) else 0.0)
         return 2
 
     def _read_axes(self, words, what) -> int:
         flag, length, diameter = take(words, 3, what)
-        self.axes = (_fraction(length, what), _fraction(diameter, what)) if yes_no(flag, what) else (0.0, 0.0)
+        self.axes = (_length(length, what), _length(diameter, what)) if yes_no(flag, what) else (0.0, 0.0)
         return 3
 
     def _read_shiny(self, words, what) -> int:
@@ -130,7 +130,8 @@ class Image(Dump):
 
     def _read_ssao(self, words, what) -> int:
         flag, seed, strength = take(words, 3, what)
-        whole(seed, what)       # the shading is computed, not drawn at random
+        if whole(seed, what) <= 0:      # for the form only: the shading is computed, not drawn at random
+            raise InputError(f"{what}: the seed must be positive, got {seed}")
         self.occlusion = _fraction(strength, what) if yes_no(flag, what) else 0.0
         return 3
 
@@ -203,7 +204,7 @@ class Image(Dump):
         return np.maximum(np.asarray(column_of(view, self.diameter), float), 0.0)
 
     def bars(self, view: View, colours: np.ndarray, diameters: np.ndarray):
-        """Both halves of every bond: starts, ends, diameters, colours."""
+        """Both halves of every bond: starts, ends, diameters, colours, and which halves end freely, at a periodic boundary."""
         colour, width = self.bonds or ("atom", "0.5")
         top = view.system.topology
         at = np.full(view.system.n, -1)
@@ -212,16 +213,17 @@ class Image(Dump):
         keep = (pairs >= 0).all(axis=1) & (top.bond_types > 0)
         pairs, types = pairs[keep], types[keep]
         if "none" in (colour, width) or not len(pairs):
-            return (np.zeros((0, 3)),) * 2 + (np.zeros(0), np.zeros((0, 3)))
+            return (np.zeros((0, 3)),) * 2 + (np.zeros(0), np.zeros((0, 3)), np.zeros(0, bool))
         i, j = pairs.T
         box, x = view.box, view.x
         d = (x[j] - x[i]) @ box.inverse
-        d = (d - np.where(box.periodic, np.rint(d), 0.0)) @ box.cell
+        shift = np.where(box.periodic, np.rint(d), 0.0)
+        d, free = (d - shift) @ box.cell, shift.any(axis=1)
         thick = {"atom": np.minimum(diameters[i], diameters[j]), "type": np.array([self.bond_size.get(t, 0.5) for t in types.tolist()])}
         thick = thick[width] if width in thick else np.full(len(types), float(width))
         paint = (colours[i], colours[j]) if colour == "atom" else (self._type_colours(types, self.bond_colour),) * 2
         return (np.concatenate([x[i], x[j]]), np.concatenate([x[i] + 0.5 * d, x[j] - 0.5 * d]), np.concatenate([thick, thick]),
-                np.concatenate(paint))
+                np.concatenate(paint), np.concatenate([free, free]))
 
     def lines(self, box) -> tuple:
         """Edges of the box and axes: starts, ends, diameters, colours."""
@@ -250,14 +252,18 @@ class Image(Dump):
         box, _ = frame(snapshot.system.box)
         colours, diameters = self.colours(view), self.diameters(view)
         place, scale = (self.camera or Camera()).place(box, self.width, self.height, self.variables)
-        bars = self.bars(view, colours, diameters)
+        *bars, free = self.bars(view, colours, diameters)
         start, end, thick, paint = (np.concatenate(parts) for parts in zip(bars, self.lines(box)))
         shown = diameters > 0.0 if self.atoms else np.zeros(len(diameters), bool)
         # rounded ends of everything that is not inside an atom
-        ends = np.concatenate([start, end] if not self.atoms else [start[len(bars[0]):], end[len(bars[0]):]])
-        round_ = [np.concatenate([a, a]) if not self.atoms else np.concatenate([a[len(bars[0]):]] * 2) for a in (thick, paint)]
-        objects = Objects(place(np.concatenate([view.x[shown], ends])), 0.5 * scale * np.concatenate([diameters[shown], round_[0]]),
-                          np.concatenate([colours[shown], round_[1]]), place(start), place(end), 0.5 * scale * thick, paint)
+        bare = np.ones(len(start), bool)
+        bare[:len(free)] = not self.atoms
+        flat, last = np.zeros(len(start), bool), bare.copy()
+        flat[:len(free)], last[:len(free)] = free, bare[:len(free)] & ~free
+        balls = [(view.x[shown], diameters[shown], colours[shown]), (start[bare], thick[bare], paint[bare]),
+                 (end[last], thick[last], paint[last])]
+        centre, size, colour = (np.concatenate(parts) for parts in zip(*balls))
+        objects = Objects(place(centre), 0.5 * scale * size, colour, place(start), place(end), 0.5 * scale * thick, paint, flat)
         fading = 0.4 if np.mean(self.background) < 0.5 else 0.2     # a bright background swallows more
         look = Look(np.array(self.background), self.shiny, self.occlusion, fading, self.samples)
         return render(self.width, self.height, objects, look)
@@ -279,6 +285,14 @@ def _positive(word: str, what: str) -> float:
     value = number(word, what)
     if value <= 0.0:
         raise InputError(f"{what}: must be positive, got {word}")
+    return value
+
+
+def _length(word: str, what: str) -> float:
+    """A part of the length of the box."""
+    value = number(word, what)
+    if value < 0.0:
+        raise InputError(f"{what}: must not be negative, got {word}")
     return value
 
 

@@ -62,6 +62,8 @@ def set_format(thermo, words: list[str]) -> int:
             _check(form)
         return 2
     _check(text)
+    if kind == "int" and not re.search(r"%[-+ 0#]*\d*(\.\d+)?(ll|l|h|z|j)*[diu]", text):
+        raise InputError(f"thermo_modify format int: {text!r} is not a format of a whole number such as %8d")
     if kind in ("int", "float"):
         thermo.format_kind[kind] = text
     elif re.fullmatch(r"-?\d+", kind):
