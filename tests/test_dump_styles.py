@@ -254,7 +254,7 @@ def test_picture_words(tmp_path):
 def test_bonds_across_the_boundary_end_flat(tmp_path):
     """Half a bond that leads out of the box is closed by a disc, in the colour of its atom."""
     lines = BONDED.replace("single 3 6 6", "single 0.4 6 6").replace("single 5 6 6", "single 11.5 6 6")
-    session = asemd(lines + f"dump i all image 1 {tmp_path}/i.*.ppm type type adiam 1 box no 0 view 90 0 bond type 0.8 size 120 120\n"
+    session = asemd(lines + f"dump i all image 1 {tmp_path}/i.*.ppm type type adiam 0.7 box no 0 view 90 0 bond type 0.6 size 120 120\n"
                     "dump_modify i acolor 1 red acolor 2 blue bcolor 1 white\nrun 0")
     session.close()
     from PIL import Image
