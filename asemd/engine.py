@@ -209,8 +209,7 @@ class Engine:
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             if self.sparse:
-                nobody = (np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32))
-                self.rows = self.list.rows(k, s, self.ns, partners[:2] if partners is not None else nobody, self.parallel)
+                self.rows = self.list.rows(k, s, self.ns, self._partners(), self.parallel)
             weighted, kinds = self.exclusions.weighted, self.exclusions.weighted_kinds
             self.special = [np.empty(len(weighted), np.int32) for _ in range(3)]
             if len(weighted) and not self.expanded:
@@ -224,6 +223,12 @@ class Engine:
         self.thread_arguments = None
         self.builds += 1
         self.timings["Neigh"] += time.perf_counter() - began
+
+    def _partners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Special pairs that do not interact: first partner of each atom (n+1,), partners."""
+        if self.exclusions.partners is None:
+            return np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32)
+        return self.exclusions.partners[:2]
 
     def _faces(self) -> None:
         """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost."""
@@ -255,10 +260,12 @@ class Engine:
 
     @property
     def pairs(self) -> int:
-        """Neighbours in the list."""
-        if self.mode == "cluster":
-            return int(sum(self.list.first[t, self.list.bounds[t + 1]] for t in range(self.threads)))
-        return len(self.plain[0]) if self.mode == "plain" else 0
+        """Pairs in the list, as LAMMPS counts them: within reach when it was built, without special pairs of no weight."""
+        if self.mode == "cluster" and not self.expanded:
+            i, j, code = self.special
+            d = self.held[:, i] - self.held[:, j] - self.shifts27[code >> 2].T
+            return self.list.count(self.k, self.state, self.held, self._partners()) + int(((d * d).sum(axis=0) <= self.reach**2).sum())
+        return len(self.plain[0]) if self.mode != "none" else 0
 
     def arguments(self, tid: int) -> tuple:
         """Arguments of all terms for a thread."""

@@ -57,7 +57,7 @@ def constraints_of(fixes: Iterable[Fix], groups: Mapping[str, np.ndarray]) -> tu
     out, left_out = [], []
     for fix in fixes:
         if isinstance(fix, SetForce):
-            from ase.constraints import FixAtoms, FixCartesian      # a quarter of a second that most scenes need not wait
+            from ase.constraints import FixAtoms, FixCartesian  # a quarter of a second that most scenes need not wait
             if fix.region is not None or any(f is not None and (callable(f) or f != 0.0) for f in fix.force):
                 left_out.append(f"{_named(fix)} with a force that is not zero everywhere in its group")
                 continue

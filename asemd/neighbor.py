@@ -26,10 +26,10 @@ def kernels(ortho: bool, mark: bool = False):
     b.constant("ORTHO", ortho)
     b.constant("MARK", mark)
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
-    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.expand,
-              cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load,
-              rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.mark_special,
-              rebuild.drop_excluded, rebuild.special_pairs):
+    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.count,
+              cluster_rows.expand, cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather,
+              rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear,
+              rebuild.mark_special, rebuild.drop_excluded, rebuild.special_pairs):
         b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster_rows.rows))
     return b.build()
 
@@ -224,6 +224,11 @@ class ClusterList:
     def longest(self) -> int:
         """Most neighbours of one cluster."""
         return int(self.row_length.max())
+
+    def count(self, k, state, held: np.ndarray, partners) -> int:
+        """Pairs in the list, without the special ones `partners` (start, partner) that are left out."""
+        return sum(int(k.count(held, state.row, self.first[t], self.entries[t], int(self.bounds[t]), int(self.bounds[t + 1]), self.shifts,
+                               self.reach**2, *partners)) for t in range(self.threads))
 
     def expand(self, k, state, reach: float, room: int = 0):
         """The same pairs as plain arrays (i, j, code), closer than `reach`."""

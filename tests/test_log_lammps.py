@@ -152,3 +152,31 @@ def test_errors_and_warnings_name_the_place(tmp_path):
 def test_vectors_of_thermo_style():
     session = asemd("region b block 0 4 0 4 0 4\ncreate_box 1 b\nthermo_style custom step c_thermo_press[*] c_thermo_temp[2*3]")
     assert session.scene.thermo.words == ("step", *(f"c_thermo_press[{k}]" for k in range(1, 7)), "c_thermo_temp[2]", "c_thermo_temp[3]")
+
+
+@pytest.mark.parametrize(("cells", "cutoff", "special"), [(2, 1.5, "lj 1 1 1"), (6, 2.5, "lj 1 1 1"), (6, 2.5, "lj 0 0 1"), (6, 2.5, "lj 0.5 0 1"),
+                                                          (8, 1.1, "lj 0 1 1")], ids=["plain", "clusters", "excluded", "weighted", "rows"])
+def test_neighbour_counts(tmp_path, cells, cutoff, special):
+    """As many pairs in the list as LAMMPS has."""
+    text = f"""units lj
+atom_style bond
+lattice fcc 0.8442
+region b block 0 {cells} 0 {cells} 0 {cells}
+create_box 1 b bond/types 1 extra/bond/per/atom 12 extra/special/per/atom 200
+create_atoms 1 box
+mass 1 1
+bond_style zero
+bond_coeff *
+pair_style lj/cut {cutoff}
+pair_coeff 1 1 1 1
+group few id <= 30
+create_bonds many few few 1 1.0 1.2
+special_bonds {special}
+velocity all create 1.44 87287 loop geom
+fix 1 all nve
+run 30
+"""
+    theirs = ask(THEIRS, log=str(tmp_path / "log.theirs"), lines=lines_of(text))
+    found = [re.findall(r"^(Total # of neighbors|Neighbor list builds) = (.*)", log, re.M)
+             for log in (theirs, our_log(tmp_path, text))]
+    assert len(found[0]) == 2 and found[0] == found[1]

@@ -53,6 +53,31 @@ def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, 
     return n
 
 
+def count(held, row, first, entries, c0, c1, shifts, reach2, partner_start, partners):
+    """How many pairs the rows of clusters c0..c1-1 stand for: within `reach2` at the positions `held` the list was built for, partners
+    left out."""
+    n = 0
+    for ci in range(c0, c1):
+        for a in range(ci * CLUSTER, ci * CLUSTER + CLUSTER):
+            r = row[a]
+            if r < 0:
+                break
+            for k in range(first[ci], first[ci + 1]):
+                j = entries[k] & SLOT_BITS
+                c = entries[k] >> 26
+                if row[j] < 0 or (c == 13 and j <= a):
+                    continue
+                dx = held[0, a] - (held[0, j] + shifts[c, 0])
+                dy = held[1, a] - (held[1, j] + shifts[c, 1])
+                dz = held[2, a] - (held[2, j] + shifts[c, 2])
+                if dx * dx + dy * dy + dz * dz <= reach2:
+                    met = 0
+                    for q in range(partner_start[r], partner_start[r + 1]):
+                        met += partners[q] == row[j]
+                    n += met == 0
+    return n
+
+
 def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_code):
     """The cluster list as plain pairs (slots i, j and shift code) within `reach2`.
 
