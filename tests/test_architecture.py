@@ -164,7 +164,7 @@ def test_nothing_of_one_machine():
 
 
 def test_one_place_decides_the_vectors():
-    """numba settles the processor's features at the first `njit`: in code that takes it elsewhere, vectors are as wide as history has it."""
+    """numba settles the processor's features at the first `njit`; taken from elsewhere, vectors would be as wide as history has it."""
     taken = re.compile(r"^\s*from numba import .*\bn?jit\b|\bnumba\.n?jit\b", re.M)
     where = {p.relative_to(ROOT / "asemd").as_posix() for p in (ROOT / "asemd").rglob("*.py") if taken.search(p.read_text())}
     assert where == {"kernels/target.py"}

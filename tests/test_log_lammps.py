@@ -154,8 +154,9 @@ def test_vectors_of_thermo_style():
     assert session.scene.thermo.words == ("step", *(f"c_thermo_press[{k}]" for k in range(1, 7)), "c_thermo_temp[2]", "c_thermo_temp[3]")
 
 
-@pytest.mark.parametrize(("cells", "cutoff", "special"), [(2, 1.5, "lj 1 1 1"), (6, 2.5, "lj 1 1 1"), (6, 2.5, "lj 0 0 1"), (6, 2.5, "lj 0.5 0 1"),
-                                                          (8, 1.1, "lj 0 1 1")], ids=["plain", "clusters", "excluded", "weighted", "rows"])
+@pytest.mark.parametrize(("cells", "cutoff", "special"), [
+    (2, 1.5, "lj 1 1 1"), (6, 2.5, "lj 1 1 1"), (6, 2.5, "lj 0 0 1"), (6, 2.5, "lj 0.5 0 1"), (8, 1.1, "lj 0 1 1"),
+], ids=["plain", "clusters", "excluded", "weighted", "rows"])
 def test_neighbour_counts(tmp_path, cells, cutoff, special):
     """As many pairs in the list as LAMMPS has."""
     text = f"""units lj
