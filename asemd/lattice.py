@@ -20,6 +20,7 @@ BASIS = {
     "sq2": _SQUARE[1],
     "hex": _SQUARE[1],
 }
+MOST = 10**11      # lattice points that can be looked at in a bearable time
 DIMENSION = {"sc": 3, "bcc": 3, "fcc": 3, "hcp": 3, "diamond": 3, "sq": 2, "sq2": 2, "hex": 2}
 EDGES = {"hex": (1.0, math.sqrt(3.0), 1.0), "hcp": (1.0, math.sqrt(3.0), math.sqrt(8.0 / 3.0))}
 
@@ -172,8 +173,11 @@ class Lattice:
         first, last = np.floor(cells.min(axis=0)).astype(int) - 1, np.ceil(cells.max(axis=0)).astype(int) + 1
         if self.dimension == 2:     # one plane of cells
             first[2] = last[2] = 0
-        ni, nj, _ = last - first + 1
+        ni, nj, nk = (last - first + 1).tolist()
         nb = len(self.basis)
+        if ni * nj * nk * nb > MOST:
+            raise InputError(f"create_atoms: the lattice has about {ni * nj * nk * nb:.2g} points in the box, which is too many; "
+                             "are the lattice constant and the box in the units of the scene?")
         portion = max(1, 500_000 // int(ni * nj * nb))
         plane = np.empty((nj, ni, nb, 3))
         plane[..., 0] = np.arange(first[0], last[0] + 1)[None, :, None] + self.basis[:, 0]

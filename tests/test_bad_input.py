@@ -6,6 +6,7 @@ import signal
 from pathlib import Path
 
 import bad_scenes_bonded  # noqa: F401  adds its scenes to CASES
+import bad_scenes_mistakes  # noqa: F401
 import pytest
 from bad_scenes import CASES, DATA, SCRIPT, Case
 
@@ -25,8 +26,8 @@ def write(case: Case, folder: Path) -> tuple[str, str]:
     """Write script and data of a case; returns their texts."""
     script = case.text if case.text is not None else edited(SCRIPT, case.script)
     data = edited(DATA, case.data)
-    (folder / "in.scene").write_text(script, newline="")
-    (folder / "scene.data").write_text(data, newline="")
+    (folder / "in.scene").write_bytes(script if isinstance(script, bytes) else script.encode())
+    (folder / "scene.data").write_text(data, encoding="utf-8", newline="")
     for name, content in case.files.items():
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     return script, data

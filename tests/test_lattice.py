@@ -30,7 +30,8 @@ SPACINGS = [
 @pytest.mark.parametrize("units, dimension, words, spacings", SPACINGS)
 def test_spacings(units, dimension, words, spacings):
     session = asemd(f"units {units}\ndimension {dimension}\nlattice {words}")
-    assert f"Lattice spacing in x,y,z = {spacings}\n" in "".join(session.told)
+    assert " ".join(f"{s:.8g}" for s in session.scene.lattice.spacings) == spacings
+    assert (f"Lattice spacing in x,y,z = {spacings}\n" in "".join(session.told)) == (not words.startswith("none"))
 
 
 @pytest.mark.parametrize("style", BASIS)

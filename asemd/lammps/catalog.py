@@ -52,7 +52,7 @@ def exists(category: str, name: str) -> bool:
     if category not in PACKAGES or not name or file_of(plain_name(name)) not in files(category):
         return False
     if category == "command":
-        return "/" not in name
+        return file_of(name) == name
     if category == "minimize":
         return not name.startswith("_")
     return any(c.style == plain_name(name) for c in _classes(importlib.import_module(module_of(category, plain_name(name)))))

@@ -3,12 +3,14 @@ from __future__ import annotations
 
 import gzip
 import os
+import warnings
 import zlib
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning, nearest
+from asemd.lammps import lex
 
 BLOCK = 1 << 15     # lines that become objects together
 INDENT = 80         # how far a heading may be indented
@@ -68,6 +70,15 @@ class Lines(Sequence):
         return np.sort(np.concatenate(found)) if found else np.zeros(0, int)
 
 
+def similar_file(path: str) -> str:
+    """` (did you mean X?)` for a file of nearly that name in the folder, or an empty string."""
+    folder, name = os.path.split(path)
+    try:
+        return nearest(name, os.listdir(folder or "."))
+    except OSError:
+        return ""
+
+
 def read_lines(path: str | os.PathLike) -> Lines:
     """The lines of a file (``.gz``: compressed).
 
@@ -81,7 +92,7 @@ def read_lines(path: str | os.PathLike) -> Lines:
         with (gzip.open if path.endswith(".gz") else open)(path, "rb") as f:
             raw = f.read()
     except FileNotFoundError:
-        raise InputError(f"read_data: file {path} not found") from None
+        raise InputError(f"read_data: file {path} not found{similar_file(path)}") from None
     except (EOFError, zlib.error, gzip.BadGzipFile) as e:
         raise InputError(f"read_data: {path} is not a complete gzip file: {e}") from None
     except OSError as e:
@@ -93,4 +104,10 @@ def read_lines(path: str | os.PathLike) -> Lines:
         raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     if not raw.strip():
         raise InputError(f"read_data: {path} is empty")
+    if not raw.isascii():
+        plain = lex.plain(raw.decode("utf-8", "surrogateescape")).encode("utf-8", "surrogateescape")
+        if plain != raw:
+            warnings.warn(f"read_data: signs of {path} that are not ASCII (dashes, blanks) were read as their ASCII equivalents",
+                          InputWarning, stacklevel=4)
+        raw = plain
     return Lines(raw)

@@ -73,6 +73,8 @@ class DataText:
                     raise self.fail(f"header line {word!r} needs {HEADER[word]} number{'s' * (HEADER[word] > 1)}, got {len(values)}", i)
                 if word not in REAL_HEADER and (values[0] < 0 or values[0] != int(values[0])):
                     raise self.fail(f"the number of {word} must be a whole number, not negative", i)
+                if self.header.get(word, values) != values:
+                    raise self.fail(f"header line {word!r} appears twice (lines {self.header_line[word] + 1} and {i + 1})", i)
                 self.header[word], self.header_line[word] = values, i
             i += 1
         return i
@@ -86,7 +88,9 @@ class DataText:
             if name not in SECTIONS:
                 if current and (not _is_heading(name) or self.takes_words(current, name)):
                     continue
-                raise self.fail(f"unknown section {name!r}{nearest(name, [*SECTIONS, *HEADER])}", i)
+                same = [s for s in SECTIONS if s.lower() == name.lower()]
+                similar = nearest(same[0] if same else name, [*SECTIONS, *HEADER])
+                raise self.fail(f"unknown section {name!r}{similar}", i)
             if name in UNSUPPORTED:
                 raise self.fail(f"section {name} belongs to atom_style {UNSUPPORTED[name]}, which is not supported", i)
             if name in self.sections:
@@ -106,6 +110,8 @@ class DataText:
 
     def check_promises(self) -> None:
         """Header and sections must belong together."""
+        if not self.header and not self.sections:
+            raise self.fail(f"read_data: {self.path} has no header and no sections: it is no data file of LAMMPS")
         for word in UNSUPPORTED.values():
             plural = {"tri": "triangles", "body": "bodies"}.get(word, word + "s")
             if self.number(plural):

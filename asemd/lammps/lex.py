@@ -9,7 +9,15 @@ from dataclasses import dataclass
 
 from asemd.errors import InputError, Where
 
+# what word processors and web pages make of quotes, signs and blanks -> what is meant
+PLAIN = str.maketrans({**dict.fromkeys(map(chr, (0xA0, *range(0x2000, 0x200C), 0x202F, 0x2060, 0xFEFF)), " "), "\u2018": "'", "\u2019": "'",
+                       "\u201c": '"', "\u201d": '"', "\u2212": "-", "\u02d7": "-", "\u02d6": "+"})
 TRIPLE = '"""'
+
+
+def plain(text: str) -> str:
+    """The text with typographic quotes, signs and blanks in ASCII; other characters stay."""
+    return text if text.isascii() else text.translate(PLAIN)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from asemd.errors import InputError, Where
 from asemd.lammps import catalog, lex
 from asemd.lammps.command.kspace_style import refusal
+from asemd.lammps.data_lines import similar_file
 
 # command -> category of style, position of the style's name
 STYLED = {**{f"{c}_style": (c, 1) for c in catalog.FORCE_FIELD}, "kspace_style": ("kspace", 1), "fix": ("fix", 3),
@@ -38,7 +39,7 @@ class Command:
     @property
     def words(self) -> list[str]:
         """The words as written, without comment; raises `InputError` for unmatched quotes."""
-        return lex.split(lex.strip_comment(self.text))
+        return lex.split(lex.strip_comment(lex.plain(self.text)))
 
 
 class Problems(InputError):
@@ -64,7 +65,10 @@ def read(path: str | os.PathLike) -> list[Command]:
             with open(path, encoding="utf-8-sig", errors="replace") as f:      # a byte order mark is no word
                 text = f.read()
     except (OSError, ValueError) as e:
-        raise InputError(f"cannot open input script {os.fspath(path)}: {getattr(e, 'strerror', None) or e}") from None
+        similar = similar_file(os.fspath(path)) if isinstance(e, FileNotFoundError) else ""
+        raise InputError(f"cannot open input script {os.fspath(path)}: {getattr(e, 'strerror', None) or e}{similar}") from None
+    if "\0" in text:
+        raise InputError(f"input script {os.fspath(path)} is not a plain text file (UTF-16, or no text at all): save it as UTF-8")
     return parse(text, os.fspath(path))
 
 

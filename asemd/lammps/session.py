@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from asemd.errors import AsemdError, InputError, InputWarning, Where
+from asemd.errors import AsemdError, InputError, InputWarning, SimulationError, Where
 from asemd.lammps import catalog, lex, script
 from asemd.lammps.log import Log, to_stdout
 from asemd.lammps.origin import Origin
@@ -120,6 +120,9 @@ class Session:
             raise InputError(f"jump {jump.file}: only lines of a script can jump").at(command.where) from None
         except InputError as e:
             raise e.at(command.where) from e.__cause__
+        except MemoryError:
+            advice = "fewer atoms, a shorter cutoff, or --precision mixed may help"
+            raise SimulationError(f"not enough memory: {advice} ({command.where})") from None
         except AsemdError as e:
             if not getattr(e, "placed", False):
                 e.args = (f"{e} ({command.where})",)
@@ -135,9 +138,12 @@ class Session:
                 self.label = None
             return
         self.log.echo(command.text)
-        text = lex.strip_comment(command.text)
+        plain = lex.plain(command.text)
+        text = lex.strip_comment(plain)
         if not text.strip():
             return
+        if plain != command.text:
+            self.warn("signs that are not ASCII (quotes, dashes, blanks) were read as their ASCII equivalents")
         text = lex.substitute(text, self.variables.value, self.variables.evaluate, self.log.echo)
         words = lex.split(text)
         if words:

@@ -10,7 +10,7 @@ import numpy as np
 from asemd.atom_style import fresh, has
 from asemd.errors import InputError, nearest
 from asemd.lammps import mesh
-from asemd.lammps.command.create_box import describe
+from asemd.lammps.command.create_box import check_number, describe
 from asemd.lattice import Lattice
 from asemd.marsaglia import Marsaglia
 from asemd.molecule import Molecule, random_rotation, rotation, turned
@@ -283,6 +283,7 @@ def _random(session, values, system, region, lattice, options: _Options, kind: i
     n = whole(values[0], "create_atoms random: number of atoms")
     if n < 0:
         raise InputError(f"create_atoms random: the number of atoms must not be negative, got {n}")
+    check_number(n, "create_atoms random")
     generator, box = ParkMiller(whole(values[1], "create_atoms random: seed")), system.box
     generator.skip(WARMUP)
     corners = box.origin + np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell

@@ -1,6 +1,8 @@
 """``create_box N region-ID keyword values ...``"""
 from __future__ import annotations
 
+import os
+
 import numpy as np
 
 from asemd.atom_style import bonded, fresh
@@ -12,6 +14,9 @@ from asemd.words import number, take, whole
 
 KEYWORDS = {**{f"{kind}/types": f"n{kind}types" for kind in ("bond", "angle", "dihedral", "improper")},
             **{name.replace("_", "/"): name for name in COUNTS if name.startswith("extra_")}}
+
+MOST_ATOMS = 2**31 - 1      # LAMMPS's largest id
+ATOM_BYTES = 100            # positions, velocities, forces, image flags, id, type of an atom
 
 
 def run(session, args):
@@ -85,3 +90,21 @@ def describe(box: Box) -> str:
     """The box as logs have it."""
     lo, hi, tilt = (" ".join(f"{v:.8g}" for v in values) for values in (box.lo, box.hi, box.tilt))
     return f"triclinic box = ({lo}) to ({hi}) with tilt ({tilt})" if box.triclinic else f"orthogonal box = ({lo}) to ({hi})"
+
+
+def check_number(n: int, what: str) -> None:
+    """Whether so many atoms can be numbered and held.
+
+    Raises
+    ------
+    InputError
+        Too many; the message starts with `what`.
+    """
+    if n > MOST_ATOMS:
+        raise InputError(f"{what}: {n} atoms are too many, ids go up to {MOST_ATOMS}")
+    try:
+        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):       # a system that does not say
+        return
+    if n * ATOM_BYTES > memory > 0:
+        raise InputError(f"{what}: {n} atoms are too many for the memory of this computer, {memory / 2**30:.3g} GB")

@@ -1,12 +1,13 @@
 """``replicate nx ny nz keyword ...``"""
 from __future__ import annotations
 
+import math
 import warnings
 
 import numpy as np
 
 from asemd.errors import InputError, InputWarning, nearest
-from asemd.lammps.command.create_box import describe
+from asemd.lammps.command.create_box import check_number, describe
 from asemd.words import take, whole
 
 
@@ -19,6 +20,7 @@ def run(session, args):
             periodic = True
         elif word != "bbox":       # only another way to the same atoms
             raise InputError(f"replicate: unknown keyword {word!r}{nearest(word, ('bbox', 'bond/periodic'))}")
+    check_number(math.prod(max(n, 0) for n in times) * system.n, "replicate")
     for axis, count, along in zip("xyz", times, system.box.periodic):
         if count > 1 and not along:
             session.warn(f"replicate in the non-periodic direction {axis}")
