@@ -154,6 +154,7 @@ def run(context: typer.Context,
     status = 0
     with interruptible(session), warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)       # printed as WARNING already
+        warnings.simplefilter("ignore", RuntimeWarning)     # of numpy: numbers that overflow are in the output, or end the run
         try:
             if options.convert:
                 session.commands("\n".join(options.convert))
