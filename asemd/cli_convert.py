@@ -13,7 +13,8 @@ from asemd.lammps.switches import Switches, one_of
 def convert(context: typer.Context,
             script: Annotated[str | None, typer.Argument(help="LAMMPS input script.")] = None,
             to: Annotated[str, typer.Option(help="lammps, python, ase or data.")] = "lammps",
-            output: Annotated[str | None, typer.Option("--output", "-o", help="Folder (lammps, python) or file (ase, data).")] = None,
+            output: Annotated[str | None, typer.Option("--output", "-o", help="Folder (lammps, python) or file (ase, data); by default the "
+                                                                              "folder converted or a file in it.")] = None,
             ) -> int:
     """Write a script, as it stands before its first run, as LAMMPS script with data file, ASE script, ASE file or data file."""
     from asemd.lammps.convert import FORMS

@@ -124,7 +124,23 @@ def test_data(here):
     assert "Pair Coeffs # lj/cut" in Path("d").read_text()
 
 
+def test_nothing_that_is_there_is_overwritten(here):
+    """By default everything goes into one folder under names that differ; an existing folder gets the file under such a name."""
+    Path("data.melt").write_text("precious")
+    for form in ("lammps", "python", "ase", "data"):
+        assert main(["convert", "in.melt", "--to", form]) == 0
+    assert Path("data.melt").read_text() == "precious"
+    names = {p.name for p in Path("converted").iterdir()}
+    assert names == {"in.melt", "data.melt", "melt.py", "in.melt_atoms", "data.melt_atoms", "melt.extxyz", "melt.data"}
+    assert "\nrun " in Path("converted/in.melt").read_text()
+    Path("folder").mkdir()
+    for form in ("ase", "data"):
+        assert main(["convert", "in.melt", "--to", form, "-o", "folder"]) == 0
+    assert {p.name for p in Path("folder").iterdir()} == {"melt.extxyz", "melt.data"}
+
+
 @pytest.mark.parametrize(("words", "message"), [
+    (["in.melt", "--to", "ase", "-o", "nothing"], "ending that says the format"),
     (["in.melt", "--to", "pdf"], "--to must be one of lammps python ase data"), ([], "asemd convert needs a script"),
     (["in.none"], "cannot open input script in.none"),
     (["in.melt", "--to", "ase", "-o", "a.nonsense"], "ASE knows no format for a.nonsense"),

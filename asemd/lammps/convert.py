@@ -120,7 +120,7 @@ def _fixes(scene: Scene) -> list[str]:
 
 
 def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
-    """Write ``NAME.py``, which runs the scene under ASE, beside ``in.NAME`` and ``data.NAME`` with the force field.
+    """Write ``NAME.py``, which runs the scene under ASE, beside ``in.NAME_atoms`` and ``data.NAME_atoms`` with the force field.
 
     Returns
     -------
@@ -134,19 +134,19 @@ def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
     """
     scene = session.scene
     _fixes(scene)
-    to_lammps(scene, folder, name, [])
+    to_lammps(scene, folder, f"{name}_atoms", [])
     words = session.action.split()
     steps = int(words[1]) if words[:1] == ["run"] and words[1].isdigit() else 0
     u, integrates = unit_styles.factor("time", scene.units), any(f.integrates for f in scene.fixes.values())
-    groups = {f.group for f in scene.fixes.values()} - {"all"}
-    lines = [f'"""{scene.system.n} atoms under ASE, written by asemd."""', "import os", "", "import numpy as np", "", "import asemd",
-             "from asemd.fix import find", "", "os.chdir(os.path.dirname(os.path.abspath(__file__)))", f'atoms = asemd.read("in.{name}")',
+    groups = {f.group for f in scene.fixes.values()} - {"all"} if integrates else set()
+    lines = [f'"""{scene.system.n} atoms under ASE, written by asemd."""', "import os", "", *(["import numpy as np", ""] if groups else []),
+             "import asemd", *(["from asemd.fix import find"] if integrates else []), "",
+             "os.chdir(os.path.dirname(os.path.abspath(__file__)))", f'atoms = asemd.read("in.{name}_atoms")',
              'print("potential energy", atoms.get_potential_energy())']
     if not integrates:
-        return _written(Path(folder) / f"{name}.py", [*lines[:3], "import asemd", "", *lines[8:]])
-    lines += ["", "groups = {"]
-    lines += [f'    {g!r}: np.isin(atoms.arrays["id"], {np.sort(scene.system.id[scene.groups.mask(g)]).tolist()}),' for g in sorted(groups)]
-    lines += ["}", "fixes = ["]
+        return _written(Path(folder) / f"{name}.py", lines)
+    chosen = [f'    {g!r}: np.isin(atoms.arrays["id"], {np.sort(scene.system.id[scene.groups.mask(g)]).tolist()}),' for g in sorted(groups)]
+    lines += ["", *(["groups = {", *chosen, "}"] if groups else ["groups = {}"]), "fixes = ["]
     lines += [f"    find({f.style!r}).from_lammps({f.group!r}, {[str(w) for w in f.to_lammps()]!r}, None)," for f in scene.fixes.values()]
     lines += ["]", f"dynamics = asemd.MolecularDynamics(atoms, timestep={scene.dt * u!r}, fixes=fixes, groups=groups)",
               f"dynamics.run({steps})", 'print("potential energy", atoms.get_potential_energy(), "temperature", atoms.get_temperature())']
@@ -172,6 +172,8 @@ def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
     import ase.io
     from ase.io.formats import UnknownFileTypeError
     path = Path(path)
+    if not path.suffix:
+        raise InputError(f"convert: {path.name} has no ending that says the format: use a name such as {path.name}.extxyz, .json or .traj")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)       # what is not part of the calculator does not go into the file anyway
         atoms = scene.to_atoms()
@@ -196,22 +198,29 @@ def convert(source: str | os.PathLike, form: str, output: str | os.PathLike | No
     form : str
         ``lammps``, ``python``, ``ase`` or ``data``.
     output : path, optional
-        Folder (lammps, python; by default ``converted``) or file (ase, data).
+        Folder (lammps, python) or file (ase, data; in a folder that exists ``NAME.extxyz``, ``NAME.data``). By default in ``converted``, so
+        that no input is overwritten.
     switches : Switches, optional
     """
     session = read(source, switches)
     scene, base = session.scene, os.path.basename(os.fspath(source))
     name = base[3:] if base.startswith("in.") and len(base) > 3 else Path(base).stem
+    output = Path(output or "converted")
     if form == "lammps":
-        return to_lammps(scene, output or "converted", name, [*session.kept, *([session.action] if session.action else [])])
+        return to_lammps(scene, output, name, [*session.kept, *([session.action] if session.action else [])])
     if form == "python":
-        return to_python(session, output or "converted", name.replace(".", "_"))
+        return to_python(session, output, name.replace(".", "_"))
+    path = output / f"{name}.{'extxyz' if form == 'ase' else 'data'}" if output.is_dir() or output == Path("converted") else output
     if form == "ase":
-        return to_ase(scene, output or f"{name}.extxyz")
-    path = Path(output or f"data.{name}")
+        return to_ase(scene, path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as e:
+        raise InputError(f"cannot write {path}: {e.strerror or e}") from None
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", InputWarning)
-        write_data(path, scene.system, scene.interactions)
+        unlike = any(line[0] != line[1] for line in scene.interactions.coeff_lines("pair"))
+        write_data(path, scene.system, scene.interactions, pair="ij" if unlike else "ii")
     for warning in caught:
         warnings.warn(str(warning.message), InputWarning, stacklevel=2)
     return path

@@ -145,14 +145,17 @@ def _list(e: Engine) -> list[Item]:
     density = s.n / max(s.box.volume, 1e-300)
     reach = 4.0 / 3.0 * math.pi * e.reach**3
     around = 0.5 * density * (reach if s.dimension == 3 else math.pi * e.reach**2 * s.box.lengths[2])
-    check = (f"when an atom has moved half the skin, looked at every {settings.every} steps from step {settings.delay} of the list on"
+    often = f"every {settings.every} steps" if settings.every > 1 else "every step"
+    late = f", from step {settings.delay} of a list on" if settings.delay > 1 else ""
+    check = (f"when an atom has moved half the skin, looked at {often}{late}"
              if settings.check else f"every {max(settings.every, settings.delay)} steps, whether atoms have moved or not")
     out = [Item("list", how, e.why),
            Item("reach", f"{e.reach:g} = cutoff {e.cutoff:g} + skin {settings.skin:g}", "the longest cutoff in use"),
            Item("pairs", f"about {around * s.n:.3g}, {around:.3g} per atom", "estimated from the density"),
            Item("rebuild", check, "neigh_modify")]
     if settings.exclude:
-        out.append(Item("exclusions", ", ".join(str(x[0]) for x in settings.exclude), "neigh_modify exclude"))
+        what = [" ".join(map(str, x)) if x[0] == "type" else x[0] for x in settings.exclude]
+        out.append(Item("exclusions", ", ".join(what), "neigh_modify exclude"))
     if e.expanded:
         table = any(p.arrays for t in e.pair_terms for p in t.style.parts)
         out.append(Item("expansion", "after each build", "a table style needs its pairs one by one" if table else "exclusions by group"))

@@ -1,0 +1,4 @@
+"""``python -m asemd``: the command line."""
+from asemd.cli import entry
+
+entry()
