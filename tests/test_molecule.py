@@ -1,6 +1,8 @@
 """Molecule templates and create_atoms with molecules, subsets and variables, against LAMMPS."""
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
@@ -100,6 +102,19 @@ Bonds
 
 1 bb 1 2
 """
+WATER_JSON = {
+    "application": "LAMMPS", "format": "molecule", "revision": 1, "title": "water", "units": "real", "masstotal": 18.0,
+    "coords": {"format": ["atom-id", "x", "y", "z"], "data": [[1, 0.0, -0.06556, 0], [3, -0.75695, 0.52032, 0], [2, 0.75695, 0.52032, 0]]},
+    "types": {"format": ["atom-id", "type"], "data": [[1, "C"], [3, 2], [2, "B"]]},
+    "charges": {"format": ["atom-id", "charge"], "data": [[1, -0.834], [2, 0.417], [3, 0.417]]},
+    "fragments": {"format": ["fragment-id", "atom-id-list"], "data": [["OH", [1, 2]], ["O", 1]]},
+    "bonds": {"format": ["bond-type", "atom1", "atom2"], "data": [["aa", 1, 2], [1, 1, 3]]},
+    "angles": {"format": ["angle-type", "atom1", "atom2", "atom3"], "data": [[1, 2, 1, 3]]},
+    "special": {"counts": {"format": ["atom-id", "n12", "n13", "n14"], "data": [[1, 2, 0, 0], [2, 1, 1, 0], [3, 1, 1, 0]]},
+                "bonds": {"format": ["atom-id", "atom-id-list"], "data": [[1, [2, 3]], [2, [1, 3]], [3, [1, 2]]]}},
+    "shake": {"flags": {"format": ["atom-id", "flag"], "data": [[1, 1], [2, 1], [3, 1]]},
+              "atoms": {"format": ["atom-id", "atom-id-list"], "data": [[1, [1, 2, 3]], [2, [1, 2, 3]], [3, [1, 2, 3]]]},
+              "types": {"format": ["atom-id", "type-list"], "data": [[1, [1, "aa", 1]], [2, [1, 1, 1]], [3, [1, 1, 1]]]}}}
 BOX = """
 units real
 atom_style full
@@ -113,6 +128,7 @@ molecule big {water} scale 1.5 boff 1
 molecule p {pair}
 """
 TRICLINIC = BOX.replace("block 0 10 0 10 0 10", "prism 0 10 0 11 0 12 3 -2 4")
+JSON = BOX + "molecule j {json}\nmolecule jj {json} toff 1 boff 1 scale 2\n"
 FLAT = "dimension 2\n" + BOX.replace("block 0 10 0 10 0 10", "block 0 10 0 10 -1 1")
 LATTICE = "units lj\nlattice fcc 0.8\nregion b block 0 5 0 4 0 3\ncreate_box 2 b\n"
 RIPPLE = "variable r equal 'v_xx*v_xx+v_yy > 12'\ncreate_atoms 1 {} var r set x xx set y yy"
@@ -136,14 +152,16 @@ CASES = {
     "random molecules triclinic": TRICLINIC + "create_atoms 0 random 20 991 NULL mol m 77",
     "lattice of molecules": BOX + "lattice sc 3.4\ncreate_atoms 0 box mol m 123\nregion r sphere 1 1 1 1\ncreate_atoms 0 region r mol p 4",
     "subset of molecules": BOX + "lattice sc 3.4\ncreate_atoms 0 box mol m 123 subset 5 99",
+    "molecules in JSON": JSON.replace("toff 1", "") + "create_atoms 0 single 1 1 1 mol j 55\ncreate_atoms 0 single 6 6 6 mol jj 7\n"
+    "create_atoms 0 random 5 991 NULL mol j 77",
     "flat molecules": FLAT + "create_atoms 0 random 4 991 NULL mol p 77",
 }
 
 
 def fill(text: str, folder) -> str:
-    for name, content in (("water", WATER), ("pair", PAIR)):
-        (folder / f"{name}.txt").write_text(content)
-        text = text.replace("{" + name + "}", str(folder / f"{name}.txt"))
+    for name, file, content in (("water", "water.txt", WATER), ("pair", "pair.txt", PAIR), ("json", "water.json", json.dumps(WATER_JSON))):
+        (folder / file).write_text(content)
+        text = text.replace("{" + name + "}", str(folder / file))
     return text.replace("molecule m ", "#").replace("molecule two", "#").replace("molecule big", "#") if "dimension 2" in text else text
 
 
@@ -190,6 +208,60 @@ def test_bad_files(tmp_path, old, new, message):
     session = asemd(fill(BOX, tmp_path))
     with pytest.raises(InputError, match=message):
         session.execute(f"molecule bad {tmp_path / 'bad.txt'}")
+
+
+def test_all_of_a_json_file(tmp_path):
+    session = asemd(fill(BOX + "molecule j {json}", tmp_path))
+    molecule = session.scene.molecules["j"][0]
+    assert molecule.type.tolist() == [3, 2, 2] and molecule.q.tolist() == [-0.834, 0.417, 0.417] and molecule.mass == 18.0
+    assert molecule.topology.angles.tolist() == [[1, 0, 2]] and molecule.fragments["OH"].tolist() == [True, True, False]
+    assert molecule.shake["types"] == [[1, 1, 1]] * 3 and "water\n  1 molecules\n  2 fragments" in "".join(session.told)
+
+
+def spoiled(**sections):
+    data = {**WATER_JSON, **sections}
+    return json.dumps({k: v for k, v in data.items() if v is not None}, indent=1)
+
+
+def table(name, rows, columns=None):
+    return {name: {"format": columns or WATER_JSON[name]["format"], "data": rows}}
+
+
+@pytest.mark.parametrize("text, message", [
+    ("# water\n\n3 atoms\n", "not valid JSON"), ("[1, 2]", "must be an object"), ("[" * 10**5, "not valid|nested"),
+    ('{"a":\n NaN}', "NaN"),
+    (spoiled(application=None), 'needs "application": "LAMMPS", got null'), (spoiled(revision=2), '"revision": 1, got 2'),
+    (spoiled(format="molekule"), '"format": "molecule"'), (spoiled(units="lj"), "file has units lj, the scene real"),
+    (spoiled(types=None), '"types" is missing'), (spoiled(bond=1), 'unknown section "bond"'),
+    (spoiled(body={}), "bodies"), (spoiled(com=[0, 0]), "needs 3 numbers"), (spoiled(coords=1), 'lists "format" and "data"'),
+    (spoiled(**table("coords", [[1, 0, 0, 0], [2, 0, 0, 0]])), '"coords" has 2 entries for 3 atoms'),
+    (spoiled(**table("coords", [[1, 0, 0, 0], [2, 0, 0, 0], [2, 0, 0, 0]])), "atom 2 twice"),
+    (spoiled(**table("coords", [[1, 0, 0, 0], [2, 0, 0, 0], [9, 0, 0, 0]])), "valid range"),
+    (spoiled(**table("coords", [[1, 0, 0, 0], [2, 0, 0, 0], ["3", 0, 0, 0]])), 'expected a number, got "3"'),
+    (spoiled(**table("coords", [[1, 0, 0], [2, 0, 0], [3, 0, 0]])), "list of 4 values"),
+    (spoiled(**table("coords", [[1, 0, 0, 0]], ["atom-id", "X", "y", "z"])), 'needs "format"'),
+    (spoiled(**table("types", [[1, "D"], [2, 2], [3, 2]])), "unknown atom type 'D'"),
+    (spoiled(**table("types", [[1, 9], [2, 2], [3, 2]])), "atom type 9"),
+    (spoiled(**table("bonds", [["1", 1, 2]])), "unknown bond type '1'"),
+    (spoiled(**table("bonds", [])), "has no data"), (spoiled(**table("bonds", [[1, 1, 1], [1, 1, 3]])), "one atom twice"),
+    (spoiled(special={"counts": WATER_JSON["special"]["counts"]}), '"special" has no "bonds"'),
+    (spoiled(shake=5), '"shake" has no "flags"'),
+])
+def test_bad_json_files(tmp_path, text, message):
+    (tmp_path / "bad.json").write_text(text)
+    session = asemd(fill(BOX, tmp_path))
+    with pytest.raises(InputError, match=message) as caught:
+        session.execute(f"molecule bad {tmp_path / 'bad.json'}")
+    assert "bad.json" in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_place_in_a_json_file(tmp_path):
+    (tmp_path / "bad.json").write_text(spoiled(charges={"format": ["atom-id", "charge"], "data": [[1, 0], [2, "x"], [3, 0]]}))
+    session = asemd(fill(BOX, tmp_path))
+    with pytest.raises(InputError) as caught:
+        session.execute(f"molecule bad {tmp_path / 'bad.json'}")
+    line = (tmp_path / "bad.json").read_text().split("\n").index(' "charges": {') + 1
+    assert caught.value.where.line == line
 
 
 @pytest.mark.parametrize("line, message", [

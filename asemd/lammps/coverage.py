@@ -17,7 +17,7 @@ CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 PARTIAL = {
     ("command", "atom_modify"): "id no is refused: atoms always have ids",
     ("command", "atom_style"): "the styles listed under atom",
-    ("command", "molecule"): "no files in JSON format, no bodies",
+    ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
     ("command", "kspace_style"): "only none",

@@ -1,4 +1,4 @@
-"""Molecule files: the native format of the command ``molecule``.
+"""Molecule files of the command ``molecule``: the native format; JSON is read by way of it.
 
 Source: the LAMMPS manual page of ``molecule``.
 """
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from asemd.errors import InputError, Where, nearest
+from asemd.lammps.molecule_json import Native
 from asemd.molecule import Molecule
 from asemd.system import LABELLED
 from asemd.topology import ATOMS, Topology
@@ -49,20 +50,23 @@ def read(path: str, system, offsets: Offsets) -> Molecule:
     """
     try:
         with open(path, encoding="utf-8-sig", errors="replace") as f:
-            lines = f.read().split("\n")
+            text = f.read()
     except OSError as e:
         raise InputError(f"molecule: cannot open molecule file {path}: {e.strerror}") from None
     if os.fspath(path).endswith(".json"):
-        raise InputError(f"molecule: {path}: files in JSON format are not supported, write the molecule in the native format")
-    return Reader(path, lines, system, offsets).molecule
+        native = Native(path, text, system)
+        return Reader(path, native.lines, system, offsets, native.words, native.numbers).molecule
+    return Reader(path, text.split("\n"), system, offsets).molecule
 
 
 class Reader:
     """Reads the lines of one file into `molecule`."""
 
-    def __init__(self, path: str, lines: list[str], system, offsets: Offsets):
+    def __init__(self, path: str, lines: list[str], system, offsets: Offsets, words: list[list[str]] | None = None,
+                 numbers: list[int] | None = None):
         self.path, self.lines, self.system, self.offsets = path, lines, system, offsets
-        self.words = [line.split("#", 1)[0].split() for line in lines]
+        self.words = words or [line.split("#", 1)[0].split() for line in lines]
+        self.numbers = numbers or range(1, len(lines) + 1)      # of the lines in the file
         self.header: dict[str, list[float]] = {}
         self.at = 1
         self.molecule = Molecule(title=lines[0].strip())
@@ -89,8 +93,11 @@ class Reader:
 
     # ---- lines
     def _fail(self, message: str, line: int | None = None) -> InputError:
-        place = None if line is None else Where(self.path, line + 1, self.lines[line])
+        place = None if line is None else self._where(line)
         return InputError(f"molecule: {message}" + ("" if place else f" ({self.path})"), place)
+
+    def _where(self, line: int) -> Where:
+        return Where(self.path, self.numbers[line], self.lines[line])
 
     def _next(self) -> int | None:
         """The next line that has words."""
@@ -107,13 +114,13 @@ class Reader:
         try:
             return number(word, "molecule")
         except InputError as e:
-            raise e.at(Where(self.path, line + 1, self.lines[line])) from None
+            raise e.at(self._where(line)) from None
 
     def _whole(self, word: str, line: int, low: int, high: int, name: str) -> int:
         try:
             value = whole(word, f"molecule: {name}")
         except InputError as e:
-            raise e.at(Where(self.path, line + 1, self.lines[line])) from None
+            raise e.at(self._where(line)) from None
         if not low <= value <= high:
             raise self._fail(f"{name} {value} is outside the valid range {low} to {high}", line)
         return value
