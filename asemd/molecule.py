@@ -94,8 +94,8 @@ class Molecule:
             if need > have:
                 raise InputError(f"{what}: the molecule needs {kind} type {need}, the system has {have}")
 
-    def copies(self, x: np.ndarray, system: System, offset: int) -> System:
-        """Atoms of copies at positions `x` (m, n, 3), like those of `system`; types are raised by `offset`.
+    def copies(self, x: np.ndarray, system: System, offset: int, matrices: list[np.ndarray]) -> System:
+        """Atoms of copies at positions `x` (m, n, 3), like those of `system`; types are raised by `offset`, dipoles turned by `matrices`.
 
         Ids count from 1; molecule numbers too where `system` has molecules.
         """
@@ -109,7 +109,7 @@ class Molecule:
                 own["extra"]["radius"] = np.tile(self.radius, m)
             own["rmass"] = volume(own["extra"]["radius"]) if self.rmass is None else np.tile(self.rmass, m)
         if "mu" in own["extra"] and self.mu is not None:
-            own["extra"]["mu"] = np.tile(self.mu, (m, 1))
+            own["extra"]["mu"] = np.concatenate([turned(matrix, self.mu) for matrix in matrices] or [np.zeros((0, 3))])
         number = np.ones(n, int) if self.molecule is None else self.molecule
         molecule = (np.arange(m)[:, None] * self.nmolecules + number).ravel() if system.molecular else None
         x = x.reshape(-1, 3).copy()

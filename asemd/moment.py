@@ -22,6 +22,7 @@ class Progress:
     previous: dict[str, tuple[float, int]] = field(default_factory=dict)      # time and step tpcpu and spcpu were asked for last
     builds: int = 0             # neighbour list counters when the run began
     dangerous: int = 0
+    remaining: Callable[[], float] = float      # seconds to the limit of wall time; 0 without one
 
     def cpu(self) -> float:
         return time.perf_counter() - self.started

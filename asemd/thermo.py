@@ -118,7 +118,7 @@ KEYWORDS: dict[str, Keyword] = {
     "tpcpu": Keyword("T/CPU", lambda m: _rate(m, "tpcpu", m.scene.dt)),
     "spcpu": Keyword("S/CPU", lambda m: _rate(m, "spcpu", 1.0)),
     "cpuremain": Keyword("CPULeft", _remaining),
-    "timeremain": Keyword("TimeoutLeft", lambda m: 0.0),
+    "timeremain": Keyword("TimeoutLeft", lambda m: m.progress.remaining()),
     "part": _integer("Part", lambda m: 0),
     "atoms": _integer("Atoms", lambda m: m.system.n),
     "temp": Keyword("Temp", Moment.temperature),

@@ -218,6 +218,19 @@ def test_all_of_a_json_file(tmp_path):
     assert molecule.shake["types"] == [[1, 1, 1]] * 3 and "water\n  1 molecules\n  2 fragments" in "".join(session.told)
 
 
+def test_template_from_json_text():
+    from asemd.lammps import Lammps
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(BOX.split("molecule")[0])
+    lmp.create_molecule("w", json.dumps(WATER_JSON))
+    lmp.command("create_atoms 0 single 5 5 5 mol w 1")
+    assert lmp.get_natoms() == 3 and lmp.numpy.extract_atom("type").tolist() == [3, 2, 2]
+    with pytest.raises(InputError, match="in use"):
+        lmp.create_molecule("w", json.dumps(WATER_JSON))
+    with pytest.raises(InputError, match="the JSON text:1"):
+        lmp.create_molecule("v", "{}")
+
+
 def spoiled(**sections):
     data = {**WATER_JSON, **sections}
     return json.dumps({k: v for k, v in data.items() if v is not None}, indent=1)
@@ -279,6 +292,16 @@ def test_mistakes(tmp_path, line, message):
     with pytest.raises(InputError, match=message):
         session.execute(fill(line, tmp_path))
     assert session.scene.system.n == 0
+
+
+def test_dipoles_turn_with_the_molecule(tmp_path):
+    (tmp_path / "rod.txt").write_text("rod\n2 atoms\n\nCoords\n\n1 0 0 0\n2 2 0 0\n\nTypes\n\n1 1\n2 1\n\nDipoles\n\n1 1 0 0\n2 0 0 3\n")
+    box = "atom_style dipole\nregion b block 0 10 0 10 0 10\ncreate_box 1 b\nmolecule rod {rod}\ncreate_atoms 0 {where} mol rod 5"
+    system = asemd(box.format(rod=tmp_path / "rod.txt", where="random 9 7 NULL overlap 2")).scene.system
+    along = np.diff(system.x.reshape(-1, 2, 3), axis=1)[:, 0]
+    along, _ = system.box.minimum_image(along)
+    mu = system.extra["mu"].reshape(-1, 2, 3)
+    assert np.allclose(mu[:, 0], along / 2, atol=1e-12) and np.allclose(np.linalg.norm(mu[:, 1], axis=1), 3)
 
 
 def test_molecules_without_positions(tmp_path):

@@ -8,6 +8,8 @@ import numpy as np
 
 from asemd.atom_style import fresh
 from asemd.errors import InputError
+from asemd.lammps.command.molecule import check_id, define
+from asemd.lammps.molecule_file import Offsets, from_json
 
 
 class AtomArrays:
@@ -148,8 +150,16 @@ class AtomArrays:
         return len(keep)
 
     def create_molecule(self, molid: str, jsonstr: str) -> None:
-        """Refused: use the command ``molecule`` with a file."""
-        raise InputError(f"create_molecule {molid}: templates in JSON are not supported, use the command molecule with a file")
+        """A molecule template from JSON text, as the command ``molecule`` reads it from a file.
+
+        Raises
+        ------
+        InputError
+            The ID is in use, or there is a mistake in the text.
+        """
+        system = self.scene.need_system("create_molecule")
+        check_id(self.session, molid)
+        define(self.session, molid, [from_json("the JSON text", jsonstr, system, Offsets())])
 
     def _columns(self, name: str, count: int) -> np.ndarray:
         values = self._field(name)

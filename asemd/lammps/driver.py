@@ -140,6 +140,8 @@ class Driver:
         if session.dry:
             session.drive(self)
             return
+        if session.timer.expired:
+            return
         begin = scene.step
         loop = session.loop
         if plan.pre or loop is None:
@@ -163,7 +165,8 @@ class Driver:
             loop.sync_in()      # commands between the runs may have changed velocities
         loop.begin, loop.end, loop.dt = plan.first, plan.last, scene.dt
         engine = loop.engine
-        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=engine.builds, dangerous=engine.dangerous)
+        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=engine.builds, dangerous=engine.dangerous,
+                                 remaining=session.timer.remaining)
         before = dict(engine.timings)
         session.running = True
         try:
@@ -195,14 +198,20 @@ class Driver:
     # ----------------------------------------------------------------- steps ---
 
     def _advance(self, begin: int, end: int) -> None:
-        session, loop = self.session, self.session.loop
+        session, loop, timer = self.session, self.session.loop, self.session.timer
         rate, step = 0.0, begin
         stopping = False
         while step < end and not stopping:
             target = min(end, self._next_output(step))
             while step < target and not session.interrupted:
+                if timer.check(step - begin):
+                    session.warn("Wall time limit reached")
+                    checkpoint.renew(loop)
+                    self._provide(step, step, fresh=True)
+                    return
                 left = target - step
                 chunk = left if not session.watched else max(1, min(left, int(rate * CHUNK) if rate else 20))
+                chunk = min(chunk, timer.pause(step - begin))
                 try:
                     if chunk == left:
                         needs = self._needs(target, end)
@@ -319,16 +328,19 @@ class Driver:
     def _summary(self, seconds: float, steps: int, timings: dict[str, float]) -> None:
         scene, write = self.scene, self.session.log.write
         n, engine = scene.system.n, self.session.loop.engine
-        write(log.loop_line(seconds, steps, n) + "\n")
+        timer = self.session.timer
+        if timer.style != "off":
+            write(log.loop_line(seconds, steps, n) + "\n")
         if not self.plan.post:
             return
-        u = units.get(scene.units)
-        write(log.performance(seconds, steps, n, scene.dt, scene.units, u.femtosecond))
-        write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n\n")
+        if timer.style != "off":
+            write(log.performance(seconds, steps, n, scene.dt, scene.units, units.get(scene.units).femtosecond))
+            write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n")
+        write("\n")
         timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0
                         or (s == "Bond" and scene.system.molecular))
-        write(log.timing_table(seconds, timings, present) + "\n")
+        write(log.timing_table(seconds, timings, present, timer))
         write(log.counts(n, 0, int(engine.pairs), engine.builds - self.progress.builds,
                          engine.dangerous - self.progress.dangerous if scene.neighbor.check else None))
 

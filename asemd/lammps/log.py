@@ -9,6 +9,7 @@ from typing import TextIO
 
 from asemd import __version__
 from asemd.errors import InputError, InputWarning
+from asemd.lammps.timer import Timer
 
 LANGUAGE = "22 Jul 2025"        # the version of LAMMPS whose scripts are read
 ECHO = ("none", "screen", "log", "both")
@@ -135,19 +136,26 @@ def performance(seconds: float, steps: int, atoms: int, dt: float, units: str, f
     return f"Performance: {speed}, {rate:.3f} timesteps/s, {atom_rate:.3f} {prefix}atom-step/s\n"
 
 
-def timing_table(total: float, timings: dict[str, float], present: tuple[str, ...]) -> str:
-    """``MPI task timing breakdown``; `timings` in seconds by section, `present` those to show."""
-    lines = ["MPI task timing breakdown:", "Section |  min time  |  avg time  |  max time  |%varavg| %total", "-" * 63]
+def timing_table(total: float, timings: dict[str, float], present: tuple[str, ...], timer: Timer) -> str:
+    """``MPI task timing breakdown`` and an empty line; `timings` in seconds by section, `present` those to show."""
+    if timer.style in ("off", "loop"):
+        return ""
+    full = timer.style == "full"
+    lines = ["MPI task timing breakdown:", f"Section |  min time  |  avg time  |  max time  |%varavg|{'  %CPU |' if full else ''} %total",
+             "-" * (71 if full else 63)]
+    cpu, none = (" 100.0 |", f"{'':7}|") if full else ("", "")
+    if timer.mode == "sync":
+        present = *present, "Sync"
     spent = 0.0
-    for name in SECTIONS:
+    for name in (*SECTIONS, "Sync"):
         if name in present:
             t = timings.get(name, 0.0)
             spent += t
             cell = f"{t:<10.5g}"
-            lines.append(f"{name:<8}| {cell} | {cell} | {cell} |{0.0:6.1f} |{_percent(t, total):6.2f}")
+            lines.append(f"{name:<8}| {cell} | {cell} | {cell} |{0.0:6.1f} |{cpu}{_percent(t, total):6.2f}")
     rest = max(total - spent, 0.0)
-    lines.append(f"{'Other':<8}| {'':10} | {rest:<10.4g} | {'':10} |{'':6} |{_percent(rest, total):6.2f}")
-    return "\n".join(lines) + "\n"
+    lines.append(f"{'Other':<8}| {'':10} | {rest:<10.4g} | {'':10} |{'':6} |{none}{_percent(rest, total):6.2f}")
+    return "\n".join(lines) + "\n\n"
 
 
 def _percent(part: float, total: float) -> float:

@@ -54,9 +54,14 @@ def read(path: str, system, offsets: Offsets) -> Molecule:
     except OSError as e:
         raise InputError(f"molecule: cannot open molecule file {path}: {e.strerror}") from None
     if os.fspath(path).endswith(".json"):
-        native = Native(path, text, system)
-        return Reader(path, native.lines, system, offsets, native.words, native.numbers).molecule
+        return from_json(path, text, system, offsets)
     return Reader(path, text.split("\n"), system, offsets).molecule
+
+
+def from_json(path: str, text: str, system, offsets: Offsets) -> Molecule:
+    """The molecule of a JSON text; `path` names it in messages."""
+    native = Native(path, text, system)
+    return Reader(path, native.lines, system, offsets, native.words, native.numbers).molecule
 
 
 class Reader:
@@ -300,4 +305,4 @@ class Reader:
                              "follow from the bonds")
 
 
-__all__ = ["Offsets", "read"]
+__all__ = ["Offsets", "from_json", "read"]

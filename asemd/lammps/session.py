@@ -16,6 +16,7 @@ from asemd.lammps.providers import Providers
 from asemd.lammps.python_functions import PythonFunctions
 from asemd.lammps.script import Command
 from asemd.lammps.switches import Switches
+from asemd.lammps.timer import Timer
 from asemd.moment import Moment, Progress
 from asemd.scene import Scene
 from asemd.variable import Variables
@@ -80,6 +81,7 @@ class Session:
         self.last_thermo_step = -1
         self.running = False
         self.interrupted = False
+        self.timer = Timer()
         self.observer: Any = None          # told about progress by the driver: .start(steps), .update(done), .stop()
         self.label: str | None = None      # text is skipped up to this label
         self.exhausted = False             # `next` ran out: the next `jump` is skipped

@@ -11,7 +11,7 @@ A minimiser is a class with one static method::
     result = find("cg").minimize(problem, 0.0, 1e-6, 1000, 10000, Options(), None)
 
 `callback(iteration, x, v, energy, forces)` is called after every iteration that did not end the minimisation (output of that step).
-When it returns True the minimiser stops with the criterion "interrupted".
+When it returns True the minimiser stops with the criterion "interrupted", when it returns text with that criterion.
 """
 from __future__ import annotations
 
@@ -36,6 +36,7 @@ ZEROFORCE = "forces are zero"
 ZEROQUAD = "quadratic factors are zero"
 MAXVDOTF = "max iterations with v.f negative"
 SMALLREGION = "trust region too small"
+WALLTIME = "walltime limit reached"
 INTERRUPTED = "interrupted"
 
 
@@ -175,7 +176,7 @@ class Result(NamedTuple):
     @property
     def converged(self) -> bool:
         """True unless a limit on the number of iterations or evaluations, or an interruption, ended it."""
-        return self.criterion not in (MAXITER, MAXEVAL, MAXVDOTF, INTERRUPTED)
+        return self.criterion not in (MAXITER, MAXEVAL, MAXVDOTF, WALLTIME, INTERRUPTED)
 
     def text(self) -> str:
         """LAMMPS's block, for the log."""

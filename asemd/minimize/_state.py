@@ -83,7 +83,7 @@ class State:
     def report(self) -> str:
         """Tell the callback that an iteration is over; what stops the minimisation if it asks for that."""
         asked = self.callback is not None and self.callback(self.iterations, self.x, self.v, self.energy * self.problem.norm, self.f)
-        return INTERRUPTED if asked else ""
+        return asked if isinstance(asked, str) else INTERRUPTED if asked else ""
 
     def result(self, criterion: str) -> Result:
         norm, largest = self._norms()

@@ -41,6 +41,7 @@ class _Options:
     template: Molecule | None = None
     turns: Marsaglia | None = None      # draws the rotations of molecules
     rotate: np.ndarray | None = None
+    matrices: list[np.ndarray] = field(default_factory=list)       # the rotation of each molecule
     overlap: float | None = None
     meshmode: tuple[str, float] | None = None       # bisect and the largest radius, or qrand and the density
     radscale: float = 1.0
@@ -78,7 +79,7 @@ def run(session, args):
     if options.template is not None:
         if x.ndim == 2:
             x = np.array([_molecule(point, options, system.dimension) for point in x]).reshape(-1, options.template.natoms, 3)
-        new = options.template.copies(x, system, kind)
+        new = options.template.copies(x, system, kind, options.matrices)
     else:
         new = System(box=system.box, x=x, type=types, units=system.units, dimension=system.dimension, counts=dict(system.counts),
                      **fresh(system.atom_style, len(x)))
@@ -203,6 +204,7 @@ def _rotation(values: list[str], dimension: int, what: str) -> np.ndarray:
 def _molecule(centre: np.ndarray, options: _Options, dimension: int) -> np.ndarray:
     """Positions of a molecule about a centre, turned as asked or at random."""
     matrix = random_rotation(options.turns, dimension) if options.rotate is None else options.rotate
+    options.matrices.append(matrix)
     return turned(matrix, options.template.centred) + centre
 
 
@@ -312,6 +314,8 @@ def _random(session, values, system, region, lattice, options: _Options, kind: i
                 if crowd is None or crowd.takes(point):
                     found.append(point)
                     tries = options.maxtry
+                elif options.template is not None:
+                    options.matrices.pop()
             if tries == options.maxtry:      # on to the next atom, whether this one was placed or not
                 atoms, tries = atoms + 1, 0
     if len(found) < n:

@@ -8,7 +8,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.lammps import log, restart
 from asemd.lammps.driver import Driver, Plan, check, memory
-from asemd.minimize import Problem, find
+from asemd.minimize import WALLTIME, Problem, find
 from asemd.moment import Progress
 from asemd.words import number, whole
 
@@ -61,6 +61,8 @@ class Minimization(Driver):
         if session.dry:
             session.drive(self)
             return
+        if session.timer.expired:
+            return
         check(session)
         restart.check_folders(session)
         restart.first_run(session)
@@ -73,7 +75,8 @@ class Minimization(Driver):
         if scene.min_style == "fire":
             session.log.write(find("fire").parameters(scene.min_modify) + "\n")
         session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
-        self.progress = Progress(begin, begin, begin + self.plan.steps, builds=loop.engine.builds, dangerous=loop.engine.dangerous)
+        self.progress = Progress(begin, begin, begin + self.plan.steps, builds=loop.engine.builds, dangerous=loop.engine.dangerous,
+                                 remaining=session.timer.remaining)
         session.running = True
         try:
             result = self._minimize(loop, begin)
@@ -108,7 +111,7 @@ class Minimization(Driver):
         problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0,
                           shown)
 
-        def look(iteration: int, x, v, energy, forces) -> bool:
+        def look(iteration: int, x, v, energy, forces) -> bool | str:
             loop.step = scene.step = begin + iteration
             if scene.min_style in DAMPED:
                 system.v[:] = v
@@ -120,6 +123,9 @@ class Minimization(Driver):
                 self.output_seconds += time.perf_counter() - began
             if restart.due(session, scene.step) or (session.interrupted and scene.restarts):
                 restart.write_due(session, scene.step, all_of_them=session.interrupted)
+            if session.timer.check(iteration):
+                session.warn("Wall time limit reached")
+                return WALLTIME
             return session.interrupted
 
         result = find(scene.min_style).minimize(problem, *self.arguments, scene.min_modify, look)
@@ -136,12 +142,14 @@ class Minimization(Driver):
         return result
 
     def _report(self, loop, result, seconds: float) -> None:
-        scene, engine, write = self.scene, loop.engine, self.session.log.write
-        write(log.loop_line(seconds, result.iterations, scene.system.n) + "\n")
-        write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n\n{result.text()}\n\n")
+        session, scene, engine, write = self.session, self.scene, loop.engine, self.session.log.write
+        if session.timer.style != "off":
+            write(log.loop_line(seconds, result.iterations, scene.system.n) + "\n")
+            write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n")
+        write(f"\n{result.text()}\n\n")
         timings = dict(engine.timings)
         timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0)
-        write(log.timing_table(seconds, timings, present) + "\n")
+        write(log.timing_table(seconds, timings, present, session.timer))
         write(log.counts(scene.system.n, 0, int(engine.pairs), engine.builds, engine.dangerous if scene.neighbor.check else None))
         self.session.log.flush()

@@ -2,9 +2,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from asemd.errors import InputError
 from asemd.lammps.molecule_file import Offsets, read
+from asemd.molecule import Molecule
 from asemd.system import LABELLED
 from asemd.words import number, take, whole
 
@@ -12,12 +14,9 @@ ONE = dict(zip(("toff", "boff", "aoff", "doff", "ioff"), LABELLED))
 
 
 def run(session, args):
-    scene, system = session.scene, session.scene.need_system("molecule")
+    system = session.scene.need_system("molecule")
     name, path = take(args, 2, "molecule")[:2]
-    if not re.fullmatch(r"\w+", name):
-        raise InputError(f"molecule: ID {name!r} must have only letters, numbers and underscores")
-    if name in scene.molecules:
-        raise InputError(f"molecule: ID {name} is in use already")
+    check_id(session, name)
     files, words = [(path, Offsets())], list(args[2:])
     while words:
         key = words.pop(0)
@@ -38,11 +37,24 @@ def run(session, args):
             files.append((key, Offsets()))
     if any(any(offsets.of.values()) for _, offsets in files) and any(system.labels.values()):
         session.warn("molecule: offsets are added to numbers of types only, not to type labels")
+    define(session, name, (read(path, system, offsets) for path, offsets in files))
+
+
+def check_id(session, name: str) -> None:
+    """Raise `InputError` unless a new template can have that ID."""
+    if not re.fullmatch(r"\w+", name):
+        raise InputError(f"molecule: ID {name!r} must have only letters, numbers and underscores")
+    if name in session.scene.molecules:
+        raise InputError(f"molecule: ID {name} is in use already")
+
+
+def define(session, name: str, molecules: Iterable[Molecule]) -> None:
+    """Define a template; every molecule is reported as soon as it is read."""
     templates = []
-    for path, offsets in files:
-        templates.append(read(path, system, offsets))
-        _report(session, name, templates[-1])
-    scene.molecules[name] = templates
+    for molecule in molecules:
+        templates.append(molecule)
+        _report(session, name, molecule)
+    session.scene.molecules[name] = templates
 
 
 def _offset(word: str, what: str) -> int:

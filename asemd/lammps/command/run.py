@@ -45,6 +45,8 @@ def run(session, args):
     pre, post = options.get("pre", True), options.get("post", True)
     if not pre and scene.respa:
         raise InputError("run pre no does not go with run_style respa: leave it out")
+    if session.timer.expired and not session.dry:
+        return
     if not every:
         Driver(session, Plan(steps, first, last, pre, post)).run()
         return
@@ -61,5 +63,5 @@ def segments(session, steps: int, every: int, commands: list[str], first: int, l
         if commands != ["NULL"]:
             for command in commands:
                 session.execute(command)
-        if steps == 0:
+        if steps == 0 or session.timer.expired:
             break
