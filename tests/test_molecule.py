@@ -284,8 +284,8 @@ def test_place_in_a_json_file(tmp_path):
     ("create_atoms 0 single 1 1 1 mol q 5", "no molecule q"), ("create_atoms 0 single 1 1 1 mol m 0", "seed"),
     ("create_atoms 2 single 1 1 1 mol m 5", "needs atom type 4"), ("create_atoms 0 single 1 1 1 mol m 5 rotate 1 0 0 0", "axis"),
     ("create_atoms 1 random 5 9 NULL overlap -1", "negative"), ("create_atoms 1 box ratio 1.5 3", "0 to 1"),
-    ("create_atoms 1 single 1 1 1 var v", "undefined variable"), ("create_atoms 1 single 1 1 1 set x xx", "together"),
-    ("create_atoms 1 mesh file.stl", "not supported"), ("create_atoms 1 random 5 9 NULL maxtry 0", "positive"),
+    ("create_atoms 1 random 1 5 NULL var v", "undefined variable"), ("create_atoms 1 box set x xx", "together"),
+    ("create_atoms 1 mesh file.stl", "units box"), ("create_atoms 1 random 5 9 NULL maxtry 0", "positive"),
 ])
 def test_mistakes(tmp_path, line, message):
     session = asemd(fill(BOX + "lattice sc 2", tmp_path))

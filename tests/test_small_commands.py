@@ -43,3 +43,17 @@ def test_wrong_processors(words, message):
 def test_mistakes(line, message):
     with pytest.raises(InputError, match=message):
         asemd(BOX).execute(line)
+
+
+def test_plugin():
+    told = asemd("plugin list\nplugin clear\nplugin restore\nplugin unload pair morse2").told
+    assert "".join(told).endswith("Currently loaded plugins: 0\nIgnoring unload of pair style morse2: not from a plugin\n")
+
+
+@pytest.mark.parametrize("words, message", [
+    ("load morse2.so", "plugin load morse2.so: plugins are compiled for LAMMPS.*--import"), ("load", "plugin load"), ("", "plugin needs"),
+    ("unload pair", "2 values"), ("lst", "did you mean list"), ("list all", "1 value"),
+])
+def test_wrong_plugin(words, message):
+    with pytest.raises(InputError, match=message):
+        asemd(f"plugin {words}")

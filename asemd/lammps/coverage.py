@@ -28,7 +28,6 @@ PARTIAL = {
     ("command", "run_style"): "verlet; respa",
     ("command", "set"): "keywords of the atom styles listed under atom",
     ("command", "special_bonds"): "no one/five",
-    ("command", "timer"): "no timeout",
     ("command", "velocity"): "no bias, no rigid",
     ("atom", "dipole"): "no fix turns the dipoles",
     ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
