@@ -615,3 +615,18 @@ line("respa with cutoffs in the wrong order", "run_style respa 2 2 inner 1 5 4 o
 line("respa with hybrid levels for one style", "run_style respa 2 2 hybrid 1 2", "pair_style hybrid")
 line("respa in the wrong order", "run_style respa 2 2 bond 2 angle 1", "angle")
 line("partition that is not there", "partition yes 2 run 5", "1 to 1")
+
+# ---- files: labels, meshes, pictures
+line("label of two words", "labelmap atom 1 'C 1'", "one word")
+line("labelmap clear of something", "labelmap clear atom", "labelmap clear")
+line("labelmap write without file", "labelmap write", "labelmap write")
+line("group of an unknown label", "labelmap atom 1 C\ngroup g type Q", "Q;label")
+line("mesh without file", "create_atoms 1 mesh nowhere.stl units box", "nowhere.stl")
+line("mesh in lattice units", "create_atoms 1 mesh nowhere.stl", "units box")
+line("mesh mode", "create_atoms 1 mesh nowhere.stl units box meshmode even 1", "even;bisect")
+line("overlap on a lattice", "lattice sc 1\ncreate_atoms 1 box overlap 1", "random")
+line("variable for a single atom", "variable v equal 1\ncreate_atoms 1 single 1 1 1 var v set x xx", "var")
+line("picture seen along nothing", "dump d all image 1 p.*.ppm type type up 0 0 0", "up")
+line("colour map upside down", "dump d all image 1 p.*.ppm x type\ndump_modify d amap 2 1 cf 0 2 min red max blue", "bound")
+line("whole numbers with digits", "thermo_modify format int %g", "whole number")
+line("write_data of unknown types", "write_data f types names", "names;labels")
