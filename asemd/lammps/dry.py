@@ -3,11 +3,13 @@ from __future__ import annotations
 
 import os
 import re
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
 from asemd.errors import AsemdError, InputError, NotYet, Where
 from asemd.lammps import script
 from asemd.lammps.driver import Driver, check
+from asemd.lammps.names import COMMANDS
 from asemd.lammps.script import Command
 from asemd.lammps.session import NESTING, Jump, Session, Stop
 from asemd.thermo import parse_reference
@@ -156,10 +158,13 @@ class DrySession(Session):
             words = command.words
         except InputError:
             return
-        self._failed.update(words[:1])
-        if words and words[0] in BOX:
+        if not words:
+            return
+        words[0] = next(iter(get_close_matches(words[0], COMMANDS, n=1)), words[0])     # what a misspelt command would have done
+        self._failed.add(words[0])
+        if words[0] in BOX:
             self._no_box = self._no_box or self.scene.system is None
-        if words and words[0] in NAMING and len(words) > 1:
+        if words[0] in NAMING and len(words) > 1:
             self._doubtful.add((words[0], words[1]))
 
 
