@@ -8,7 +8,8 @@ from itertools import islice
 
 from asemd import __version__
 from asemd.errors import InputError, nearest
-from asemd.lammps import catalog
+from asemd.lammps import catalog, driver
+from asemd.lammps.catalog import FORCE_FIELD
 from asemd.words import choice, take
 
 LINE = "Info-" * 16
@@ -26,14 +27,14 @@ def run(session, args):
             if target in ("append", "overwrite"):
                 path = take(words, 1, f"info out {target}")[0]
                 del words[0]
-        elif word == "styles":
+        elif _meant(word) == "styles":
             chosen = [w for w in words[:1] if w in (*STYLES, "all")]
             words = words[len(chosen):]
             sections.append(("styles", chosen[0] if chosen else "all"))
         elif word == "all":
             sections += [(name, "all") for name in SECTIONS]
-        elif word in SECTIONS:
-            sections.append((word, ""))
+        elif _meant(word):
+            sections.append((_meant(word), ""))
         else:
             raise InputError(f"info: unknown section {word!r}{nearest(word, SECTIONS)}, there are {' '.join(SECTIONS)} all out")
     lines = ["", LINE, time.strftime("Printed on %a %b %d %H:%M:%S %Y")]
@@ -41,13 +42,18 @@ def run(session, args):
         lines += ["", *SECTIONS[name](session, part)]
     text = "\n".join([*lines, "", LINE, ""])
     if path is None:
-        (session.log.to_file if target == "log" else session.log.write)(text + "\n")
+        (session.log.to_file if target == "log" else session.log.to_screen)(text + "\n")
     elif not session.passive:
         try:
             with open(path, "a" if target == "append" else "w", encoding="utf-8") as f:
                 f.write(text + "\n")
         except OSError as e:
             raise InputError(f"info: cannot write {path}: {e.strerror}") from None
+
+
+def _meant(word: str) -> str:
+    """The section whose first letters a word has: as many as LAMMPS looks at."""
+    return next((name for name in SECTIONS if word[:LETTERS.get(name, 3)] == name[:LETTERS.get(name, 3)]), "")
 
 
 def config(session, _):
@@ -106,6 +112,43 @@ def timing(session, _):
     return [f"Total time information (MPI rank 0): {session.log.total_time().strip().removeprefix('Total wall time: ')}"]
 
 
+def memory(session, _):
+    return ["Memory allocation information:", f"Maximum resident set size: {driver.memory():.4g} Mbyte"]
+
+
+def communication(session, _):
+    return ["Communication information:", "One process, no ghost atoms", f"Nprocs = 1,   Nthreads = {session.scene.threads}"]
+
+
+def accelerator(session, _):
+    return ["Accelerator configuration:", f"Kernels compiled by numba, precision: {session.scene.precision}"]
+
+
+def fft(session, _):
+    return ["FFT information:", "No style of asemd uses FFTs"]
+
+
+def coefficients(session, _):
+    lines, scene = ["Coeff status information:"], session.scene
+    if scene.system is None:
+        return [*lines, "Box has not yet been created"]
+    for kind in FORCE_FIELD:
+        uses = scene.interactions.uses[kind]
+        count = scene.system.counts["ntypes" if kind == "pair" else f"n{kind}types"]
+        if not uses or not count:
+            continue
+        given = {key for use in uses for key in use.coeff}
+        lines += ["", f"{kind.capitalize()} coeffs"]
+        for i in range(1, count + 1):
+            if kind != "pair":
+                lines.append(f"{i:6d}: {'is' if i in given else 'is not'} set")
+            else:
+                lines += [f"{i:6d} {j:6d}: {'is' if (i, j) in given or {(i, i), (j, j)} <= given else 'is not'} set" for j in range(i, count + 1)]
+    return lines
+
+
 SECTIONS = {"config": config, "system": system, "groups": named("Group", "groups"), "regions": named("Region", "regions"),
             "computes": named("Compute", "computes"), "dumps": named("Dump", "dumps"), "fixes": named("Fix", "fixes"),
-            "variables": variables, "styles": styles, "time": timing}
+            "variables": variables, "styles": styles, "time": timing, "memory": memory, "communication": communication,
+            "accelerator": accelerator, "fft": fft, "coeffs": coefficients}
+LETTERS = {"communication": 4, "computes": 4}      # others: 3
