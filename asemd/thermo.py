@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import re
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -63,6 +64,14 @@ def _cpu(m: Moment) -> float:
     return m.progress.cpu() if m.scene.step > m.progress.begin else 0.0
 
 
+def _usage(m: Moment) -> float:
+    """Processor time of this process since the run began, percent of the wall time."""
+    now = time.process_time()
+    before, _ = m.progress.previous.setdefault("cpuuse", (now, m.scene.step))
+    wall = m.progress.cpu()
+    return 100.0 * (now - before) / wall if m.scene.step > m.progress.begin and wall > 0.0 else 0.0
+
+
 def _density(m: Moment) -> float:
     from asemd import units
     return units.get(m.scene.units).mv2d * float(m.system.atom_masses().sum()) / m.volume()
@@ -118,6 +127,7 @@ KEYWORDS: dict[str, Keyword] = {
     "tpcpu": Keyword("T/CPU", lambda m: _rate(m, "tpcpu", m.scene.dt)),
     "spcpu": Keyword("S/CPU", lambda m: _rate(m, "spcpu", 1.0)),
     "cpuremain": Keyword("CPULeft", _remaining),
+    "cpuuse": Keyword("%CPU", _usage),
     "timeremain": Keyword("TimeoutLeft", lambda m: m.progress.remaining()),
     "part": _integer("Part", lambda m: 0),
     "atoms": _integer("Atoms", lambda m: m.system.n),
@@ -216,7 +226,10 @@ def evaluate(moment: Moment, word: str, norm: bool) -> float:
             raise InputError(f"unknown thermo keyword {word!r}{nearest(word, KEYWORDS)}")
         value = value_of(moment, *reference)
         source = {"c": moment.scene.computes, "f": moment.scene.fixes, "v": {}}[reference[0]].get(reference[1])
-        extensive = bool(getattr(source, "extensive", getattr(source, "ecouple", False) or getattr(source, "style", "") in EXTENSIVE))
+        if reference[0] == "c" and reference[2] and getattr(source, "style", "").startswith("temp"):
+            extensive = True        # the kinetic energies of the tensor; the temperature itself is not
+        else:
+            extensive = bool(getattr(source, "extensive", getattr(source, "ecouple", False) or getattr(source, "style", "") in EXTENSIVE))
     return value / moment.system.n if norm and extensive and moment.system.n else value
 
 

@@ -27,7 +27,7 @@ def told(line: str) -> str:
 
 
 @pytest.mark.parametrize("words, shown", [
-    ("coeffs", ["     1      1: is set", "     1      2: is not set"]), ("gro", ["Group[ 1]: g (static)"]), ("variable", ["v,", "def = a b"]),
+    ("coeffs", ["     1      1: is set", "     1      2: is not set"]), ("gro", ["Group[ 1]: g (static)"]), ("var", ["v,", "def = a b"]),
     ("comp", ["c, style = temp"]), ("comm", ["Nprocs = 1"]), ("system memory", ["Boundary = p p p", "resident set size"]),
     ("styles region", ["block", "cylinder"]), ("all", ["System information", "FFT information", "Accelerator"]),
 ])

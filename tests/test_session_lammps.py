@@ -11,7 +11,7 @@ from asemd.lammps import Lammps
 from asemd.thermo import KEYWORDS
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
-TIMES = ("cpu", "tpcpu", "spcpu", "cpuremain", "timeremain")
+TIMES = ("cpu", "tpcpu", "spcpu", "cpuremain", "cpuuse", "timeremain")
 PRISM = "region box prism 0 3 0 3 0 3 0.3 0.2 -0.4"
 EVERYTHING = " ".join(k for k in KEYWORDS if k not in (*TIMES, "xy", "xz", "yz", "fmax", "fnorm"))
 SCRIPTS = {

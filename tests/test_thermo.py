@@ -76,3 +76,21 @@ def test_a_new_style_forgets_what_was_modified():
     thermo = Thermo(every=10, norm=False, lost="ignore")
     thermo.set_style("one", [])
     assert (thermo.every, thermo.norm, thermo.lost) == (10, None, "error")
+
+
+def test_kinetic_tensor_is_per_atom_where_energies_are():
+    from both import asemd
+    session = asemd("""
+    lattice fcc 0.8442
+    region b block 0 2 0 2 0 2
+    create_box 1 b
+    create_atoms 1 box
+    mass 1 1
+    pair_style lj/cut 1.5
+    pair_coeff 1 1 1 1
+    velocity all create 1.0 123
+    thermo_style custom step ke c_thermo_temp[1] c_thermo_temp[2] c_thermo_temp[3] c_thermo_temp
+    run 0
+    """)
+    step, ke, *tensor, temperature = session.last_thermo.values()
+    assert sum(tensor) == pytest.approx(2.0 * ke) and temperature == pytest.approx(1.0)

@@ -142,8 +142,10 @@ def coefficients(session, _):
         for i in range(1, count + 1):
             if kind != "pair":
                 lines.append(f"{i:6d}: {'is' if i in given else 'is not'} set")
-            else:
-                lines += [f"{i:6d} {j:6d}: {'is' if (i, j) in given or {(i, i), (j, j)} <= given else 'is not'} set" for j in range(i, count + 1)]
+                continue
+            for j in range(i, count + 1):
+                mixed = (i, j) in given or {(i, i), (j, j)} <= given
+                lines.append(f"{i:6d} {j:6d}: {'is' if mixed else 'is not'} set")
     return lines
 
 
