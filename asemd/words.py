@@ -23,14 +23,14 @@ def number(word: str, what: str) -> float:
         value = float(word)
     except ValueError:
         raise InputError(f"{what}: expected a number, got {word!r}") from None
-    if not math.isfinite(value) or "_" in word:
+    if not math.isfinite(value) or "_" in word or not word.isascii():
         raise InputError(f"{what}: expected a finite number, got {word!r}")
     return value
 
 
 def whole(word: str, what: str) -> int:
     """A whole number."""
-    if not re.fullmatch(r"[+-]?\d+", word):
+    if not re.fullmatch(r"[+-]?[0-9]+", word):
         raise InputError(f"{what}: expected a whole number, got {word!r}")
     if abs(int(word)) > LARGEST:
         raise InputError(f"{what}: {word} is too large")

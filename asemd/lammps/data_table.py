@@ -11,8 +11,8 @@ import numpy as np
 from asemd.errors import InputError, nearest
 from asemd.lammps.data_lines import BLOCK, Lines
 
-WHOLE = re.compile(r"[+-]?\d+")
-REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
+WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
+REAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII)
 
 
 def parse_table(lines: Lines, first: int, last: int, columns: Sequence[str], kinds: Mapping[str, str], optional: Sequence[str],
