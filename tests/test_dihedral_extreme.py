@@ -154,6 +154,8 @@ def geometries():
         out[f"end in line, {e:g}"] = turned([[-1.1, e, 0], [0, 0, 0], [1.4, 0, 0], [1.8, 0.7, 0.8]])
         out[f"both ends in line, {e:g}"] = turned([[-1.1, e, 0], [0, 0, 0], [1.4, 0, 0], [2.6, 0.6 * e, 0.8 * e]])
         out[f"end folded back, {e:g}"] = turned([[0.6, e, 0], [0, 0, 0], [1.4, 0, 0], [1.8, 0.7, 0.8]])
+    out["arms of all lengths"] = turned([[-5e2, 9e2, 3e2], [0, 0, 0], [1.4e-6, 2e-7, 0], [1.3, 0.4, -0.8]])
+    out["middle bond long"] = turned([[-5e-6, 9e-6, 3e-6], [0, 0, 0], [1.4e3, 2e2, 0], [1.4e3 + 1e-3, 2e2 + 4e-3, -2e-3]])
     out["cis exactly"] = np.array([[-0.5, 1.0, 0], [0, 0, 0], [1.5, 0, 0], [2.0, 1.25, 0]])
     out["trans exactly"] = np.array([[-0.5, 1.0, 0], [0, 0, 0], [1.5, 0, 0], [2.0, -1.25, 0]])
     out["upright exactly"] = np.array([[-0.5, 1.0, 0], [0, 0, 0], [1.5, 0, 0], [2.0, 0, 1.25]])
