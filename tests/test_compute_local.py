@@ -2,12 +2,15 @@
 from __future__ import annotations
 
 import pickle
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from bonded_scene import HYBRID, HYBRID_COEFF, SIMPLE, data, head
 from wheel import ask
 
+from asemd.compute import improper_local
+from asemd.compute.dihedral_local import phi
 from asemd.errors import InputError
 
 SETUP = ["variable x internal 0", "variable twice equal 2*v_x+1", "group odd id 1 2 3 5 6 7 9", "group none id 1000"]
@@ -221,3 +224,11 @@ def test_mistakes_with_dumps(folder, tmp_path):
         lmp.command("dump_modify d thresh c_1[1] > 2")
     with pytest.raises(InputError, match=r"different lengths.*9 c_1\[1\], 4 c_3"):
         lmp.command("run 0")
+
+
+def test_impropers_on_a_line_have_90_degrees_as_in_lammps():
+    """Where no planes are; dihedral/local has 0 there."""
+    x = np.array([[[-1, 0, 0], [0, 0, 0], [1.5, 0, 0], [2, 1, 0.5]], [[1, 2, 3], [2, 3, 4], [3, 4, 5], [3, 4.5, 6]],
+                  [[-0.5, 1, 0], [0, 0, 0], [1.5, 0, 0], [2, 0, 1]]], float).transpose(1, 0, 2)
+    g = SimpleNamespace(between=lambda i, j: x[i] - x[j])
+    assert improper_local.chi(g) == pytest.approx([90.0, 90.0, 90.0]) and np.abs(phi(g)) == pytest.approx([0.0, 0.0, 90.0])
