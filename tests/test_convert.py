@@ -35,6 +35,7 @@ SCENES = {
     "groups": "newton on off\n" + BASE + "group a id 1:5\ngroup b id 9 20\nneigh_modify exclude group a b every 2 delay 4\n"
     "region r block 0 1 INF INF INF INF\nvariable f equal 0.1+0.001*step\nfix 3 a addforce v_f 0 0 region r\n"
     "compute k a ke\nthermo_style custom step pe c_k\nrun 10",
+    "film": "boundary s p fs\n" + BASE + "velocity all create 0.1 5\nthermo_style custom step pe press vol xlo xhi zhi\nrun 4",
     "bonded": BONDED + "\nreset_timestep 30\ntimestep 0.5\nfix 1 all nvt temp 300 300 50\n"
     "thermo_style custom step temp pe ebond eangle press\nrun 10",
 }

@@ -121,11 +121,13 @@ lmp.close()
 
 
 def test_shrink_wrapped_faces_of_files_are_those_of_lammps(folder):
-    """The margin is a part of a box that is larger by a margin itself, other than after create_box."""
+    """The margin is a part of the box; of files with bonds, of a box that is larger by a margin itself."""
     cases = {}
+    (folder / "bare.data").write_text(FIRST.replace("1 bonds\n", "").split("Bonds")[0])
     for boundary in ("s s s", "f s m", "fs p sm", "sm m p"):
-        for more in ([], ["read_data first.data add append shift 6 1 1"]):
-            cases[f"{boundary} {len(more)}"] = [f"boundary {boundary}", *START, "read_data first.data", *more]
+        for file in ("first", "bare"):
+            for more in ([], [f"read_data {file}.data add append shift 6 1 1"]):
+                cases[f"{boundary} {file} {len(more)}"] = [f"boundary {boundary}", *START, f"read_data {file}.data", *more]
     settled = ["pair_style zero 2.0", "pair_coeff * *", "bond_style zero", "bond_coeff *", "run 0 post no"]
     absolute = {name: [line.replace("read_data ", f"read_data {folder}/") for line in lines] + settled for name, lines in cases.items()}
     for name, box in ask(BOX, cases=absolute).items():

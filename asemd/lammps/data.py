@@ -253,7 +253,8 @@ class _Reader(DataText):
         whole = self.whole = box if self.onto is None else self.union(box)
         if rotation is None:
             whole = whole.widened()
-            whole.initial = np.array([whole.lo, whole.hi])      # unlike those of create_box
+            if any(self.number(kind + "s") for kind in ATOMS):
+                whole.initial = np.array([whole.lo, whole.hi])      # LAMMPS reads files with bonds twice
         self.check_inside(x, ids, whole, line)
         far = (np.abs(whole.fractional(x)) + np.abs(image.astype(float)) > FARTHEST) & whole.periodic
         if far.any():

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from asemd import atom_style as atom_styles
-from asemd.box import Box
+from asemd.box import MARGIN, Box
 from asemd.cross_terms import CrossTermStyle
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
@@ -22,7 +22,7 @@ MARKS = {category: {mark: name for name, (c, mark) in COEFFS.items() if c == cat
 
 
 def write_data(path: str | os.PathLike, system: System, interactions: Interactions | None = None, *, pair: str = "ii",
-               types: str = "numeric", labels: bool = True, general: bool = False,
+               types: str = "numeric", labels: bool = True, general: bool = False, margins: bool = False,
                progress: Callable[[int, int], None] | None = None) -> None:
     """Write a data file; a path ending in ``.gz`` is compressed.
 
@@ -40,6 +40,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         Whether sections of type labels are written.
     general : bool
         Box vectors, positions and velocities of a general triclinic box as it was given.
+    margins : bool
+        Whether shrink-wrapped faces are written such that they keep their margins when the file is read, see `keeping_margins`.
     progress : callable, optional
         Told from time to time how many lines are written, and how many there are.
 
@@ -59,6 +61,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     if system.rmass is not None and not atom_styles.has(system.atom_style, "density"):
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
     inside = _lammps_frame(system)
+    if margins:
+        inside.box = keeping_margins(inside.box, not inside.topology.is_empty)
     parts = _file(_general_frame(inside) if general else inside, interactions, pair, types, labels, general, progress)
     path = os.fspath(path)
     try:
@@ -77,6 +81,28 @@ def _general_frame(system: System) -> System:
     out.x, out.v = (system.x - system.box.origin) @ back + system.box.origin, system.v @ back
     out.extra |= {name: system.extra[name] @ back for name in ("mu", "omega") if name in system.extra}
     return out
+
+
+def keeping_margins(box: Box, bonds: bool) -> Box:
+    """The box to write so that its reader ends with the margins of this one: with `bonds` he takes them from a box whose faces ``s`` moved.
+
+    Directions with faces ``m``, and those whose atoms are farther apart than the initial bounds, stay as they are.
+    """
+    if box.initial is None or not box.is_lammps_frame:
+        return box
+    lo, hi = box.lo, box.hi
+    for k, faces in enumerate(box.boundary):
+        if "s" not in faces or "m" in faces:
+            continue
+        moving, first = np.array([face == "s" for face in faces]), box.initial[1, k] - box.initial[0, k]
+        length = first / (1.0 + MARGIN * moving.sum() * bonds) * (1.0 + 1e-13)      # more than rounding, so that no atom is left outside
+        middle = 0.5 * (lo[k] + hi[k])
+        bounds = np.array([middle - 0.5 * length, middle + 0.5 * length] if moving.all() else [lo[k], lo[k] + length] if moving[1] else
+                          [hi[k] - length, hi[k]])
+        atoms, reader = np.array([lo[k], hi[k]]) + MARGIN * first * moving * (1, -1), bounds + MARGIN * length * moving * (-1, 1)
+        if reader[0] <= atoms[0] and atoms[1] <= reader[1]:
+            lo[k], hi[k] = bounds
+    return Box.from_lammps(lo, hi, box.tilt, box.boundary, box.triclinic)
 
 
 def _lammps_frame(system: System) -> System:

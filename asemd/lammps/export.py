@@ -52,7 +52,7 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
     out += [f"{category}_style {' '.join(interactions.style_line(category))}" for category in CATEGORIES if interactions.uses[category]]
     written = system.copy()
     written.mass[1:] = np.where(np.isnan(written.mass[1:]), 1.0, written.mass[1:])      # forces do not need them, LAMMPS does
-    write_data(data, written, types="numeric", labels=False)
+    write_data(data, written, types="numeric", labels=False, margins=True)
     out.append(f"read_data {quoted(os.fspath(data))}")
     for category in CATEGORIES:
         out += [f"{category}_coeff {' '.join(map(quoted, line))}" for line in interactions.coeff_lines(category)]
