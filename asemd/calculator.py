@@ -16,6 +16,7 @@ from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
 from asemd.loads import Load, constraints_of, loads_of
 from asemd.native import as_json, coefficients, with_keys
+from asemd.result import with_masks
 from asemd.system import System
 from asemd.topology import Topology
 
@@ -230,8 +231,7 @@ class ForceField(Calculator):
 
     def neighbor_settings(self, atoms) -> Settings:
         """The settings of engines for these atoms, exclusions with masks instead of group names."""
-        return replace(self.settings, exclude=[(kind, *(words if kind == "type" else (self.mask(atoms, w) for w in words)))
-                                               for kind, *words in self.settings.exclude])
+        return replace(self.settings, exclude=with_masks(self.settings.exclude, lambda group: self.mask(atoms, group)))
 
     @property
     def engine(self) -> Engine | None:

@@ -1,6 +1,7 @@
 """What goes into a computation of forces besides the scene, and what comes out."""
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,6 +9,18 @@ import numpy as np
 from asemd import units as unit_styles
 
 COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))     # of tensors given as six numbers: xx yy zz xy xz yz
+
+
+def with_masks(rules: list, mask: Callable[[str], np.ndarray]) -> list:
+    """The exclusions of a scene, which name groups, in the form of `Settings`; `mask` gives the atoms of a group.
+
+    ``("outside", group)`` (``neigh_modify include``) leaves out every pair with an atom outside the group.
+    """
+    out = []
+    for kind, *words in rules:
+        masks = words if kind == "type" else [mask(w) for w in words]
+        out.append(("group", ~masks[0], np.ones(len(masks[0]), bool)) if kind == "outside" else (kind, *masks))
+    return out
 
 
 @dataclass

@@ -13,6 +13,7 @@ from asemd.engine import Settings
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
 from asemd.minimize import Options
+from asemd.result import with_masks
 from asemd.thermo import Thermo
 
 if TYPE_CHECKING:
@@ -136,6 +137,8 @@ class Scene:
     dt: float = 0.005
     neighbor: Settings = field(default_factory=Settings)     # its exclusions name groups
     list_once: bool = False     # neigh_modify once
+    list_style: str = "bin"     # as the command neighbor has it
+    first_group: str = ""       # atom_modify first
     threads: int = 1
     precision: str = "double"
     compat: str = ""
@@ -210,9 +213,7 @@ class Scene:
 
     def settings(self) -> Settings:
         """The neighbour and threading settings in the form the engine takes."""
-        exclude = []
-        for kind, *words in self.neighbor.exclude:
-            exclude.append((kind, *words) if kind == "type" else (kind, *(self.groups.mask(w, "neigh_modify exclude") for w in words)))
+        exclude = with_masks(self.neighbor.exclude, lambda group: self.groups.mask(group, "neigh_modify"))
         every = NEVER if self.list_once else self.neighbor.every
         return replace(self.neighbor, every=every, exclude=exclude, threads=self.threads, precision=self.precision, lost=self.thermo.lost,
                        lost_bond=self.thermo.lost_bond)

@@ -22,6 +22,8 @@ pair_coeff * * 1 1
 fix 1 all nve
 thermo 5
 """
+GROUPS = "region q block 0 1.4 INF INF INF INF\ngroup g region q\nset group g type 2\ngroup o subtract all g\n"
+MULTI = GROUPS + "neighbor 0.4 multi\npair_coeff 2 2 1 0.8 2.0\n"
 CUT = "region q block 1 2 1 2 {z}\ngroup g region q\ngroup o subtract all g\ndelete_atoms group o\nrun 30"
 
 
@@ -35,6 +37,22 @@ CASES = {
     "once": scene("neigh_modify once yes\nrun 40", region="block 0 5 0 5 0 5", temperature=3.0),
     "once and no more": scene("neigh_modify once yes\nneigh_modify once no\nrun 20", temperature=3.0),
     "buffers": scene("neigh_modify page 200000 one 5000 delay 5 every 5 check no\nrun 10"),
+    "include": scene(GROUPS + "neigh_modify include g\nrun 30", before="atom_modify first g", temperature=3.0),
+    "include and exclude": scene(GROUPS + "group h id < 30\nneigh_modify include g exclude group h h exclude none exclude type 1 1\nrun 20",
+                                 before="atom_modify first g"),
+    "include in a tilted box": scene(GROUPS + "neigh_modify include g\nrun 20", region="prism 0 3 0 3 0 3 0.7 0.2 -0.3",
+                                     before="atom_modify first g"),
+    "exclude types": scene(GROUPS + "neigh_modify exclude type 1 2\nrun 30"),
+    "exclude groups": scene(GROUPS + "neigh_modify exclude group g g exclude group o g\nrun 30"),
+    "exclude and none": scene(GROUPS + "neigh_modify exclude group g g\nneigh_modify exclude none\nrun 10"),
+    "exclude in molecules": scene(GROUPS + "set group all mol 1\nset group g mol 2\nneigh_modify exclude molecule/intra o\nrun 30",
+                                  before="atom_style bond"),
+    "exclude between molecules": scene(GROUPS + "set group all mol 1\nset group g mol 2\nneigh_modify exclude molecule/inter all\nrun 30",
+                                       before="atom_style bond"),
+    "collections of types": scene(MULTI + "neigh_modify collection/type 2 1 2 every 2\nrun 10\nneigh_modify collection/type 1 1*2\nrun 5"),
+    "collections by distance": scene(MULTI + "neigh_modify collection/interval 2 2.0 2.5\nrun 10"),
+    "bins and clusters": scene("neigh_modify binsize 1.0 cluster yes every 3 delay 6\nrun 20"),
+    "nothing": scene("neigh_modify\nrun 5"),
     "m m p": scene("run 30", "m m p"),
     "s s s": scene("run 30", "s s s"),
     "fs ms p": scene(CUT.format(z="INF INF"), "fs ms p"),
@@ -53,7 +71,10 @@ CASES = {
 
 @pytest.fixture(scope="module")
 def theirs():
-    return lammps(CASES)
+    """LAMMPS does not clear the forces of atoms outside the group of include: what was in memory counts, so each of them comes first."""
+    alone = {name for name in CASES if name.startswith("include")}
+    answers = lammps({name: case for name, case in CASES.items() if name not in alone})
+    return answers | {name: lammps({name: CASES[name]})[name] for name in alone}
 
 
 @pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
@@ -67,7 +88,33 @@ def test_once_builds_no_list():
     assert "Neighbor list builds = 0" in told
 
 
-@pytest.mark.parametrize("line, message", [("neigh_modify once maybe", "yes or no"), ("neigh_modify include g", "not supported")])
+@pytest.mark.parametrize("line, message", [
+    ("once maybe", "yes or no"), ("include nobody", "unknown group 'nobody'"), ("include o", "must be that of atom_modify first, g"),
+    ("include", "include"), ("one 0", "positive"), ("page x", "page"), ("binsize x", "binsize"), ("cluster maybe", "yes or no"),
+    ("exclude", "exclude"), ("exclude type 1", "2 values"), ("exclude group g nobody", "nobody"), ("exclude pair 1 1", "expected one of"),
+    ("collection/type 1 1*2", "style multi"), ("every 1 delay 5 foo", "unknown keyword 'foo'"), ("delay -1", "zero or positive"),
+])
 def test_mistakes(line, message):
     with pytest.raises(InputError, match=message):
-        asemd(scene("")).execute(line)
+        asemd(scene(GROUPS, before="atom_modify first g")).execute(f"neigh_modify {line}")
+
+
+@pytest.mark.parametrize("line, message", [
+    ("collection/type 1 1", "type 2 is in no collection"), ("collection/type 2 1 1*2", "type 1 is in two"),
+    ("collection/type 0", "positive"),
+    ("collection/type 2 1", "2 values"), ("collection/type 1 5", "5"), ("collection/interval 2 2 1", "become larger"),
+    ("collection/interval 1 x", "interval"), ("collection/type", "1 value"),
+])
+def test_wrong_collections(line, message):
+    with pytest.raises(InputError, match=message):
+        asemd(scene(MULTI)).execute(f"neigh_modify {line}")
+
+
+def test_include_without_first():
+    with pytest.raises(InputError, match="atom_modify first, which was not given"):
+        asemd(scene(GROUPS)).execute("neigh_modify include g")
+
+
+def test_include_in_ase():
+    session = asemd(scene(GROUPS + "thermo_modify norm no\nneigh_modify include g\nrun 0", before="atom_modify first g"))
+    assert session.scene.to_atoms().get_potential_energy() == pytest.approx(session.last_thermo["E_pair"], rel=1e-12)

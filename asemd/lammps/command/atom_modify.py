@@ -23,5 +23,7 @@ def run(session, args):
         elif key == "sort":
             if whole(values[0], "atom_modify sort") < 0 or number(values[1], "atom_modify sort") < 0.0:
                 raise InputError(f"atom_modify sort: must not be negative, got {' '.join(values)}")
-        elif session.scene.system is not None:
-            session.scene.groups.mask(values[0], "atom_modify first")
+        else:
+            if session.scene.system is not None:
+                session.scene.groups.mask(values[0], "atom_modify first")
+            session.scene.first_group = "" if values[0] == "all" else values[0]
