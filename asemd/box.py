@@ -249,7 +249,7 @@ class Box:
 
     def unwrap(self, x: np.ndarray, image: np.ndarray) -> np.ndarray:
         """Positions (n, 3) outside the box, as the image flags say."""
-        return x + image @ self.cell
+        return x + image.astype(float) @ self.cell      # whole numbers would not go through BLAS
 
     def minimum_image(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The shortest periodic images of separations; exact for any tilt.

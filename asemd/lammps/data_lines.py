@@ -102,7 +102,7 @@ def read_lines(path: str | os.PathLike) -> Lines:
     raw = raw.removeprefix(b"\xef\xbb\xbf")        # byte order mark
     if b"\r" in raw:
         raw = raw.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    if not raw.strip():
+    if not raw or raw.isspace():
         raise InputError(f"read_data: {path} is empty")
     if not raw.isascii():
         plain = lex.plain(raw.decode("utf-8", "surrogateescape")).encode("utf-8", "surrogateescape")

@@ -5,6 +5,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
+from itertools import chain
 
 import numpy as np
 
@@ -56,7 +57,8 @@ def parse_table(lines: Lines, first: int, last: int, columns: Sequence[str], kin
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")       # numpy would read 1.0 as a whole number
-            table = np.loadtxt(_each(lines, start, last, done), dtype=dtype, comments="#", ndmin=1, converters=named, encoding="utf-8")
+            table = np.loadtxt(chain.from_iterable(_each(lines, start, last, done)), dtype=dtype, comments="#", ndmin=1, converters=named,
+                               encoding="utf-8")
         values = {c: np.ascontiguousarray(table[c]) for c in columns}
     except (ValueError, KeyError, DeprecationWarning, OverflowError):
         values = _slowly(lines, content(), columns, kinds, optional, labels)
@@ -72,9 +74,10 @@ class _Numbers(dict):
         return int(word)
 
 
-def _each(lines, first: int, last: int, done) -> Iterator[str]:
+def _each(lines, first: int, last: int, done) -> Iterator[list[str]]:
+    """Many lines at a time."""
     for k, block in enumerate(lines.blocks(first, last)):
-        yield from block
+        yield block
         if done is not None:
             done(min(last, first + (k + 1) * BLOCK))
 
