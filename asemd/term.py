@@ -41,12 +41,11 @@ class BondedTerm:
         self.items, self.types = np.ascontiguousarray(items[order], np.int32), np.ascontiguousarray(types[order], np.int32)
         self.packed = self.style.pack(use.settings, use.coeff, ntypes, units)
         self.slots, self.slot_types, self.order = np.zeros_like(self.items), np.zeros_like(self.types), np.zeros_like(self.types)
-        self.start = None
+        self.start, self.rooms = None, []
 
     def kernel(self, energy, per_atom):
         from asemd.kernels import bonded
-        f = bonded.kernel(self.style, energy=energy, per_atom=per_atom, periodic=self.periodic, orthogonal=self.orthogonal)
-        return f
+        return bonded.loop(self.style, energy=energy, per_atom=per_atom, periodic=self.periodic, orthogonal=self.orthogonal)
 
     def rebuild(self, engine):
         self.periodic, self.orthogonal = bool(engine.periodic.any()), engine.ortho
@@ -56,10 +55,14 @@ class BondedTerm:
                           self.order)
 
     def arguments(self, engine, tid):
+        from asemd.kernels import bonded
         m, nth = len(self.items), engine.threads
-        return (engine.state.x, engine.buffers[tid], self.slots, self.slot_types, engine.cell, self.packed.coeff, self.packed.arrays,
-                m * tid // nth, m * (tid + 1) // nth, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid],
-                engine.bad[tid, self.index])
+        while len(self.rooms) < nth:
+            self.rooms.append(bonded.room(self.style))
+        return (engine.state.x, engine.buffers[tid], self.slots, self.slot_types, engine.cell, self.packed.coeff,
+                bonded.arrays(self.style, self.packed.arrays), m * tid // nth, m * (tid + 1) // nth, engine.acc[tid, self.index],
+                engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index], bonded.functions(self.style),
+                self.rooms[tid])
 
     def describe(self, engine, item, value):
         from asemd.kernels import bonded
@@ -91,8 +94,8 @@ class DipoleTerm(BondedTerm):
         self.mu[:, self.row >= 0] = extra["mu"][self.row[self.row >= 0]].T
 
     def arguments(self, engine, tid):
-        x, out, slots, types, cell, coeff, _, *rest = super().arguments(engine, tid)
-        return (x, out, slots, types, cell, coeff, (self.mu, self.torque[tid]), *rest)
+        x, out, slots, types, cell, coeff, arrays, *rest = super().arguments(engine, tid)
+        return (x, out, slots, types, cell, coeff, (*arrays, self.mu, self.torque[tid]), *rest)
 
     def describe(self, engine, item, value):
         row = self.items[self.order[item]][0]

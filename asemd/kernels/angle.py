@@ -1,4 +1,4 @@
-"""Loop over angles; pasted by `asemd.kernels.bonded` like `asemd.kernels.bond`. R12, R32, R13 say which distances the style takes.
+"""Angles for `asemd.kernels.block`: a = x1 - x2, b = x3 - x2. R12, R32, R13 are the rows of the distances that the style takes, or 0.
 
 theta = atan2(|a x b|, a . b) and its gradient (a x n) / (a^2 |n|), n = a x b, keep all digits from 0 to 180 degrees.
 """
@@ -6,62 +6,61 @@ from __future__ import annotations
 
 import math
 
+from asemd.kernels.algebra import between, cross, dot, member, minus, number, plus, push, put, store, times, triple
+from asemd.kernels.vector_math import vector_atan2
 
-def angle(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad):
-    energy = vxx = vyy = vzz = vxy = vxz = vyz = 0.0
-    for m in range(lo, hi):
-        i, j, k = items[m, 0], items[m, 1], items[m, 2]
-        ax, ay, az = x[0, i] - x[0, j], x[1, i] - x[1, j], x[2, i] - x[2, j]
-        bx, by, bz = x[0, k] - x[0, j], x[1, k] - x[1, j], x[2, k] - x[2, j]
-        if PERIODIC:
-            ax, ay, az = closest(ax, ay, az, cell)
-            bx, by, bz = closest(bx, by, bz, cell)
-        nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-        aa, bb = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz
-        n = math.sqrt(nx * nx + ny * ny + nz * nz)
-        theta = math.atan2(n, ax * bx + ay * by + az * bz)
-        if not (aa > 0.0 and bb > 0.0):
-            report(bad, m, math.nan)      # two atoms at one place: the force diverges
-            continue
-        r12 = math.sqrt(aa) if R12 else 0.0
-        r32 = math.sqrt(bb) if R32 else 0.0
-        cx, cy, cz = ax - bx, ay - by, az - bz
-        r13 = math.sqrt(cx * cx + cy * cy + cz * cz) if R13 else 0.0
-        e, slope, slope12, slope32, slope13 = evaluate(theta, r12, r32, r13, types[m], coeff, arrays)
-        if not (math.isfinite(e) and math.isfinite(slope + slope12 + slope32 + slope13)):
-            report(bad, m, theta)
-            continue
-        wa = wb = 0.0
-        if n > 0.0:                       # on a straight line the force has no direction
-            wa, wb = -slope / (aa * n), -slope / (bb * n)
-        fx, fy, fz = wa * (ay * nz - az * ny), wa * (az * nx - ax * nz), wa * (ax * ny - ay * nx)
-        gx, gy, gz = wb * (ny * bz - nz * by), wb * (nz * bx - nx * bz), wb * (nx * by - ny * bx)
+V1 = V2 = F1 = F2 = THETA = R12 = R32 = R13 = D = D12 = D32 = D13 = SHAPE = NORMAL = 0
+closest = None
+
+
+def gather(x, items, first, n, b):
+    for k in range(n):
+        j = member(items, first + k, 1)
+        store(b, V1, k, between(x, member(items, first + k, 0), j))
+        store(b, V2, k, between(x, member(items, first + k, 2), j))
+
+
+def geometry(b, n, sides):
+    for k in range(n):
+        a = closest(b, V1, k, sides)
+        c = closest(b, V2, k, sides)
+        normal = cross(a, c)
+        aa, cc, size = dot(a, a), dot(c, c), math.sqrt(dot(normal, normal))
+        put(b, NORMAL, k, size)
+        put(b, THETA, k, vector_atan2(size, dot(a, c)))
+        put(b, SHAPE, k, aa if aa < cc else cc)      # 0: two atoms at one place, the force diverges
         if R12:
-            w = -slope12 / r12
-            fx, fy, fz = fx + w * ax, fy + w * ay, fz + w * az
+            put(b, R12, k, math.sqrt(aa))
         if R32:
-            w = -slope32 / r32
-            gx, gy, gz = gx + w * bx, gy + w * by, gz + w * bz
+            put(b, R32, k, math.sqrt(cc))
         if R13:
-            w = -slope13 / r13 if r13 > 0.0 else 0.0
-            fx, fy, fz = fx + w * cx, fy + w * cy, fz + w * cz
-            gx, gy, gz = gx - w * cx, gy - w * cy, gz - w * cz
-        push(out, i, fx, fy, fz)
-        push(out, j, -(fx + gx), -(fy + gy), -(fz + gz))
-        push(out, k, gx, gy, gz)
-        if ENERGY or PER_ATOM:
-            pxx, pyy, pzz = ax * fx + bx * gx, ay * fy + by * gy, az * fz + bz * gz
-            pxy, pxz, pyz = ax * fy + bx * gy, ax * fz + bx * gz, ay * fz + by * gz
-        if ENERGY:
-            energy += e
-            vxx += pxx
-            vyy += pyy
-            vzz += pzz
-            vxy += pxy
-            vxz += pxz
-            vyz += pyz
-        if PER_ATOM:
-            for a in (i, j, k):
-                share(a, 1.0 / 3.0, e, pxx, pyy, pzz, pxy, pxz, pyz, atom_energy, atom_virial)
-    if ENERGY:
-        total(acc, energy, vxx, vyy, vzz, vxy, vxz, vyz)
+            e = minus(a, c)
+            put(b, R13, k, math.sqrt(dot(e, e)))
+
+
+def gradient(b, n):
+    for k in range(n):
+        a, c, size = triple(b, V1, k), triple(b, V2, k), number(b, NORMAL, k)
+        normal, slope = cross(a, c), -number(b, D, k)
+        u, w = slope / (dot(a, a) * size), slope / (dot(c, c) * size)
+        u, w = u if size > 0.0 else 0.0, w if size > 0.0 else 0.0      # on a straight line the force has no direction
+        f, g = times(u, cross(a, normal)), times(w, cross(normal, c))
+        if R12:
+            f = plus(f, times(-number(b, D12, k) / number(b, R12, k), a))
+        if R32:
+            g = plus(g, times(-number(b, D32, k) / number(b, R32, k), c))
+        if R13:
+            r13 = number(b, R13, k)
+            w = -number(b, D13, k) / r13
+            e = times(w if r13 > 0.0 else 0.0, minus(a, c))
+            f, g = plus(f, e), minus(g, e)
+        store(b, F1, k, f)
+        store(b, F2, k, g)
+
+
+def scatter(out, items, first, n, b):
+    for k in range(n):
+        f, g = triple(b, F1, k), triple(b, F2, k)
+        push(out, member(items, first + k, 0), f)
+        push(out, member(items, first + k, 1), times(-1.0, plus(f, g)))
+        push(out, member(items, first + k, 2), g)

@@ -1,74 +1,77 @@
-"""The compiled loop of a bonded style: one per internal coordinate, specialised for what is asked for."""
+"""The compiled loops of bonded styles.
+
+Two modules make the forces of a style: the loop over blocks of items (`asemd.kernels.block`) with the geometry of its coordinates, compiled
+once for all styles that take the same ones, and `evaluate`, the style's function for the columns of a block, which the loop calls by its
+address.
+"""
 from __future__ import annotations
 
 import ast
 import functools
+import inspect
 import math
 from collections.abc import Callable, Sequence
+from types import ModuleType
 
-from asemd.kernels import angle, bond, bond_history, dihedral, dipole, image, vectors
+import numpy as np
+from numba import config
+
+from asemd.kernels import algebra, angle, block, bond, bond_history, dihedral, dipole, image, vector_math, vectors
+from asemd.kernels.algebra import ROW
 from asemd.kernels.generate import Builder, plain_source
+from asemd.kernels.paste import paste
+from asemd.kernels.state import aligned
 from asemd.style import VECTORS, Style
+from asemd.topology import ATOMS
 
 ANGLE = ("theta", "r12", "r32", "r13")
 TORSION = ("phi", "r12", "r23", "r34", "theta1", "theta2")
-
-
-def report(bad, item, value):
-    """Remember the first item that is outside the domain of its style."""
-    if bad[0] == 0.0:
-        bad[0], bad[1], bad[2] = 1.0, item, value
-
-
-def push(out, atom, fx, fy, fz):
-    """Add to the force on an atom."""
-    out[0, atom] += fx
-    out[1, atom] += fy
-    out[2, atom] += fz
-
-
-def total(acc, energy, vxx, vyy, vzz, vxy, vxz, vyz):
-    acc[0] += energy
-    acc[2] += vxx
-    acc[3] += vyy
-    acc[4] += vzz
-    acc[5] += vxy
-    acc[6] += vxz
-    acc[7] += vyz
-
-
-def share(atom, part, energy, vxx, vyy, vzz, vxy, vxz, vyz, atom_energy, atom_virial):
-    """Equal shares for the atoms of an item, as LAMMPS counts energy and stress per atom."""
-    atom_energy[atom] += part * energy
-    atom_virial[0, atom] += part * vxx
-    atom_virial[1, atom] += part * vyy
-    atom_virial[2, atom] += part * vzz
-    atom_virial[3, atom] += part * vxy
-    atom_virial[4, atom] += part * vxz
-    atom_virial[5, atom] += part * vyz
+PAST = ("rate", "reference")        # what a bond with a past can have besides; no derivatives
+ROWS = {angle: {"SHAPE": 1, "NORMAL": 1}, dihedral: {"SHAPE": 1, "SIDE": 1}, dipole: {"SHAPE": 1, "NORMAL": 3}, vectors: {"VALUE": 1}}
+INNER = "no_cpython_wrapper=True, no_cfunc_wrapper=True"       # called from the same module only
+NO_TABLE = np.zeros((1, 1))
 
 
 def chart(style: Style) -> tuple[str, ...]:
-    """The coordinates that the loop of a style hands to `evaluate`."""
-    if style.coordinates[0] == "ax":
+    """The coordinates that the geometry of a style can offer it."""
+    first = style.coordinates[0]
+    if first == "ax":
         return VECTORS[:6] if style.category == "angle" else VECTORS
-    if style.coordinates[0] in ("phi", "chi"):
+    if first in ("phi", "chi"):
         return TORSION
-    if style.coordinates[0] == "gamma":
-        return style.coordinates
-    return ANGLE if style.category == "angle" else ("r",)
-
-
-def _loop(style: Style) -> Callable:
     if style.category == "bond":
-        return bond_history.bond if style.history else bond.bond
-    if style.coordinates[0] == "ax":
-        return vectors.three if style.category == "angle" else vectors.four
-    if style.coordinates[0] == "gamma":
-        return dipole.dipole
-    if style.category == "angle":
-        return angle.angle
-    return dihedral.torsion
+        return ("r",)
+    return ANGLE if style.category == "angle" and first != "gamma" else style.coordinates[:1]
+
+
+def _geometry(style: Style) -> ModuleType:
+    """The module with the geometry of a style's coordinates."""
+    first = style.coordinates[0]
+    return {"ax": vectors, "gamma": dipole}.get(first) or {"bond": bond, "angle": angle}.get(style.category, dihedral)
+
+
+def layout(style: Style) -> dict[str, int]:
+    """The rows of a block for the coordinates of a style, and how many there are of what (`asemd.kernels.block`)."""
+    module, names = _geometry(style), chart(style) + PAST * style.history
+    used = [n for n in names if n in style.coordinates or n == names[0]]
+    count = {bond: 1, dipole: 1, angle: 2}.get(module, ATOMS[style.category] - 1)
+    rows = {"VECTORS": count, "STRESS": 0 if module is dipole else count, "ATOMS": ATOMS[style.category]}
+    rows |= {f"V{k + 1}": 3 * k for k in range(count)} | {f"F{k + 1}": 3 * (count + k) for k in range(count)}
+    rows |= {n.upper(): VECTORS.index(n) for n in names} if module is vectors else dict.fromkeys(map(str.upper, names), 0)
+    wanted = [] if module is vectors else [n.upper() for n in used]
+    slopes = [n for n in used if n not in PAST]
+    rows |= {_slope(n): 0 for n in names} | {"SLOPES": len(slopes)}
+    top = 6 * count
+    widths = dict.fromkeys([*wanted, *map(_slope, slopes), "E"], 1) | ROWS.get(module, {}) | {"P": 0}
+    for name, width in widths.items():
+        rows[name], top = top, top + width
+    rows = {"SHAPE": 0, "VALUE": rows[names[0].upper()]} | rows
+    return rows | {"D": rows[_slope(names[0])]}
+
+
+def _slope(coordinate: str) -> str:
+    """The name of the row of the derivative by a coordinate: D12 of r12."""
+    return "D" + coordinate.upper().removeprefix("R")
 
 
 class _WithoutEnergy(ast.NodeTransformer):
@@ -90,69 +93,120 @@ def without_energy(source: str) -> str:
     return ast.unparse(ast.fix_missing_locations(_WithoutEnergy().visit(ast.parse(source))))
 
 
-def _coefficients(style: Style) -> list[str]:
-    """The arguments of a style's function after the coordinates, looked up for type t."""
-    rows = {n: k for k, n in enumerate(n for n in style.arguments if n not in style.arrays)}
-    return [f"arrays[{style.arrays.index(n)}]" if n in style.arrays else f"coeff[{rows[n]}, t]" for n in style.arguments]
+def _entry(row: int) -> str:
+    return f"b[k + {ROW * row}]"
 
 
-def _adapter(style: Style) -> str:
-    """`evaluate(coordinates, type, coeff, arrays)`: the style's function with its coefficients looked up."""
-    call = f"potential({', '.join([*style.coordinates, *_coefficients(style)])})"
-    handed = chart(style)
-    if style.category == "bond":
-        past = ", rate=0.0, reference=1.0" if style.history else ""
-        return f"def evaluate(r, t, coeff, arrays{past}):\n    return {call}"
-    head = f"def evaluate({', '.join(handed)}, t, coeff, arrays):\n"
-    if style.coordinates == ("chi",):      # chi = |phi|
-        zeros = ", 0.0" * (len(handed) - 1)
-        return f"{head}    chi = abs(phi)\n    e, slope = {call}\n    return e, slope if phi >= 0.0 else -slope{zeros}"
-    if handed == style.coordinates:
-        return f"{head}    return {call}"
-    names = ["e"] + [f"d_{c}" for c in style.coordinates]
-    back = ["e"] + [f"d_{c}" if c in style.coordinates else "0.0" for c in handed]
-    return f"{head}    {', '.join(names)} = {call}\n    return {', '.join(back)}"
-
-
-def source(style: Style, *, energy: bool = True, per_atom: bool = False, periodic: bool = True, orthogonal: bool = True) -> Builder:
-    """The text of the module that holds the kernel `loop`; arguments as in `kernel`."""
-    b = Builder(f"Forces of {style.category}_style {style.name}.")
-    b.constant("ENERGY", bool(energy))
-    b.constant("PER_ATOM", bool(per_atom))
-    b.constant("PERIODIC", bool(periodic))
-    if style.coordinates[0] == "ax":
-        for name, atom in zip(("CENTRE", "A", "B", "C"), vectors.order(style)):
-            b.constant(name, atom)
-    else:
-        for name in chart(style)[1:]:
-            b.constant(name.upper(), name in style.coordinates)
-    if style.history:
-        for name, value in dict(BREAKS=style.breaks != "", REFERENCE=style.remembers != "", RATE="rate" in style.coordinates).items():
-            b.constant(name, value)
-    if chart(style) == TORSION:
-        b.constant("ARMS", len(style.coordinates) > 1)
-        b.constant("CHI", style.coordinates == ("chi",))
-        b.constant("STRAIGHT", style.straight is not None and (energy or per_atom))
+def source(style: Style, *, energy: bool) -> Builder:
+    """The text of the module that holds `evaluate`: the function of a style, with or without its energy, for the columns of a block."""
+    b, rows = Builder(f"{style.category}_style {style.name}."), layout(style)
+    b.line("from asemd.kernels.block import as_table, block_function")
     *helpers, function = style.functions()
     for helper in helpers:
-        b.text(plain_source(helper), cache=False)
+        b.text(plain_source(helper), INNER, cache=False)
     text = plain_source(function, "potential")
-    b.text(text if energy or per_atom else without_energy(text), cache=False)
-    b.text(_adapter(style), cache=False)
-    if style.straight and (energy or per_atom):
-        b.text(plain_source(style.straight, "on_line"), cache=False)
-        b.text(f"def straight(t, coeff, arrays):\n    return on_line({', '.join(_coefficients(style))})", cache=False)
-    if periodic:
-        b.text(plain_source(image.closest_orthogonal if orthogonal else image.closest_general, "closest"), cache=False)
-    for f in (report, push) + (total,) * energy + (share,) * per_atom:
-        b.text(plain_source(f), cache=False)
-    b.text(plain_source(_loop(style), "loop"))
+    b.text(text if energy else without_energy(text), INNER, cache=False)
+
+    numbers = [n for n in style.arguments if n not in style.arrays]
+    words = {n: _entry(rows["P"] + k) for k, n in enumerate(numbers)} | {n: f"array{k}" for k, n in enumerate(style.arrays)}
+    coefficients = [words[n] for n in style.arguments]
+    coordinates = [f"abs({_entry(rows['PHI'])})" if n == "chi" else _entry(rows[n.upper()]) for n in style.coordinates]
+    by = [n for n in style.coordinates if n not in PAST]
+    results, places = ["e", *(f"d_{n}" for n in by)], [rows["E"], *(rows["D" if n == "chi" else _slope(n)] for n in by)]
+
+    lines = ["def evaluate(n, b, table, rows, columns):"]
+    lines += [f"    array{k} = as_table(table, rows, columns)" for k, _ in enumerate(style.arrays)]
+    lines += ["    for k in range(n):", f"        {', '.join(results)} = potential({', '.join(coordinates + coefficients)})"]
+    if style.coordinates == ("chi",):      # chi = |phi|; in the plane neither side is the one to be pushed to
+        lines.append(f"        d_chi = -d_chi if {_entry(rows['PHI'])} < 0.0 else d_chi")
+        lines.append(f"        d_chi = 0.0 if {_entry(rows['SIDE'])} == 0.0 and math.isfinite(d_chi) else d_chi")
+    if style.straight and energy:
+        b.text(plain_source(style.straight, "on_line"), INNER, cache=False)
+        lines.append(f"        e = on_line({', '.join(coefficients)}) if math.isnan({_entry(rows['SIDE'])}) and math.isfinite(e) else e")
+    lines += [f"        {_entry(row)} = {name}" for row, name in zip(places[not energy:], results[not energy:])]
+    if rows["D"] not in places:
+        lines.append(f"        {_entry(rows['D'])} = 0.0")
+    b.line("@block_function")
+    b.line("\n".join(lines))
+    return b
+
+
+def loop_source(style: Style, *, per_atom: bool = False, periodic: bool = True, orthogonal: bool = True) -> Builder:
+    """The text of the module that holds `loop` and `loop_energy`, the same for all styles of the same coordinates."""
+    module, straight = _geometry(style), periodic and orthogonal
+    constants = dict(layout(style), PER_ATOM=bool(per_atom), SKEW=periodic and not orthogonal, HISTORY=style.history or module is dipole,
+                     BLOCK=block.BLOCK)
+    if module is vectors:
+        places = vectors.order(style)
+        constants |= dict(zip(("CENTRE", "A", "B", "C"), places)) | {"THREE": len(places) > 3}
+    if style.history:
+        constants["BREAKS"] = style.breaks != ""
+    return _loops(module, bond_history if style.history else module, straight, tuple(constants.items()))
+
+
+@functools.cache
+def _loops(module: ModuleType, past: ModuleType, straight: bool, items: tuple) -> Builder:
+    b, constants = Builder(f"Loop over items, coordinates of {module.__name__}."), dict(items)
+    b.line("from asemd.kernels.block import call")
+    b.line(f"from asemd.kernels.algebra import {', '.join(f.__name__ for f in algebra.FUNCTIONS)}")
+    b.line("from asemd.kernels.fuse import madd")
+    b.text(plain_source(vector_math.vector_atan2), f"{INNER}, {vector_math.OPTIONS}", cache=False)
+    if constants["SKEW"]:
+        b.text(plain_source(image.closest_general), INNER, cache=False)
+    parts = {"sides_of": image.sides_orthogonal if straight else image.sides_any, "skewed": image.block_general,
+             "closest": image.from_block_orthogonal if straight else image.from_block}
+    parts |= {f.__name__: f for f in (block.odd, block.coefficients, block.report, block.sums, block.shares)}
+    parts |= {name: getattr(module, name) for name in ("gather", "geometry", "gradient", "scatter")}
+    if constants["HISTORY"]:
+        parts |= {"recall": past.recall, "part": past.part}
+    texts = [plain_source(f, name, constants=constants) for name, f in parts.items()]
+    b.text(paste(plain_source(block.forces, constants=constants), texts, constants), INNER, cache=False)
+    for name, energy in (("loop", 0), ("loop_energy", 1)):
+        given = ", ".join(inspect.signature(block.forces).parameters).removesuffix(", energy")
+        b.text(f"def {name}({given}):\n    forces({given}, np.int64({energy}))")
     return b
 
 
 @functools.cache
+def evaluator(style: Style, energy: bool) -> Callable:
+    """The compiled `evaluate` of a style."""
+    return source(style, energy=energy).build().evaluate
+
+
+@functools.cache
+def functions(style: Style) -> np.ndarray | list:
+    """Where a loop finds `evaluate` without and with energies, once they are needed: addresses, or functions where nothing is compiled."""
+    return [None, None] if config.DISABLE_JIT else np.zeros(2, np.int64)
+
+
+def loop(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthogonal: bool) -> Callable:
+    """The compiled loop for a style, which finds the style in `functions`; arguments as in `kernel`.
+
+    Returns
+    -------
+    callable
+        As `kernel` returns, with `arrays` from `arrays` and two more arguments at the end: `functions` and `room`.
+    """
+    f = evaluator(style, energy or per_atom)
+    functions(style)[int(energy or per_atom)] = f if config.DISABLE_JIT else f.address
+    module = loop_source(style, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal).build()
+    run = module.loop_energy if energy or per_atom else module.loop
+    return np.errstate(all="ignore")(run) if config.DISABLE_JIT else run
+
+
+def room(style: Style) -> np.ndarray:
+    """The buffer of a block."""
+    return aligned(((layout(style)["P"] + len(style.arguments)) * ROW,))
+
+
+def arrays(style: Style, given: tuple) -> tuple:
+    """The arrays that a loop gets: the table of the style comes first."""
+    return given if style.arrays else (NO_TABLE, *given)
+
+
+@functools.cache
 def kernel(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthogonal: bool) -> Callable:
-    """The compiled loop of a bonded style.
+    """The forces of a bonded style.
 
     Parameters
     ----------
@@ -176,7 +230,11 @@ def kernel(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthog
         2 to 7 are added to, `atom_energy` (cap,), `atom_virial` (6, cap), `bad` (4,): 1, item and coordinate of the
         first item outside the domain.
     """
-    return source(style, energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal).build().loop
+    run = loop(style, energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal)
+
+    def call(x, out, items, types, cell, coeff, given, *rest):
+        run(x, out, items, types, cell, coeff, arrays(style, given), *rest, functions(style), room(style))
+    return call
 
 
 def describe(style: Style, value: float, ids: Sequence[int], type_: int) -> str:

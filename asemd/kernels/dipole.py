@@ -1,49 +1,66 @@
-"""Loop over angles between the dipole of an atom and the vector to a second one; pasted by `asemd.kernels.bonded`.
+"""Angles between the dipole of an atom and the vector to a second one, for `asemd.kernels.block`.
 
-`arrays` holds the dipoles (3, cap) and the torques (3, cap) on them. gamma = atan2(|r x mu|, r . mu). The third atom of the angle is not
-used. As in LAMMPS there is no virial.
+`arrays` ends with the dipoles (3, cap) and the torques (3, cap) on them. a = x2 - x1, gamma = atan2(|a x mu|, a . mu). The third atom of
+the angle is not used. As in LAMMPS there is no virial.
 """
 from __future__ import annotations
 
 import math
 
+from asemd.kernels.algebra import between, cross, dot, member, number, push, put, store, times, triple
+from asemd.kernels.vector_math import vector_atan2
 
-def dipole(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad):
-    mu, torque = arrays[0], arrays[1]
-    energy = 0.0
-    for m in range(lo, hi):
-        i = items[m, 0]
-        torque[0, i] = torque[1, i] = torque[2, i] = 0.0
-    for m in range(lo, hi):
-        i, j = items[m, 0], items[m, 1]
-        ax, ay, az = x[0, j] - x[0, i], x[1, j] - x[1, i], x[2, j] - x[2, i]
-        if PERIODIC:
-            ax, ay, az = closest(ax, ay, az, cell)
-        bx, by, bz = mu[0, i], mu[1, i], mu[2, i]
-        nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-        aa, bb = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz
-        if not (aa > 0.0 and bb > 0.0):
-            report(bad, m, math.nan)      # at one place, or no dipole: no angle
-            continue
-        n = math.sqrt(nx * nx + ny * ny + nz * nz)
-        gamma = math.atan2(n, ax * bx + ay * by + az * bz)
-        e, slope = evaluate(gamma, types[m], coeff, arrays)
-        if not (math.isfinite(e) and math.isfinite(slope)):
-            report(bad, m, gamma)
-            continue
-        if n > 0.0:                       # a dipole along the vector is not turned
-            w = -slope / n
-            tx, ty, tz = w * nx, w * ny, w * nz
-            torque[0, i] += tx
-            torque[1, i] += ty
-            torque[2, i] += tz
-            fx, fy, fz = (ay * tz - az * ty) / aa, (az * tx - ax * tz) / aa, (ax * ty - ay * tx) / aa
-            push(out, i, -fx, -fy, -fz)
-            push(out, j, fx, fy, fz)
-        if ENERGY:
-            energy += e
-        if PER_ATOM:
-            for a in (i, j, items[m, 2]):
-                share(a, 1.0 / 3.0, e, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, atom_energy, atom_virial)
-    if ENERGY:
-        total(acc, energy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+V1 = F1 = GAMMA = D = SHAPE = NORMAL = 0
+closest = None
+
+
+def gather(x, items, first, n, b):
+    for k in range(n):
+        store(b, V1, k, between(x, member(items, first + k, 1), member(items, first + k, 0)))
+
+
+def geometry(b, n, sides):
+    for k in range(n):
+        d = closest(b, V1, k, sides)     # the rest is for `recall`, which knows the dipoles
+
+
+def recall(b, n, first, lo, hi, items, types, arrays):
+    """The angles; before the first of them the torques are set to zero."""
+    mu, torque = arrays[-2], arrays[-1]
+    if first == lo:
+        for m in range(lo, hi):
+            i = member(items, m, 0)
+            torque[0, i] = torque[1, i] = torque[2, i] = 0.0
+    for k in range(n):
+        i = member(items, first + k, 0)
+        a, m = triple(b, V1, k), (mu[0, i], mu[1, i], mu[2, i])
+        aa, mm, normal = dot(a, a), dot(m, m), cross(a, m)
+        store(b, NORMAL, k, normal)
+        put(b, GAMMA, k, vector_atan2(math.sqrt(dot(normal, normal)), dot(a, m)))
+        put(b, SHAPE, k, aa if aa < mm else mm)      # 0: at one place, or no dipole
+
+
+def part(b, n, first, items, types, arrays, x):
+    """The torques; they take the place of the normals."""
+    for k in range(n):
+        slope, normal = number(b, D, k), triple(b, NORMAL, k)
+        size = math.sqrt(dot(normal, normal))
+        w = -slope / size if size > 0.0 and math.isfinite(slope) else 0.0      # a dipole along the vector is not turned
+        turn = times(w, normal)
+        store(b, NORMAL, k, turn)
+        push(arrays[-1], member(items, first + k, 0), turn)
+
+
+def gradient(b, n):
+    for k in range(n):
+        a = triple(b, V1, k)
+        f = cross(a, triple(b, NORMAL, k))
+        aa = dot(a, a)
+        store(b, F1, k, (f[0] / aa, f[1] / aa, f[2] / aa))
+
+
+def scatter(out, items, first, n, b):
+    for k in range(n):
+        f = triple(b, F1, k)
+        push(out, member(items, first + k, 0), times(-1.0, f))
+        push(out, member(items, first + k, 1), f)

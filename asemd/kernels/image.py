@@ -1,7 +1,11 @@
-"""The closest periodic image of a difference vector, for cells along the axes and for cells of any shape."""
+"""The closest periodic image of difference vectors, for cells along the axes and for cells of any shape."""
 from __future__ import annotations
 
 import numpy as np
+
+from asemd.kernels.algebra import minus, product, store, triple
+
+V1 = VECTORS = 0
 
 
 def closest_orthogonal(dx, dy, dz, cell):
@@ -38,3 +42,36 @@ def closest_general(dx, dy, dz, cell):
                 if e2 < best:
                     best, bx, by, bz = e2, ex, ey, ez
     return bx, by, bz
+
+
+def sides_orthogonal(cell):
+    """What `from_block_orthogonal` needs of a cell."""
+    return ((cell.lengths[0], cell.lengths[1], cell.lengths[2]),
+            (cell.inverse_lengths[0], cell.inverse_lengths[1], cell.inverse_lengths[2]))
+
+
+def from_block_orthogonal(b, row, k, sides):
+    """A vector of a block (`asemd.kernels.block`), made the closest image as by `closest_orthogonal`."""
+    d, length, inverse = triple(b, row, k), sides[0], sides[1]
+    s = product(d, inverse)
+    d = minus(d, product(length, (np.rint(s[0]), np.rint(s[1]), np.rint(s[2]))))
+    store(b, row, k, d)
+    return d
+
+
+def sides_any(cell):
+    """Nothing: images are found before, or not at all."""
+    return 0
+
+
+def from_block(b, row, k, sides):
+    """A vector of a block as it is."""
+    return triple(b, row, k)
+
+
+def block_general(b, n, cell):
+    """`closest_general` for the vectors of a block."""
+    for c in range(VECTORS):
+        for k in range(n):
+            d = triple(b, V1 + 3 * c, k)
+            store(b, V1 + 3 * c, k, closest_general(d[0], d[1], d[2], cell))

@@ -7,10 +7,12 @@ The ``single_`` functions are the twins for single precision, pasted with every 
 from __future__ import annotations
 
 import hashlib
+import math
 from pathlib import Path
 
 from asemd.kernels import bits
 from asemd.kernels.bits import exponent, nearest_integer, power_of_two, significand, upper_half
+from asemd.kernels.fuse import madd
 from asemd.kernels.generate import Builder, plain_source
 
 OPTIONS = "fastmath={'contract'}, forceinline=True"
@@ -105,6 +107,44 @@ def vector_erfc(x):
     e = vector_exp(-(h * h))
     e = (e - e * (d * (1.0 - d * (0.5 - d * 0.16666666666666666)))) * (p / (1.0 + 2.0 * a))
     return 2.0 - e if x < 0.0 else e
+
+
+def vector_atan2(y, x):
+    """Angle of the point (x, y), -pi to pi, like `math.atan2`; error below 0.8 of the last digit.
+
+    With z = min / max of abs(x), abs(y) and t = z or (z - 1) / (z + 1) the angle is k pi/4 + arctan t or k pi/4 - arctan t, abs(t) <= 1/2.
+    """
+    a, b = abs(y), abs(x)
+    swap = a > b
+    small, large = b if swap else a, a if swap else b
+    turned = small > 0.5 * large
+    above = small - large if turned else small          # exact
+    below = small + large if turned else large
+    lost = small - (below - large) if turned else 0.0   # what rounding took from `below`
+    inverse = 1.0 / below if below > 0.0 else 0.0
+    t = above * inverse
+    rest = inverse * (madd(-t, below, above) - t * lost)      # what rounding took from t
+    z = t * t
+    p = -0.009215792047089858
+    p = p * z + 0.025006503566489507
+    p = p * z - 0.03806653672057366
+    p = p * z + 0.04628024868570153
+    p = p * z - 0.05240099507994713
+    p = p * z + 0.05879578429582425
+    p = p * z - 0.06666435677235948
+    p = p * z + 0.07692294712540285
+    p = p * z - 0.09090908620322523
+    p = p * z + 0.11111111100917376
+    p = p * z - 0.14285714285599188
+    p = p * z + 0.19999999999999488
+    p = p * z - 0.3333333333333333
+    rest = rest + (t * z) * p
+    k = 1.0 if turned else 0.0
+    k = 2.0 - k if swap else k
+    k = 4.0 - k if x < 0.0 else k
+    back = swap != (x < 0.0)
+    t, rest = -t if back else t, -rest if back else rest
+    return math.copysign(k * 0.7853981633974483 + (t + (rest + k * 3.061616997868383e-17)), y)
 
 
 def vector_pow(x, y):

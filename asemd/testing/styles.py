@@ -85,11 +85,28 @@ def sample(style: Style, seed: int = 7) -> Sample:
     raise AssertionError(f"{style}: the example coefficients leave nearly every geometry outside the domain")
 
 
-def twin(style: Style, **variant) -> dict:
-    """The same module as plain Python: its names, `loop` and `evaluate` among them."""
-    names: dict = {}
-    exec(compile(re.sub(r"(?m)^@njit.*$", "", bonded.source(style, **variant).source()), f"<{style.name}>", "exec"), names)
-    return names
+def twin(style: Style, *, energy: bool, **variant) -> dict:
+    """The same as plain Python: `loop`, and `evaluate`, the function of the style for what `asemd.kernels.bonded.chart` names."""
+    found: dict = {}
+    for source in (bonded.loop_source(style, **variant), bonded.source(style, energy=energy)):
+        exec(compile(re.sub(r"(?m)^@(njit|block_function).*$", "", source.source()), f"<{style.name}>", "exec"), found)
+    run, found["madd"] = found["loop_energy" if energy else "loop"], lambda a, b, c: a * b + c
+
+    def loop(x, out, items, types, cell, coeff, arrays, *rest):
+        with np.errstate(all="ignore"):
+            run(x, out, items, types, cell, coeff, bonded.arrays(style, arrays), *rest, [found["evaluate"]] * 2, bonded.room(style))
+
+    def evaluate(*values):
+        *coordinates, kind, coeff, arrays = values
+        numbers, tables = iter(coeff[:, kind]), iter(arrays)
+        given = dict(zip(bonded.chart(style), coordinates)) | {"chi": abs(values[0]), "rate": 0.0, "reference": 1.0}
+        given |= {n: next(tables) if n in style.arrays else next(numbers) for n in style.arguments}
+        e, *slopes = found["potential"](*(given[n] for n in style.coordinates + style.arguments))
+        by = dict(zip(style.coordinates, slopes))
+        if "chi" in by:
+            by["phi"] = math.copysign(1.0, values[0]) * by["chi"]
+        return (e, *(by.get(n, 0.0) for n in bonded.chart(style)))
+    return {"loop": loop, "evaluate": evaluate}
 
 
 def _close(style: Style, what: str, got, want, tolerance: float, scale=None) -> None:
@@ -133,7 +150,7 @@ def check_text(style: Style) -> None:
 def check_slope(style: Style) -> None:
     """The returned derivatives are those of the returned energy."""
     s = sample(style)
-    evaluate = twin(style, energy=True, per_atom=True, periodic=False)["evaluate"]
+    evaluate = twin(style, energy=True)["evaluate"]
     names = bonded.chart(style)
     rng = np.random.default_rng(3)
     length = float(np.linalg.norm(s.x[:, 0] - s.x[:, 1]))

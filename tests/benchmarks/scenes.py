@@ -8,6 +8,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from tests.benchmarks.peptide import write as write_peptide
+
 ROOT = Path(__file__).resolve().parents[2]
 MELT = ROOT / "workflows" / "polymer-melt"
 
@@ -42,6 +44,23 @@ fix 2 all langevin 1.0 1.0 10.0 904297
 timestep 0.012
 thermo 100
 """
+PEPTIDE = """units real
+atom_style full
+pair_style zero 6.0
+bond_style harmonic
+angle_style charmm
+dihedral_style charmm
+improper_style harmonic
+read_data {data}
+replicate 2 2 4
+pair_coeff * *
+neighbor 2.0 bin
+neigh_modify delay 5
+velocity all create 275.0 87287 loop geom
+fix 1 all nve
+timestep 0.5
+thermo 100
+"""
 
 
 def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
@@ -49,15 +68,21 @@ def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
     return LJ.format(cells=cells, neigh=neigh)
 
 
+def _kept() -> Path:
+    """The folder of data files that are built once."""
+    folder = Path(tempfile.gettempdir()) / f"asemd-benchmarks-{os.getuid() if hasattr(os, 'getuid') else 0}"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
 def chain(chains: int = 320, beads: int = 100) -> str:
     """The melt of LAMMPS's ``bench/in.chain``: FENE chains at density 0.8442 with a Langevin thermostat.
 
     The chains are random walks, pushed off and run for 2000 steps once; the data file is kept in the temporary folder.
     """
-    folder = Path(tempfile.gettempdir()) / f"asemd-benchmarks-{os.getuid() if hasattr(os, 'getuid') else 0}"
+    folder = _kept()
     data = folder / f"chain-{chains}x{beads}.data"
     if not data.exists():
-        folder.mkdir(exist_ok=True)
         spec = importlib.util.spec_from_file_location("polymer_melt", MELT / "run.py")
         melt = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(melt)
@@ -66,3 +91,10 @@ def chain(chains: int = 320, beads: int = 100) -> str:
                        cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)})
         os.replace(folder / "melt.final.data", data)
     return CHAIN.format(data=data)
+
+
+def peptide() -> str:
+    """Bonded terms of sixteen helices in water, as in LAMMPS's ``examples/peptide``; the data file is kept in the temporary folder."""
+    data = _kept() / "peptide.data"
+    write_peptide(data)
+    return PEPTIDE.format(data=data)
