@@ -1,6 +1,6 @@
 """Torsion angles for `asemd.kernels.block` (dihedrals, and impropers in phi or chi). R12, R23, R34, THETA1, THETA2 are the rows of the
-lengths and angles that the style takes besides, or 0. SIDE tells on which side of the plane of the first three atoms the last one is: positive,
-negative, 0 in it, not a number where three atoms are on a line and phi is not defined.
+lengths and angles that the style takes besides, or 0. SIDE tells on which side of the plane of the first three atoms the last one is:
+positive, negative, 0 in it, not a number where three atoms are on a line and phi is not defined.
 
 With f = x1 - x2, g = x2 - x3, h = x4 - x3, a = f x g, c = h x g the sine is (c x a) . g / |g| and the gradients are multiples of a / a^2
 and c / c^2, so that no sine is divided by. Source: Blondel and Karplus, J. Comput. Chem. 17, 1132 (1996).

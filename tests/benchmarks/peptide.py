@@ -84,7 +84,8 @@ def write(path: Path) -> None:
     head, body = [f"{len(x)} atoms", f"{len(atom_types)} atom types"], []
     body += ["Masses", "", *(f"{t} {MASS[n[0]]}" for t, n in enumerate(atom_types, 1)), ""]
     body += ["Atoms # full", ""]
-    body += [f"{i} {m} {atom_types.index(n) + 1} 0.0 {p[0]:.6f} {p[1]:.6f} {p[2]:.6f}" for i, (n, m, p) in enumerate(zip(names, molecule, x), 1)]
+    for i, (name, m, place) in enumerate(zip(names, molecule, x), 1):
+        body.append(f"{i} {m} {atom_types.index(name) + 1} 0.0 " + " ".join(f"{p:.6f}" for p in place))
     for kind, found in items.items():
         labels = [min(words, words[::-1]) for words in (tuple(names[i] for i in item) for item in found)]
         example = {label: item for label, item in zip(labels[::-1], found[::-1])}
