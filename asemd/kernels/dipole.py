@@ -21,7 +21,7 @@ def gather(x, items, first, n, b):
 
 def geometry(b, n, sides):
     for k in range(n):
-        d = closest(b, V1, k, sides)     # the rest is for `recall`, which knows the dipoles
+        closest(b, V1, k, sides)         # the rest is for `recall`, which knows the dipoles
 
 
 def recall(b, n, first, lo, hi, items, types, arrays):
