@@ -41,3 +41,20 @@ def test_neighbour_time_of_a_log(compare):
     from tests.benchmarks import neighbour
     text = "Neigh   | 0.1        | 0.2        | 0.3        |   0.0 |  9.00\nNeighbor list builds = 4\n"
     assert math.isclose(neighbour.of_log(text), 50.0)
+
+
+def test_bonded_time_of_a_log(compare):
+    from tests.benchmarks import run_bonded
+    text = "Bond    | 0.1        | 0.2        | 0.3        |   0.0 |  9.00\n"
+    assert math.isclose(run_bonded.of_log(text, 50), 4.0)
+
+
+def test_peptide_scene(compare, tmp_path):
+    """Every category of items is there and begins near its rest: the torsions alone have energy."""
+    from asemd.lammps import Lammps
+    from tests.benchmarks import peptide, scenes
+    peptide.write(tmp_path / "peptide.data")
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(scenes.PEPTIDE.format(data=tmp_path / "peptide.data").replace("replicate 2 2 4", "") + "run 0")
+    bond, angle, dihedral, improper = (lmp.get_thermo(word) for word in ("ebond", "eangle", "edihed", "eimp"))
+    assert 0.0 < bond < 1.0 and 0.0 < angle < 5.0 and 0.0 < dihedral < 0.4 * 182 and 0.0 <= improper < 1e-3

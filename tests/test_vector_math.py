@@ -1,4 +1,4 @@
-"""exp, log, erfc of the pair kernels: digits against mpmath, the plain Python twins, and whether loops become vector code."""
+"""exp, log, erfc and atan2: digits against mpmath, the plain Python twins, and whether loops become vector code."""
 from __future__ import annotations
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from asemd.kernels import bits, vector_math
-from asemd.kernels.generate import Builder
+from asemd.kernels.generate import Builder, plain_source
 
 LOOPS = """
 def loop_{name}(x, out):
@@ -90,6 +90,37 @@ def test_plain_python_agrees(name, double):
     getattr(double, f"loop_{name}")(x, out)
     plain = np.array([getattr(vector_math, f"vector_{name}")(float(v)) for v in x])
     assert plain == pytest.approx(out, rel=2e-15, abs=1e-300)
+
+
+@pytest.fixture(scope="module")
+def angles():
+    b = Builder("atan2 in a loop")
+    b.line("from asemd.kernels.fuse import madd")
+    b.text(plain_source(vector_math.vector_atan2), vector_math.OPTIONS)
+    b.text("def loop(y, x, out):\n    for k in range(x.size):\n        out[k] = vector_atan2(y[k], x[k])")
+    return b.build()
+
+
+def test_atan2(angles):
+    rng = np.random.default_rng(5)
+    y, x = rng.normal(size=3000), rng.normal(size=3000)
+    y[:1500] *= 10.0 ** rng.uniform(-30, 0, 1500)      # near 0 and 180 degrees
+    x[700:1000] *= 10.0 ** rng.uniform(-30, 0, 300)    # near 90
+    x[2500:], y[2500:] = np.cos(t := np.linspace(-math.pi, math.pi, 500)), np.sin(t)
+    out = np.empty_like(x)
+    angles.loop(y, x, out)
+    error = max(float(abs(mp.mpf(g) - mp.atan2(a, b)) / abs(np.spacing(g))) for g, a, b in zip(out.tolist(), y.tolist(), x.tolist()))
+    print(f"atan2: {error:.2f} ulp")
+    assert error < (1.5 if os.environ.get("NUMBA_DISABLE_JIT") else 0.8)
+
+
+def test_atan2_on_the_axes(angles):
+    y, x = np.array([0.0, 0.0, -0.0, -0.0, 2.0, -2.0, 3.0, -3.0, 5e-324]), np.array([1.0, -1.0, 1.0, -1.0, 0.0, -0.0, 3.0, -3.0, -1.0])
+    out = np.empty_like(x)
+    angles.loop(y, x, out)
+    assert out.tolist() == [math.atan2(a, b) for a, b in zip(y, x)] and np.signbit(out).tolist() == np.signbit(y).tolist()
+    angles.loop(np.array([math.nan, 1.0]), np.array([1.0, math.nan]), out)
+    assert np.isnan(out[:2]).all()
 
 
 def test_pow(double):

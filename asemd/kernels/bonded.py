@@ -51,22 +51,22 @@ def _geometry(style: Style) -> ModuleType:
 
 
 def layout(style: Style) -> dict[str, int]:
-    """The rows of a block for the coordinates of a style, and how many there are of what (`asemd.kernels.block`)."""
+    """The rows of a block for the coordinates of a style, 0 for what it has not, and how many there are (`asemd.kernels.block`)."""
     module, names = _geometry(style), chart(style) + PAST * style.history
     used = [n for n in names if n in style.coordinates or n == names[0]]
+    slopes = [_slope(n) for n in used if n not in PAST]
     count = {bond: 1, dipole: 1, angle: 2}.get(module, ATOMS[style.category] - 1)
-    rows = {"VECTORS": count, "STRESS": 0 if module is dipole else count, "ATOMS": ATOMS[style.category]}
-    rows |= {f"V{k + 1}": 3 * k for k in range(count)} | {f"F{k + 1}": 3 * (count + k) for k in range(count)}
-    rows |= {n.upper(): VECTORS.index(n) for n in names} if module is vectors else dict.fromkeys(map(str.upper, names), 0)
-    wanted = [] if module is vectors else [n.upper() for n in used]
-    slopes = [n for n in used if n not in PAST]
-    rows |= {_slope(n): 0 for n in names} | {"SLOPES": len(slopes)}
-    top = 6 * count
-    widths = dict.fromkeys([*wanted, *map(_slope, slopes), "E"], 1) | ROWS.get(module, {}) | {"P": 0}
+    widths = dict.fromkeys([f"{kind}{k + 1}" for kind in "VF" for k in range(count)], 3)
+    widths |= dict.fromkeys([] if module is vectors else map(str.upper, used), 1)
+    widths |= dict.fromkeys([*slopes, "E"], 1) | ROWS.get(module, {}) | {"P": 0}
+    rows, top = dict.fromkeys([*map(str.upper, names), *map(_slope, names), "SHAPE"], 0), 0
     for name, width in widths.items():
         rows[name], top = top, top + width
-    rows = {"SHAPE": 0, "VALUE": rows[names[0].upper()]} | rows
-    return rows | {"D": rows[_slope(names[0])]}
+    if module is vectors:      # the coordinates are those of V1, V2, V3
+        rows |= {n.upper(): VECTORS.index(n) for n in names}
+    rows.setdefault("VALUE", rows[names[0].upper()])
+    return rows | {"D": rows[slopes[0]], "SLOPES": len(slopes), "VECTORS": count, "STRESS": 0 if module is dipole else count,
+                   "ATOMS": ATOMS[style.category]}
 
 
 def _slope(coordinate: str) -> str:

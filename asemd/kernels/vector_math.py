@@ -1,7 +1,7 @@
-"""exp, log, erfc and pow without branches and without calls, so that loops over them become vector code.
+"""exp, log, erfc, pow and atan2 without branches and without calls, so that loops over them become vector code.
 
 Compiled with ``contract`` as the only fastmath flag: reordering would cost the digits that the split constants keep. Errors in
-units of the last digit: exp 1, log 1, erfc 4 (down to where it underflows), pow(x, y) 1 + abs(y log x).
+units of the last digit: exp 1, log 1, erfc 4 (down to where it underflows), pow(x, y) 1 + abs(y log x), atan2 0.8.
 The ``single_`` functions are the twins for single precision, pasted with every literal as ``real(...)``.
 """
 from __future__ import annotations

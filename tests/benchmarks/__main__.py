@@ -9,11 +9,12 @@ import argparse
 import json
 from pathlib import Path
 
-from tests.benchmarks import compare, memory, neighbour, run_chain, run_lj, run_small, scenes, startup
+from tests.benchmarks import compare, memory, neighbour, run_bonded, run_chain, run_lj, run_small, scenes, startup
 
 README = scenes.ROOT / "README.md"
 BEGIN, END = "<!-- benchmarks: begin -->", "<!-- benchmarks: end -->"
 SCENES = (("LJ melt, 32,000 atoms", run_lj), ("bead-spring melt, 32,000 atoms", run_chain), ("LJ, 500 atoms", run_small))
+BONDED = {"chain": "bonded forces of the melt (31,680 FENE bonds)", "peptide": "bonded forces of peptides in water (37,552 items)"}
 
 
 def rows(title: str, result: dict, key: str, unit: str) -> list[str]:
@@ -49,6 +50,10 @@ def main() -> None:
                 results[f"{title}, {precision}, {threads}"] = result
                 table += rows(title, result, "steps_per_second", "steps/s")
                 print(table[-1], flush=True)
+        for scene, title in BONDED.items():
+            result = results[f"{title}, {threads}"] = run_bonded.measure(samples=samples, threads=threads, scene=scene, **short)
+            table += rows(title, result, "ms_per_step", "ms")
+            print(table[-1], flush=True)
     result = results["neighbour build"] = neighbour.measure(samples=samples)
     table += rows("neighbour list, 32,000 atoms", result, "ms_per_build", "ms")
     results["memory"], results["startup"] = memory.measure(samples=1 if o.quick else 3), startup.measure(2 if o.quick else 5)

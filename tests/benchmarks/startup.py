@@ -1,4 +1,5 @@
-"""Seconds of fresh processes: importing asemd, and from process start to the first forces of in.lj (32,000 atoms), cold and warm."""
+"""Seconds of fresh processes: importing asemd, from process start to the first forces of in.lj (32,000 atoms), cold and warm, and what
+kernels of one more bonded style take where one of its kind is there already."""
 from __future__ import annotations
 
 import os
@@ -11,6 +12,21 @@ from pathlib import Path
 from tests.benchmarks import compare, scenes
 
 FIRST_FORCE = "import asemd; atoms = asemd.read('in.lj'); atoms.get_forces()"
+ONE_MORE = """
+import time
+from asemd import units
+from asemd.style import find
+from asemd.testing.styles import Sample, sample
+x = None
+for category, name in (("bond", "harmonic"), ("bond", "morse")):
+    style = find(category, name)
+    coeff = style.parse_coeff(style.example.split(), {})
+    one = Sample(style, style.pack({}, {1: coeff}, 1, units.get("lj")), x if x is not None else sample(style).x)
+    x, began = one.x, time.process_time()
+    for energy in (False, True):      # both kernels that a run has
+        one.run(energy=energy, per_atom=False)
+print(time.process_time() - began)
+"""
 
 
 def seconds(code: str, folder: str, cache: str) -> float:
@@ -19,6 +35,16 @@ def seconds(code: str, folder: str, cache: str) -> float:
     began = time.perf_counter()
     subprocess.run([sys.executable, "-c", code], check=True, cwd=folder, env=env)
     return time.perf_counter() - began
+
+
+def one_more(folder: str, samples: int) -> dict:
+    """Processor time of bond style morse after harmonic: with an empty cache, and from the cache."""
+    out: dict[str, list[float]] = {"one more style, cold": [], "one more style, warm": []}
+    for k in range(samples):
+        env = {**compare.environment(), "ASEMD_CACHE_DIR": str(Path(folder) / f"more{k}")}
+        for values in out.values():
+            values.append(float(subprocess.check_output([sys.executable, "-c", ONE_MORE], env=env)))
+    return {name: compare.spread(values) for name, values in out.items()}
 
 
 def compiled(cache: str) -> set[tuple[str, int]]:
@@ -40,7 +66,8 @@ def measure(samples: int = 5) -> dict:
             for name, code in times.items():
                 seen[name].append(seconds(code, folder, warm))
         after = compiled(warm)
-    out = {name: compare.spread(values) for name, values in seen.items()}
+        more = one_more(folder, min(samples, 3))
+    out = {name: compare.spread(values) for name, values in seen.items()} | more
     out["first force, cold"] = compare.spread(cold)
     extra = out["import asemd"]["median"] - out["empty python"]["median"]
     return {"seconds": out, "import asemd, more than empty": extra, "kernels cached": len(before),
