@@ -161,6 +161,15 @@ def test_an_edited_module_that_kernels_import_makes_new_kernels(monkeypatch):
     assert generate.load(text).__name__ != before
 
 
+def test_arithmetic_does_not_depend_on_who_calls_first():
+    """numba hands the freedom to reorder down to what a function calls, unless that says otherwise."""
+    b = generate.Builder("a test of strict arithmetic")
+    b.text("def strict(x):\n    return (x + 1e17) - 1e17", cache=False)
+    b.text("def free(x):\n    return strict(x)", f"fastmath={generate.FAST}", cache=False)
+    module = b.build()
+    assert module.free(3.0) == module.strict(3.0) == 0.0
+
+
 def test_an_unusable_folder_falls_back(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")

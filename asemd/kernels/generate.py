@@ -178,7 +178,9 @@ class Builder:
     def text(self, source: str, options: str = "", cache: bool = True, jit: bool = True) -> None:
         """A function given as text, compiled with strict IEEE arithmetic unless `options` says otherwise."""
         if jit:
-            words = ["cache=True"] * cache + ["nogil=True", "error_model='numpy'"] + [options] * bool(options)
+            if "fastmath" not in options:      # else numba takes that of the function that calls it first
+                options = ", ".join(filter(None, [options, "fastmath=False"]))
+            words = ["cache=True"] * cache + ["nogil=True", "error_model='numpy'", options]
             self.lines.append(f"@njit({', '.join(words)})")
         self.lines.append(source)
 
