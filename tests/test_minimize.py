@@ -278,6 +278,31 @@ def test_region_too_small():
     assert result.criterion == "trust region too small" and np.array_equal(result.x, x)
 
 
+def test_rows_of_steps_that_were_taken_back():
+    told = "".join(asemd("""
+        dimension 2
+        lattice sq2 0.8
+        region b block 0 6 0 6 -0.5 0.5
+        create_box 1 b
+        create_atoms 1 box
+        displace_atoms all random 0.1 0.1 0 77
+        mass 1 1
+        pair_style lj/cut 2.5
+        pair_modify shift yes
+        pair_coeff 1 1 1 1
+        fix 2 all enforce2d
+        thermo 1
+        thermo_style custom step pe fnorm
+        min_style hftn
+        min_modify dmax 0.5
+        minimize 0 1e-3 100 1000
+        """).told)
+    rows = [line.split() for line in told.split("Step")[1].split("Loop")[0].splitlines()[1:]]
+    energies = [float(row[1]) for row in rows]
+    assert energies == sorted(energies, reverse=True) and len(set(energies)) < len(energies)
+    assert f"for {int(rows[-1][0]) - 1} steps" in told
+
+
 def test_norm_that_hftn_does_not_have():
     with pytest.raises(InputError, match="norm max is not possible"):
         minimized("hftn", "0 1e-6 10 100", "norm max")

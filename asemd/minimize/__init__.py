@@ -60,7 +60,7 @@ class Problem:
         Energies are divided by this in the energy criterion, in the line search and in the result: the number of atoms
         if thermodynamic output is normalised (units lj), else 1.
     shown : callable, optional
-        ``iteration -> bool``: whether output is due; LAMMPS's count of evaluations has one more (hftn) where a step was taken back.
+        ``iteration -> bool``: whether output is due, which wants energy and forces where the iteration ends (hftn takes steps back).
     """
 
     x0: np.ndarray

@@ -40,6 +40,7 @@ class HFTN:
         state = State(problem, etol, ftol, maxeval, options, callback)
         if state.options.norm == "max":
             raise InputError("min_style hftn: min_modify norm max is not possible with it, use norm two or inf")
+        state.previous = state.energy
         widest = state.options.dmax * math.sqrt(state.x.size)
         region = Region(state, widest)
         if state.force_met():
@@ -85,7 +86,8 @@ class Region:
             return why
         self._adjust(how, length, difference.energy - state.energy, expected)
         if self.again:
-            state.evaluations += bool(state.problem.shown and state.problem.shown(iteration))
+            if state.problem.shown is not None and state.problem.shown(iteration):
+                state.evaluate(x)       # output shows what was computed last
             state.x, state.f, state.energy, state.previous = x, f, energy, before
         if self.radius < EPS:
             return SMALLREGION

@@ -104,9 +104,11 @@ class Minimization(Driver):
         self.output_seconds = 0.0
         landscape = Landscape(loop)
         system, norm = scene.system, scene.thermo.is_normalised(scene.units)
-        def shown(iteration: int) -> bool:
-            step = begin + iteration
+        def due(step: int) -> bool:
             return self._is_thermo(step) or any(d.schedule.next == step for d in scene.dumps.values())
+
+        def shown(iteration: int) -> bool:
+            return iteration == self.plan.steps or due(begin + iteration) or restart.due(session, begin + iteration)
 
         problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0,
                           shown)
@@ -116,7 +118,7 @@ class Minimization(Driver):
             if scene.min_style in DAMPED:
                 system.v[:] = v
             self._watch("update", iteration)
-            if shown(iteration):
+            if due(scene.step):
                 began = time.perf_counter()
                 self._provide(scene.step, scene.step, fresh=True)
                 self._output(scene.step, ends=False)
