@@ -36,6 +36,8 @@ def run(session, args):
             thermo.line = choice(value, ("one", "multi", "yaml"), what)
         elif key == "temp":
             set_temp(scene, value)
+            if scene.computes[value].group != "all":
+                session.warn("Temperature for thermo pressure is not for group all")
         elif key == "press":
             thermo.press = _compute(scene, value, "pressure", what)
         else:
