@@ -94,7 +94,10 @@ class Region:
         return MAXEVAL if state.evaluations >= state.maxeval else ""
 
     def _adjust(self, how: int, length: float, gained: float, expected: float) -> None:
-        """Accept the step or not, and choose the next radius from how well the model did."""
+        """Accept the step or not, and choose the next radius from how well the model did.
+
+        As in LAMMPS, `gained` is an energy per atom where output is normalised (units lj) and `expected` is not: the radius grows less.
+        """
         self.again = not gained > 0.0
         if self.again:
             if length == 0.0:
