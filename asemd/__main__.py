@@ -1,4 +1,4 @@
-"""``python -m asemd``: the command line."""
+"""``python -m asemd``, the same as ``asemd``."""
 from asemd.cli import entry
 
 entry()

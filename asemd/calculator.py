@@ -21,6 +21,7 @@ from asemd.system import System
 from asemd.topology import Topology
 
 VOIGT = [0, 1, 2, 5, 4, 3]      # LAMMPS xx yy zz xy xz yz -> ASE xx yy zz yz xz xy
+BONDED = ("bond", "angle", "dihedral", "improper")
 GROUPS = "groups"               # array of atoms: group bits, for interactions that differ by group
 
 
@@ -171,6 +172,10 @@ class ForceField(Calculator):
         if own is not None and (self.topology is None or self.like is not None or not own.is_empty):
             return own
         if self.topology is None:
+            bonded = [category for category in BONDED if self.arguments.get(category)]
+            if bonded:
+                raise InputError(f"the force field has {' and '.join(bonded)} styles, but these atoms do not know their bonds: use "
+                                 "asemd.Atoms(atoms, topology=...), or give the topology to the ForceField")
             return Topology()
         n = len(atoms)
         largest = max((int(items.max()) for _, items, _ in self.topology if len(items)), default=-1)

@@ -54,8 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except RecursionError:
         return complain("a formula or list is nested too deeply")
     except Exception as e:
-        if hasattr(e, "format_message"):        # typer: a wrong option
-            return complain(e.format_message())
+        if hasattr(e, "format_message"):        # typer: a wrong option; the help text, which it prints by itself, comes without a message
+            return complain(e.format_message() or "a command is missing")
         if os.environ.get("ASEMD_DEBUG"):
             raise
         return complain(f"{type(e).__name__}: {' '.join(str(e).split())} (ASEMD_DEBUG=1 shows where)")

@@ -18,6 +18,7 @@ class Progress:
     begin: int = 0              # first step of this run
     first: int = 0              # first step of a series of runs (run ... start)
     last: int = 0
+    stop: int | None = None     # last step of a series of runs (run ... stop), if not that of this run
     started: float = field(default_factory=time.perf_counter)
     previous: dict[str, tuple[float, int]] = field(default_factory=dict)      # time and step tpcpu and spcpu were asked for last
     builds: int = 0             # neighbour list counters when the run began

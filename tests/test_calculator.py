@@ -521,3 +521,16 @@ def test_special_bonds_by_three_numbers():
     same = [Interactions.build(pair={"lj/cut 3.0": {(1, 1): (1.0, 1.0)}}, special_bonds=special)
             for special in ((0.0, 0.25, 0.5), {"lj/coul": (0.0, 0.25, 0.5)}, "lj/coul 0.0 0.25 0.5")]
     assert {(i.special_lj, i.special_coul) for i in same} == {((0.0, 0.25, 0.5), (0.0, 0.25, 0.5))}
+
+
+def test_plain_atoms_with_a_bonded_force_field_are_refused():
+    """Atoms that have lost their bonds on the way through a file or a tool must not get energies without them."""
+    plain = PlainAtoms("H2", positions=[[0, 0, 0], [0.9, 0, 0]])
+    plain.calc = ForceField(bond={"harmonic": {1: (10.0, 1.0)}})
+    with pytest.raises(InputError, match="bond styles.*topology"):
+        plain.get_potential_energy()
+    plain.calc = ForceField(bond={"harmonic": {1: (10.0, 1.0)}}, topology=Topology(bonds=[[0, 1]], bond_types=[1]))
+    assert plain.get_potential_energy() == pytest.approx(0.1)
+    own = asemd.Atoms(plain)
+    own.calc = ForceField(bond={"harmonic": {1: (10.0, 1.0)}})
+    assert own.get_potential_energy() == 0.0

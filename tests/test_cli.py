@@ -39,7 +39,7 @@ def test_switches_and_options(script, capsys):
 @pytest.mark.parametrize("arguments, message", [
     (["run", "nofile"], "cannot open input script nofile"), (["run"], "needs a script"),
     (["run", "in.x", "--precision", "half"], "--precision"),
-    (["run", "in.x", "--thread", "2"], "--thread"), (["run", "in.x", "-foo"], "-f"), (["frobnicate"], "frobnicate"),
+    (["run", "in.x", "--thread", "2"], "--thread"), (["run", "in.x", "-foo"], "-f"), (["frobnicate"], "frobnicate"), ([], "command"),
     (["run", "bad"], "bad:2: run x"),
 ])
 def test_failures_end_with_one_message(script, capsys, arguments, message):

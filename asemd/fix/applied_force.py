@@ -28,6 +28,7 @@ class AppliedForce(Fix):
 
     minimizes = True
     levels = "one"
+    size = 3        # elements of the vector
 
     def __init__(self, group: str = "all", force: tuple[Value | None, Value | None, Value | None] = (0.0, 0.0, 0.0), region=None):
         super().__init__(group)

@@ -96,6 +96,11 @@ class External(Fix):
     def scalar(self) -> float:
         return self.energy
 
+    @property
+    def size(self) -> int:
+        """How many elements the vector has."""
+        return len(self.values)
+
     def vector(self, i: int) -> float:
         if not 1 <= i <= len(self.values):
             raise InputError(f"fix {self.id} (style external) has {len(self.values)} vector elements, not {i}")

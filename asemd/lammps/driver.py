@@ -144,7 +144,8 @@ class Driver:
             return
         begin = scene.step
         loop = session.loop
-        if plan.pre or loop is None:
+        fresh = plan.pre or loop is None
+        if fresh:
             from asemd.loop import Loop
             from asemd.respa import RespaLoop
             check(session)
@@ -165,8 +166,9 @@ class Driver:
             loop.sync_in()      # commands between the runs may have changed velocities
         loop.begin, loop.end, loop.dt = plan.first, plan.last, scene.dt
         engine = loop.engine
-        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, builds=engine.builds, dangerous=engine.dangerous,
-                                 remaining=session.timer.remaining)
+        counted = engine if fresh else session.moment.progress      # without a new setup the counters go on
+        self.progress = Progress(begin=begin, first=plan.first, last=begin + plan.steps, stop=plan.last, builds=counted.builds,
+                                 dangerous=counted.dangerous, remaining=session.timer.remaining)
         before = dict(engine.timings)
         session.running = True
         try:

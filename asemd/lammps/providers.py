@@ -166,7 +166,8 @@ class Providers:
 
     def clock(self) -> Clock:
         p = self.session.moment.progress
-        return Clock(self.scene.step, p.first, max(p.last, p.first), self.scene.dt, self.session.running)
+        end = p.last if p.stop is None else p.stop
+        return Clock(self.scene.step, p.first, max(end, p.first), self.scene.dt, self.session.running or self.session.between)
 
     def defined(self, category: str, name: str) -> bool:
         return features.defined(self.session, category, name)

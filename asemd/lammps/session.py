@@ -80,6 +80,7 @@ class Session:
         self.last_words: list[str] = []
         self.last_thermo_step = -1
         self.running = False
+        self.between = False        # the commands of run every: formulas look at the run
         self.interrupted = False
         self.timer = Timer()
         self.observer: Any = None          # told about progress by the driver: .start(steps), .update(done), .stop()

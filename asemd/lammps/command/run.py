@@ -50,18 +50,23 @@ def run(session, args):
     if not every:
         Driver(session, Plan(steps, first, last, pre, post)).run()
         return
-    segments(session, steps, every, commands, first, last, pre, post)
+    segments(session, steps, every, commands, options.get("start"), options.get("stop"), pre, post)
 
 
-def segments(session, steps: int, every: int, commands: list[str], first: int, last: int, pre: bool, post: bool) -> None:
-    """``run ... every``: short runs with commands between them."""
+def segments(session, steps: int, every: int, commands: list[str], start: int | None, stop: int | None, pre: bool, post: bool) -> None:
+    """``run ... every``: short runs with commands between them; without start and stop each of them is a series of its own."""
     done = 0
     while done < steps or steps == 0:
-        part = min(every, steps - done)
+        part, now = min(every, steps - done), session.scene.step
+        first, last = now if start is None else start, now + part if stop is None else stop
         Driver(session, Plan(part, first, last, pre or done == 0, post or done + part == steps)).run()
         done += part
         if commands != ["NULL"]:
-            for command in commands:
-                session.execute(command)
+            session.between = True
+            try:
+                for command in commands:
+                    session.execute(command)
+            finally:
+                session.between = False
         if steps == 0 or session.timer.expired:
             break
