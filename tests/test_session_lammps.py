@@ -27,7 +27,8 @@ SCRIPTS = {
                   "run 10 start 0 stop 20\nrun 10\n",
     "shrink": BASE.replace("lattice", "boundary s p s\nlattice", 1) + "thermo 10\nthermo_style custom step temp press lx lz vol\nrun 40\n",
     "series": BASE + "unfix 1\nfix 1 all nvt temp 1 2 0.1\nvariable r equal ramp(0,3)\nvariable d equal vdisplace(0,1)\nthermo 5\n"
-                     "thermo_style custom step temp pe v_r v_d elapsed elaplong nbuild\nrun 10 start 0 stop 40\nrun 10 start 0 stop 40 pre no\n"
+                     "thermo_style custom step temp pe v_r v_d elapsed elaplong nbuild\n"
+                     "run 10 start 0 stop 40\nrun 10 start 0 stop 40 pre no\n"
                      "run 20 every 10 'print \"$(v_r)\"'\nrun 20 start 0 stop 80 every 10 NULL\n",
     "elements": BASE + "group g id 1:9\ndisplace_atoms all random 0.1 0.1 0.1 7\nfix s g setforce 0 NULL 0.5\nthermo 5\n"
                        "thermo_style custom step f_s[*]\nrun 5\n",
