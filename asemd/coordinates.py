@@ -17,7 +17,8 @@ def pairs_of(style) -> list[tuple[int, int]]:
     first = style.coordinates[0]
     if first == "ax":
         centre = style.centre - 1
-        return [(k, centre) for k in range(3 if style.category == "angle" else 4) if k != centre]
+        others = [k for k in range(3 if style.category == "angle" else 4) if k != centre]
+        return [(k, others[1] if style.chain and k == others[2] else centre) for k in others]
     if style.category == "bond":
         return [(0, 1)]
     if style.category == "angle":

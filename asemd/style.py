@@ -134,6 +134,8 @@ class Style:
         Name of the coefficient that scales the pair interaction of atoms 1 and 4 (dihedral charmm).
     centre : int
         The atom from which the vectors of a style of vectors start, counted from 1; by default 2 for angles and dihedrals, 1 for impropers.
+    chain : bool
+        Of three vectors the last one starts from the end of the second one, so that short bonds keep their digits.
     breaks : str
         What becomes of a bond for which the function returns ``math.nan``: ``off`` gives it type 0, and its pair interaction, which the
         bond replaces, comes back at once; ``removed`` takes it out, and the pair is no longer a special one from the next step on.
@@ -155,12 +157,12 @@ class Style:
                  xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
                  centre: int = 0, lammps: Callable | None = None, rest: Callable | None = None,
                  d2: Callable | None = None, straight: Callable | None = None, breaks: str = "", remembers: str = "",
-                 pair_weights: tuple[str, str] | tuple[()] = ()):
+                 chain: bool = False, pair_weights: tuple[str, str] | tuple[()] = ()):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.rest, self.see, self.xfail = equilibrium, rest, see, dict(xfail)
         self.weight_14, self._check, self.lammps, self.d2, self.straight = weight_14, check, lammps, d2, straight
-        self.breaks, self.remembers, self.pair_weights = breaks, remembers, pair_weights
+        self.breaks, self.remembers, self.pair_weights, self.chain = breaks, remembers, pair_weights, chain
         self.centre = centre or (1 if category == "improper" else 2)
         notes = units_of(function) if function else {}
         vocabulary = COORDINATES[category] + ("qq",)

@@ -141,9 +141,9 @@ CASES = [     # name, coefficients, energy of the positions, difference vectors
 
 # ------------------------------------------------------------------ geometry ---
 
-def turned(x, rng, shift=0.0):
-    """The same geometry in a general orientation."""
-    return np.array(x, float) @ np.linalg.qr(rng.normal(size=(3, 3)))[0].T + rng.uniform(-0.5, 0.5, 3) + shift
+def turned(x, rng, shift=0.0, spread=0.5):
+    """The same geometry in a general orientation, somewhere near the origin."""
+    return np.array(x, float) @ np.linalg.qr(rng.normal(size=(3, 3)))[0].T + rng.uniform(-spread, spread, 3) + shift
 
 
 def geometries(pairs):
@@ -173,7 +173,9 @@ def geometries(pairs):
                 p = math.radians(base) + e
                 out[f"torsion {base}, {e:g}"] = [[-0.5, 1, 0], [0, 0, 0], [1.4, 0, 0], [1.9, 1.1 * math.cos(p), 1.1 * math.sin(p)]]
     rng = np.random.default_rng(4)
-    return {title: turned(x, rng) for title, x in out.items()} | {"far": turned(ordinary, rng, 1e7)}
+    close = [[1.1, 0.3, -0.2], [0.4, 0.9, 0.5], [1.2e-6, -0.7e-6, 2e-7], [3e-7, 1.1e-6, -0.9e-6]]
+    return {title: turned(x, rng) for title, x in out.items()} | {
+        "far": turned(ordinary, rng, 1e7), "last two close, at the origin": turned(close, rng, spread=0.0)}
 
 
 def reference(energy, pairs, words, x):

@@ -19,22 +19,20 @@ class ImproperCossq(Style):
 
 
 def without_chain_rule(ax, ay, az, bx, by, bz, cx, cy, cz, K, chi0):
-    dx, dy, dz = cx - bx, cy - by, cz - bz
-    if not (ax * ax + ay * ay + az * az > 0.0 and dx * dx + dy * dy + dz * dz > 0.0):
+    if not (ax * ax + ay * ay + az * az > 0.0 and cx * cx + cy * cy + cz * cz > 0.0):
         return math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf
-    chi, gx, gy, gz, hx, hy, hz = angle_between(ax, ay, az, dx, dy, dz)
+    chi, gx, gy, gz, hx, hy, hz = angle_between(ax, ay, az, cx, cy, cz)
     c = math.cos(chi - chi0)
     s = -K * c * math.sin(chi)
-    return 0.5 * K * c * c, s * gx, s * gy, s * gz, -s * hx, -s * hy, -s * hz, s * hx, s * hy, s * hz
+    return 0.5 * K * c * c, s * gx, s * gy, s * gz, 0.0, 0.0, 0.0, s * hx, s * hy, s * hz
 
 
-@improper("cossq", cls=ImproperCossq, example="4.0 20.0", lammps=without_chain_rule,
+@improper("cossq", cls=ImproperCossq, example="4.0 20.0", lammps=without_chain_rule, chain=True,
           domain="atoms 1 and 2, and atoms 3 and 4, must not be at the same place")
 def cossq(ax, ay, az, bx, by, bz, cx, cy, cz, K: "energy", chi0: "angle"):
-    dx, dy, dz = cx - bx, cy - by, cz - bz
-    if not (ax * ax + ay * ay + az * az > 0.0 and dx * dx + dy * dy + dz * dz > 0.0):
+    if not (ax * ax + ay * ay + az * az > 0.0 and cx * cx + cy * cy + cz * cz > 0.0):
         return math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf, math.inf
-    chi, gx, gy, gz, hx, hy, hz = angle_between(ax, ay, az, dx, dy, dz)
+    chi, gx, gy, gz, hx, hy, hz = angle_between(ax, ay, az, cx, cy, cz)
     c = math.cos(chi - chi0)
     s = -K * c * math.sin(chi - chi0)
-    return 0.5 * K * c * c, s * gx, s * gy, s * gz, -s * hx, -s * hy, -s * hz, s * hx, s * hy, s * hz
+    return 0.5 * K * c * c, s * gx, s * gy, s * gz, 0.0, 0.0, 0.0, s * hx, s * hy, s * hz

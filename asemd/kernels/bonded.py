@@ -138,7 +138,7 @@ def loop_source(style: Style, *, per_atom: bool = False, periodic: bool = True, 
                      BLOCK=block.BLOCK)
     if module is vectors:
         places = vectors.order(style)
-        constants |= dict(zip(("CENTRE", "A", "B", "C"), places)) | {"THREE": len(places) > 3}
+        constants |= dict(zip(("CENTRE", "A", "B", "C"), places)) | {"THREE": len(places) > 3, "CHAIN": style.chain}
     if style.history:
         constants["BREAKS"] = style.breaks != ""
     return _loops(module, bond_history if style.history else module, straight, tuple(constants.items()))

@@ -1,13 +1,14 @@
 """Items whose energy is a function of vectors, for `asemd.kernels.block`.
 
-The vectors go from the atom CENTRE to the atoms A, B and, where there are three (THREE), C of the item (places 0 to 3).
+The vectors go from the atom CENTRE to the atoms A, B and, where there are three (THREE), C of the item (places 0 to 3); the third one
+from B if CHAIN.
 """
 from __future__ import annotations
 
-from asemd.kernels.algebra import between, dot, member, plus, push, put, store, times, triple
+from asemd.kernels.algebra import between, dot, member, minus, plus, push, put, store, times, triple
 
 CENTRE = A = B = C = V1 = V2 = V3 = F1 = F2 = F3 = D = VALUE = VECTORS = 0
-THREE = False
+THREE = CHAIN = False
 closest = None
 
 
@@ -23,7 +24,7 @@ def gather(x, items, first, n, b):
         store(b, V1, k, between(x, member(items, first + k, A), centre))
         store(b, V2, k, between(x, member(items, first + k, B), centre))
         if THREE:
-            store(b, V3, k, between(x, member(items, first + k, C), centre))
+            store(b, V3, k, between(x, member(items, first + k, C), member(items, first + k, B) if CHAIN else centre))
 
 
 def geometry(b, n, sides):
@@ -44,11 +45,14 @@ def gradient(b, n):
 def scatter(out, items, first, n, b):
     for k in range(n):
         f, g = triple(b, F1, k), triple(b, F2, k)
-        push(out, member(items, first + k, A), f)
-        push(out, member(items, first + k, B), g)
-        f = plus(f, g)
+        centre = plus(f, g)
         if THREE:
             h = triple(b, F3, k)
             push(out, member(items, first + k, C), h)
-            f = plus(f, h)
-        push(out, member(items, first + k, CENTRE), times(-1.0, f))
+            if CHAIN:
+                g = minus(g, h)
+            else:
+                centre = plus(centre, h)
+        push(out, member(items, first + k, A), f)
+        push(out, member(items, first + k, B), g)
+        push(out, member(items, first + k, CENTRE), times(-1.0, centre))

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd.coordinates import pairs_of
 from asemd.errors import InputError
 from asemd.style import VECTORS, Style
 from asemd.words import exactly, whole
@@ -128,8 +129,7 @@ def chain(style: Style, atoms: np.ndarray, tangent: np.ndarray, named: dict[str,
     if style.coordinates[:1] == ("ax",):
         moves = np.zeros_like(atoms)
         moves[-1] = tangent
-        others = [k for k in range(len(atoms)) if k != style.centre - 1]
-        x, dx = ((a[others] - a[style.centre - 1]).ravel().tolist() for a in (atoms, moves))
+        x, dx = ([v for i, j in pairs_of(style) for v in (a[i] - a[j]).tolist()] for a in (atoms, moves))
         named = dict(zip(VECTORS, zip(x, dx)))
     pairs = [named[c] for c in style.coordinates]
     return [a for a, _ in pairs], [b for _, b in pairs]
