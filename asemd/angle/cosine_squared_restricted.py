@@ -35,5 +35,9 @@ def cosine_squared_restricted(theta, K: "energy", theta0: "angle"):
         return 0.0, 0.0
     if not 0.0 < theta < math.pi:                 # the nearest double to pi stands for a straight angle
         return math.inf, math.inf
+    if theta0 == math.pi:                         # K cot^2(theta/2): one small number near the line, not three
+        h = math.sin(0.5 * theta)
+        t = math.cos(0.5 * theta) / h
+        return K * t * t, -K * t / (h * h)
     d = -2.0 * p * m / s                          # (cos(theta) - cos(theta0)) / sin(theta)
     return K * d * d, -2.0 * K * d * (p * p + m * m) / (s * s)     # 1 - cos(theta) cos(theta0) = p^2 + m^2
