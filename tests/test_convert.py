@@ -36,6 +36,8 @@ SCENES = {
     "region r block 0 1 INF INF INF INF\nvariable f equal 0.1+0.001*step\nfix 3 a addforce v_f 0 0 region r\n"
     "compute k a ke\nthermo_style custom step pe c_k\nrun 10",
     "film": "boundary s p fs\n" + BASE + "velocity all create 0.1 5\nthermo_style custom step pe press vol xlo xhi zhi\nrun 4",
+    "grains": "atom_style sphere\n" + BASE.replace("mass 1 1.0\n", "") + "set type 1 diameter 1.1\ncompute k all ke/atom\n"
+    "dump d all custom 5 dump.grains id c_k\ndump_modify d sort id\nrun 10",
     "bonded": BONDED + "\nreset_timestep 30\ntimestep 0.5\nfix 1 all nvt temp 300 300 50\n"
     "thermo_style custom step temp pe ebond eangle press\nrun 10",
 }
@@ -65,7 +67,10 @@ def test_lammps_runs_what_is_written(here):
         again = thermo(f"in.{name}")
         os.chdir("..")
         assert again["thermo"] == pytest.approx(ours[name]["thermo"], rel=1e-9)
+    written = Path("grains.out/dump.grains")
+    assert written.read_text() == Path("dump.grains").read_text() and not written.unlink()
     theirs = ask(ROWS, folders={name: str(here / f"{name}.out") for name in SCENES})
+    assert written.read_text().count("ITEM: TIMESTEP") == 3
     for name in SCENES:
         for key, value in theirs[name]["thermo"].items():
             assert value == pytest.approx(ours[name]["thermo"][key], rel=1e-9, abs=1e-9), (name, key)

@@ -18,7 +18,7 @@ from asemd.scene import Scene
 FORMS = ("lammps", "python", "ase", "data")
 # commands that hold until they are changed and are neither atoms nor interactions: kept as they were given, variables replaced
 KEPT = frozenset("""fix fix_modify unfix compute compute_modify uncompute variable region lattice thermo thermo_style thermo_modify timestep
-                    run_style min_style min_modify""".split())
+                    run_style min_style min_modify dump dump_modify undump restart""".split())
 
 
 class Reader(Session):
@@ -114,7 +114,8 @@ def _fixes(scene: Scene) -> list[str]:
         words = [str(w) for w in fix.to_lammps()]
         for word in words:
             if word[:2] in ("v_", "c_", "f_") or word == "region":
-                raise InputError(f"to_lammps: fix {fix.id} (style {fix.style}) uses {word}, which only the script knows: use asemd convert")
+                raise InputError(f"to_lammps: fix {fix.id} (style {fix.style}) uses {word}, which only a script can give it: "
+                                 "asemd convert in.file --to lammps keeps it")
         out.append(" ".join(["fix", fix.id, fix.group, fix.style, *map(export.quoted, words)]))
     return out
 

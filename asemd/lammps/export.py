@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from asemd import atom_style as atom_styles
 from asemd import units as unit_styles
 from asemd.engine import Settings
 from asemd.errors import InputError
@@ -51,7 +52,9 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
     out = [f"units {name}", f"dimension {system.dimension}", f"boundary {' '.join(boundary)}", f"atom_style {system.atom_style}"]
     out += [f"{category}_style {' '.join(interactions.style_line(category))}" for category in CATEGORIES if interactions.uses[category]]
     written = system.copy()
-    written.mass[1:] = np.where(np.isnan(written.mass[1:]), 1.0, written.mass[1:])      # forces do not need them, LAMMPS does
+    # forces do not need masses, LAMMPS does, but for particles with a size, which have their own
+    sized = atom_styles.has(system.atom_style, "diameter")
+    written.mass[1:] = np.nan if sized else np.where(np.isnan(system.mass[1:]), 1.0, system.mass[1:])
     write_data(data, written, types="numeric", labels=False, margins=True)
     out.append(f"read_data {quoted(os.fspath(data))}")
     for category in CATEGORIES:
