@@ -12,7 +12,7 @@ from ase.calculators.calculator import Calculator, PropertyNotImplementedError, 
 
 from asemd import units as unit_styles
 from asemd.engine import Engine, Result, Settings
-from asemd.errors import InputError, InputWarning
+from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.forcefield import Interactions
 from asemd.loads import Load, constraints_of, loads_of
 from asemd.native import as_json, coefficients, with_keys
@@ -170,6 +170,10 @@ class ForceField(Calculator):
         """The bonds of these atoms: their own, else the ones given to the calculator."""
         own = getattr(atoms, "topology", None)
         if own is not None and (self.topology is None or self.like is not None or not own.is_empty):
+            for kind, items, _ in own:
+                if len(items) and not 0 <= int(items.min()) <= int(items.max()) < len(atoms):
+                    wrong = items[(items < 0) | (items >= len(atoms))][0]
+                    raise InputError(f"the {kind}s name atom {wrong}, but the atoms are 0 to {len(atoms) - 1}")
             return own
         if self.topology is None:
             bonded = [category for category in BONDED if self.arguments.get(category)]
@@ -191,6 +195,10 @@ class ForceField(Calculator):
     def _system(self, atoms) -> System:
         """The atoms in the units of the force field."""
         types = None
+        strange = np.flatnonzero(~np.isfinite(atoms.positions).all(axis=1))
+        if strange.size:
+            k = int(strange[0])
+            raise SimulationError(f"position of atom {atoms.arrays['id'][k] if 'id' in atoms.arrays else k + 1} is not finite")
         if "type" not in atoms.arrays:
             if self.like is not None:
                 raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements")

@@ -534,3 +534,18 @@ def test_plain_atoms_with_a_bonded_force_field_are_refused():
     own = asemd.Atoms(plain)
     own.calc = ForceField(bond={"harmonic": {1: (10.0, 1.0)}})
     assert own.get_potential_energy() == 0.0
+
+
+@pytest.mark.parametrize("row", [5, -1])
+def test_bonds_to_atoms_that_do_not_exist(row):
+    atoms = asemd.Atoms("H2", positions=[[0, 0, 0], [0.9, 0, 0]], topology=Topology(bonds=[[0, row]], bond_types=[1]))
+    atoms.calc = ForceField(bond={"harmonic": {1: (10.0, 1.0)}})
+    with pytest.raises(InputError, match=f"the bonds name atom {row}, but the atoms are 0 to 1"):
+        atoms.get_potential_energy()
+
+
+def test_position_that_is_not_finite():
+    atoms = asemd.Atoms("Ar2", positions=[[0, 0, 0], [np.nan, 0, 0]])
+    atoms.calc = ForceField(pair=ARGON)
+    with pytest.raises(SimulationError, match="position of atom 2 is not finite"):
+        atoms.get_potential_energy()
