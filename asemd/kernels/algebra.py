@@ -33,6 +33,10 @@ def store(b, row, k, a):
     b[row * ROW + k], b[(row + 1) * ROW + k], b[(row + 2) * ROW + k] = a
 
 
+def narrow():
+    """In a function: its vectors have 256 bits. Wider ones lower the clock of the processor, which single loads and stores pay for."""
+
+
 def pointer(b):
     """Where the numbers of an array are: what is read there is not tested for the length or negative places, so that loops vectorise."""
     return b
@@ -79,7 +83,7 @@ def product(a, b):
     return a[0] * b[0], a[1] * b[1], a[2] * b[2]
 
 
-FUNCTIONS = (number, put, triple, store, pointer, member, between, push, dot, cross, times, plus, minus, product)
+FUNCTIONS = (narrow, number, put, triple, store, pointer, member, between, push, dot, cross, times, plus, minus, product)
 
 
 # ------------------------------------------------------------- compiled ---
@@ -103,7 +107,7 @@ def _compiled(function, result, *kinds):
 
 
 def _typer(count, result):
-    return {1: lambda a: result, 2: lambda a, b: result, 3: lambda a, b, c: result, 4: lambda a, b, c, d: result}[count]
+    return {0: lambda: result, 1: lambda a: result, 2: lambda a, b: result, 3: lambda a, b, c: result, 4: lambda a, b, c, d: result}[count]
 
 
 def _place(builder, b, row, k, more=0):
@@ -121,6 +125,11 @@ def _entry(builder, array, row, column):
 
 def _component(builder, array, d, i):
     return _entry(builder, array, ir.IntType(64)(d), i)
+
+
+@_compiled(narrow, types.void)
+def _narrow(builder, array):
+    set.add(builder.function.attributes, '"prefer-vector-width"="256"')     # `add` of llvmlite knows attributes without values only
 
 
 @_compiled(number, NUMBER, NUMBERS, types.Integer, types.Integer)

@@ -19,7 +19,7 @@ from numba import carray, cfunc, config, types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-from asemd.kernels.algebra import NUMBERS, member, number, plus, pointer, product, put, store, triple
+from asemd.kernels.algebra import NUMBERS, member, narrow, number, plus, pointer, product, put, store, triple
 
 BLOCK = 64
 VECTORS = STRESS = ATOMS = V1 = F1 = D = SLOPES = E = SHAPE = VALUE = P = 0
@@ -143,6 +143,7 @@ def shares(items, first, n, b, atom_energy, atom_virial):
 
 
 def forces(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad, function, room, energy):
+    narrow()
     kind, b = -1, pointer(room)
     sides = sides_of(cell)
     for first in range(lo, hi, BLOCK):

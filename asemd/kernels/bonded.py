@@ -100,6 +100,7 @@ def _entry(row: int) -> str:
 def source(style: Style, *, energy: bool) -> Builder:
     """The text of the module that holds `evaluate`: the function of a style, with or without its energy, for the columns of a block."""
     b, rows = Builder(f"{style.category}_style {style.name}."), layout(style)
+    b.line("from asemd.kernels.algebra import narrow")
     b.line("from asemd.kernels.block import as_table, block_function")
     *helpers, function = style.functions()
     for helper in helpers:
@@ -114,7 +115,7 @@ def source(style: Style, *, energy: bool) -> Builder:
     by = [n for n in style.coordinates if n not in PAST]
     results, places = ["e", *(f"d_{n}" for n in by)], [rows["E"], *(rows["D" if n == "chi" else _slope(n)] for n in by)]
 
-    lines = ["def evaluate(n, b, table, rows, columns):"]
+    lines = ["def evaluate(n, b, table, rows, columns):", "    narrow()"]
     lines += [f"    array{k} = as_table(table, rows, columns)" for k, _ in enumerate(style.arrays)]
     lines += ["    for k in range(n):", f"        {', '.join(results)} = potential({', '.join(coordinates + coefficients)})"]
     if style.coordinates == ("chi",):      # chi = |phi|; in the plane neither side is the one to be pushed to
