@@ -144,10 +144,10 @@ def rows(row, first, entries, hide, own, span, c0, c1, partner_start, partners, 
             high = f0 + np.int64(span[ci, a - a % 2 + 1])
             for k in range(low, mine):      # all entries are copied; the counter moves for those in reach: no branches to mispredict
                 neighbors[np.uint64(n)] = entries[np.uint64(k)]
-                n += ((hide[np.uint64(k)] >> a) & 1) ^ 1
+                n += ((np.int64(hide[np.uint64(k)]) >> a) & 1) ^ 1
             for k in range(mine + a + 1, high):      # atoms of the cluster before this one have had their turn
                 neighbors[np.uint64(n)] = entries[np.uint64(k)]
-                n += ((hide[np.uint64(k)] >> a) & 1) ^ 1
+                n += ((np.int64(hide[np.uint64(k)]) >> a) & 1) ^ 1
             p0 = partner_start[r]
             p1 = partner_start[r + 1]
             if p1 > p0:
