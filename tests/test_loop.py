@@ -16,6 +16,7 @@ from asemd.box import Box
 from asemd.engine import Settings
 from asemd.errors import SimulationError
 from asemd.fix import Fix
+from asemd.fix.langevin import Langevin
 from asemd.fix.nve import NVE
 from asemd.forcefield import Interactions
 from asemd.loop import Loop
@@ -143,6 +144,22 @@ def test_pieces_equal_the_whole(reference, pieces):
         loop.advance(steps, virial=steps % 2 == 0)
     assert loop.step == 200
     assert_same_motion(system, reference[0], 1e-9)
+
+
+@pytest.mark.parametrize("style", ["nve", "langevin", "chains"])
+def test_digits_do_not_depend_on_where_a_run_is_cut(style):
+    """Pieces end by the clock: two halves of a step in one pass and apart must round alike."""
+    def positions(pieces):
+        system = chains() if style == "chains" else crystal(5)
+        fixes = [NVE(), Langevin(temperature=1.0, damping=1.0, seed=4)] if style == "langevin" else None
+        loop = loop_of(system, fixes)
+        loop.setup(0, 60)
+        for steps in pieces:
+            loop.advance(steps, virial=False)
+        return np.concatenate([system.x, system.v])
+    whole = positions([60])
+    for pieces in ([20, 40], [1] * 60, [7, 13, 40]):
+        assert np.array_equal(positions(pieces), whole), pieces
 
 
 def test_energies_on_the_way_change_nothing(reference):
