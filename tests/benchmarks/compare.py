@@ -140,6 +140,30 @@ def alternate(who: list[Contender], script: str, steps: int, samples: int) -> di
     return out
 
 
+def from_logs(who: list[Contender], script: str, steps: int, samples: int, of_log) -> tuple[dict, dict]:
+    """Run `script` in turns and read each log with ``of_log(text)``: spreads of the numbers, and of the others' ratios to the first."""
+    found: dict[str, list[float]] = {c.name: [] for c in who}
+    with tempfile.TemporaryDirectory() as tmp:
+        running = []
+        try:
+            for k, c in enumerate(who):
+                folder = Path(tmp) / str(k)
+                folder.mkdir()
+                running.append(Running(c, folder, log="log"))
+            for r in running:
+                r.do([*script.splitlines(), f"run {steps}"])
+            for turn in range(samples):
+                for r in running:
+                    r.do([f"log log.{turn}", f"run {steps}", "log none"])     # with its set-up: LAMMPS counts builds from there
+                    found[r.contender.name].append(of_log((r.folder / f"log.{turn}").read_text()))
+        finally:
+            for r in running:
+                r.stop()
+    first, *others = found
+    return ({name: spread(v) for name, v in found.items()},
+            {name: spread([b / a for a, b in zip(found[first], found[name])]) for name in others})
+
+
 def spread(values: list[float]) -> dict[str, float]:
     """Median and quartiles."""
     q = statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else [values[0]] * 3

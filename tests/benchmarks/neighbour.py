@@ -5,8 +5,6 @@ asemd's `Neigh` includes sorting the atoms; LAMMPS counts exchange, borders and 
 from __future__ import annotations
 
 import re
-import tempfile
-from pathlib import Path
 
 from tests.benchmarks import compare, scenes
 
@@ -19,29 +17,8 @@ def of_log(text: str) -> float:
 
 def measure(samples: int = 7, steps: int = 100, threads: int = 1, precision: str = "double") -> dict:
     """in.lj with its own schedule, a build every 20 steps, engines in turns."""
-    who = compare.contenders(threads, precision)
-    script = scenes.lj()
-    with tempfile.TemporaryDirectory() as tmp:
-        running = []
-        try:
-            for k, c in enumerate(who):
-                folder = Path(tmp) / str(k)
-                folder.mkdir()
-                running.append(compare.Running(c, folder, log="log"))
-            for r in running:
-                r.do([*script.splitlines(), f"run {steps}"])
-            ms: dict[str, list[float]] = {c.name: [] for c in who}
-            for turn in range(samples):
-                for r in running:
-                    r.do([f"log log.{turn}", f"run {steps}"])     # with its set-up: LAMMPS counts builds from there
-                    r.do(["log none"])
-                    ms[r.contender.name].append(of_log((r.folder / f"log.{turn}").read_text()))
-        finally:
-            for r in running:
-                r.stop()
-    first, *others = ms
-    return {"ms_per_build": {name: compare.spread(v) for name, v in ms.items()},
-            "ratio": {name: compare.spread([b / a for a, b in zip(ms[first], ms[name])]) for name in others}}
+    ms, ratio = compare.from_logs(compare.contenders(threads, precision), scenes.lj(), steps, samples, of_log)
+    return {"ms_per_build": ms, "ratio": ratio}
 
 
 if __name__ == "__main__":

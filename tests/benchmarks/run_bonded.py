@@ -4,8 +4,6 @@ bonds, angles, torsions and impropers of peptides in water, without pair forces.
 from __future__ import annotations
 
 import re
-import tempfile
-from pathlib import Path
 
 from tests.benchmarks import compare, scenes
 
@@ -19,27 +17,8 @@ def of_log(text: str, steps: int) -> float:
 
 def measure(samples: int = 7, steps: int = 100, threads: int = 1, precision: str = "double", scene: str = "chain") -> dict:
     """A scene on asemd and on LAMMPS's variants, in turns."""
-    who, script = compare.contenders(threads, precision), SCENES[scene]()
-    with tempfile.TemporaryDirectory() as tmp:
-        running = []
-        try:
-            for k, c in enumerate(who):
-                folder = Path(tmp) / str(k)
-                folder.mkdir()
-                running.append(compare.Running(c, folder, log="log"))
-            for r in running:
-                r.do([*script.splitlines(), f"run {steps}"])
-            ms: dict[str, list[float]] = {c.name: [] for c in who}
-            for turn in range(samples):
-                for r in running:
-                    r.do([f"log log.{turn}", f"run {steps}", "log none"])
-                    ms[r.contender.name].append(of_log((r.folder / f"log.{turn}").read_text(), steps))
-        finally:
-            for r in running:
-                r.stop()
-    first, *others = ms
-    return {"ms_per_step": {name: compare.spread(v) for name, v in ms.items()},
-            "ratio": {name: compare.spread([b / a for a, b in zip(ms[first], ms[name])]) for name in others}}
+    ms, ratio = compare.from_logs(compare.contenders(threads, precision), SCENES[scene](), steps, samples, lambda log: of_log(log, steps))
+    return {"ms_per_step": ms, "ratio": ratio}
 
 
 if __name__ == "__main__":
