@@ -1,0 +1,1 @@
+"""Error against run time: what a scene's settings cost, and what they are worth."""
