@@ -14,6 +14,7 @@ _LAZY = {
     "Scene": "asemd.scene",
     "ForceField": "asemd.calculator",
     "plan": "asemd.lammps.plan",
+    "check": "asemd.check",
     "validate": "asemd.testing.validate",
     "MolecularDynamics": "asemd.dynamics",
     "Atoms": "asemd.system",
@@ -30,7 +31,8 @@ __all__ = ["__version__", *_LAZY]
 def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'asemd' has no attribute {name!r}")
-    value = getattr(importlib.import_module(_LAZY[name]), name)
+    module = importlib.import_module(_LAZY[name])
+    value = module if name == "check" else getattr(module, name)      # a package that can be called
     globals()[name] = value
     return value
 

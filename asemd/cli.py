@@ -24,6 +24,7 @@ COMMANDS: dict[str, str] = {
     "styles": "asemd.cli_inspect:styles",
     "doctor": "asemd.cli_inspect:doctor",
     "convert": "asemd.cli_convert:convert",
+    "check": "asemd.cli_check:check",
 }
 INTERRUPTED = 130
 

@@ -18,7 +18,7 @@ Import = Annotated[list[str] | None, typer.Option("--import", help="Python file 
 Threads = Annotated[int, typer.Option(help="Number of threads.", min=1)]
 
 
-def _setup(context: typer.Context, script: str | None, command: str, compat: str | None, precision: str,
+def set_up(context: typer.Context, script: str | None, command: str, compat: str | None, precision: str,
            threads: int) -> tuple[str, Switches]:
     """The script and LAMMPS's switches with asemd's options added."""
     switches: Switches = context.obj or Switches()
@@ -31,7 +31,7 @@ def _setup(context: typer.Context, script: str | None, command: str, compat: str
     return path, switches
 
 
-def _print(parts, data: dict, as_json: bool) -> None:
+def print_parts(parts, data: dict, as_json: bool) -> None:
     from asemd.text_table import show
     if as_json:
         print(json.dumps(data, indent=1))
@@ -45,9 +45,9 @@ def validate(context: typer.Context, script: Script = None,
              as_json: Json = False) -> int:
     """Compare a script's energies, forces, virials and thermo rows with real LAMMPS; exit status 1 if they disagree."""
     from asemd.testing.validate import validate as compare
-    path, switches = _setup(context, script, "validate", compat, precision, threads)
+    path, switches = set_up(context, script, "validate", compat, precision, threads)
     report = compare(path, steps=steps, tolerance=tolerance, precision=precision, threads=threads, switches=switches)
-    _print(report.parts(), report.to_dict(), as_json)
+    print_parts(report.parts(), report.to_dict(), as_json)
     return 0 if report.ok else 1
 
 
@@ -55,11 +55,11 @@ def plan(context: typer.Context, script: Script = None, compat: Compat = None, p
          import_: Import = None, as_json: Json = False) -> int:
     """Print what a script's scene needs and what is left out, and why; no step is run."""
     from asemd.lammps.plan import of_script
-    path, switches = _setup(context, script, "plan", compat, precision, threads)
+    path, switches = set_up(context, script, "plan", compat, precision, threads)
     from asemd.cli import import_files
     import_files(import_)
     found = of_script(path, switches)
-    _print(found.parts(), found.to_dict(), as_json)
+    print_parts(found.parts(), found.to_dict(), as_json)
     return 0
 
 
@@ -69,7 +69,7 @@ def styles(category: Annotated[str | None, typer.Argument(help="A category (pair
     """List every LAMMPS name as done, partial or missing."""
     from asemd.lammps.coverage import coverage, parts, to_dict
     names = coverage(category, word, state)
-    _print(parts(names, detailed=bool(category or word or state)), to_dict(names), as_json)
+    print_parts(parts(names, detailed=bool(category or word or state)), to_dict(names), as_json)
     return 0
 
 
@@ -77,5 +77,5 @@ def doctor(as_json: Json = False) -> int:
     """Print versions, the processor, the kernel cache and whether LAMMPS starts here; exit status 1 if something is wrong."""
     from asemd.doctor import examine, parts
     facts = examine()
-    _print(parts(facts), {f.name: {"value": f.value, "ok": f.ok, "advice": f.advice} for f in facts}, as_json)
+    print_parts(parts(facts), {f.name: {"value": f.value, "ok": f.ok, "advice": f.advice} for f in facts}, as_json)
     return 0 if all(f.ok or f.optional for f in facts) else 1

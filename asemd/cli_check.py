@@ -1,0 +1,34 @@
+"""The command ``asemd check``."""
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from asemd.cli_inspect import Compat, Import, Json, Precision, Script, Threads, print_parts, set_up
+from asemd.errors import InputError
+
+
+def check(context: typer.Context, script: Script = None,
+          run: Annotated[bool, typer.Option("--run", help="Short runs on copies: drift, reversibility, where it blows up.")] = False,
+          battery: Annotated[bool, typer.Option("--battery", help="Stiff and extreme cases with known answers; needs no script.")] = False,
+          force: Annotated[bool, typer.Option("--force", help="A timestep that no integrator stands is a warning, not an error.")] = False,
+          compat: Compat = None, precision: Precision = "double", threads: Threads = 1, import_: Import = None,
+          as_json: Json = False) -> int:
+    """Look for what may make a script's run unstable or wrong; exit status 0 when fine or with warnings, 2 on an error."""
+    from asemd.cli import import_files
+    if battery:
+        if script or run:
+            raise InputError("asemd check --battery has scenes of its own: it goes without a script and without --run")
+        from asemd.check import battery as cases
+        report = cases.run()
+    else:
+        from asemd.check import of_case
+        from asemd.check.stages import of_script
+        path, switches = set_up(context, script, "check", compat, precision, threads)
+        import_files(import_)
+        case = of_script(path, switches)
+        case.force = force
+        report = of_case(case, run)
+    print_parts(report.parts(), report.to_dict(), as_json)
+    return report.exit_status
