@@ -13,6 +13,7 @@ from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import Fix
 from asemd.kernels import timeloop as tl
 from asemd.kernels.state import Thread
+from asemd.watchdog import Watchdog
 
 
 class Interrupt:
@@ -71,7 +72,7 @@ class Loop:
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
         self._module = None
         self._chunk = 100
-        self._farthest = np.inf
+        self.watchdog = Watchdog(self)
 
     def group_bit(self, name: str) -> int:
         """The bit value of a group: 1 for ``all``, 2, 4, ...
@@ -110,7 +111,6 @@ class Loop:
         self._ago = 0
         self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
         self._make_module()
-        self._farthest = max(e.reach, *(1.0 / np.linalg.norm(np.linalg.inv(e.vectors), axis=0)))
         for n, f in enumerate(self.fixes):
             f.setup(self)
             if "post_force" in self._kinds[n]:
@@ -118,6 +118,7 @@ class Loop:
         self.result = e.collect()
         e.timings = dict.fromkeys(e.timings, 0.0)
         e.builds = e.dangerous = 0
+        self.watchdog.begin()
         return self.result
 
     def _arrays(self, fix: Fix) -> np.ndarray:
@@ -159,14 +160,14 @@ class Loop:
         Raises
         ------
         SimulationError
-            Names the step and the atoms.
+            Names the step and the atoms; its attribute `verdict` has what `asemd.watchdog` found.
         KeyboardInterrupt
             After Ctrl-C, between two steps: `step` and the system are those of the last complete one, and the loop can go on.
         """
         want = virial or energies or virials
         last = self.step + int(steps)
         self.engine.bonds.hold(False)
-        with Interrupt() as interrupt:
+        with Interrupt() as interrupt, self.watchdog as watchdog:
             while self.step < last and not interrupt.asked:
                 if self._compiled:
                     began, at = time.perf_counter(), self.step
@@ -175,6 +176,7 @@ class Loop:
                     self._chunk = max(20, int(0.2 * (self.step - at) / max(spent, 1e-9)))
                 else:
                     self._python_step(want and self.step + 1 == last)
+                watchdog.look()
                 if progress is not None:
                     progress(self.step)
         if interrupt.asked:
@@ -184,7 +186,9 @@ class Loop:
         if not want:
             self.engine.store()
             return None
-        result = self.engine.collect()
+        with self.watchdog as watchdog:
+            result = self.engine.collect()
+            watchdog.energy(result)
         if energies or virials:
             self.engine.per_atom(result)
         self.result = result
@@ -206,19 +210,9 @@ class Loop:
             self._rebuild()
             resume = True
 
-    def _check_step(self) -> None:
-        """Between two list builds no atom that interacts crosses the whole box: its forces would have nothing to do with its path."""
-        e = self.engine
-        if not e.terms or not e.k.moved(e.state.x, e.held, e.ns) > self._farthest**2:
-            return          # a position that is not a number is reported by the build
-        far = np.linalg.norm(e.state.x[:, :e.ns] - e.held[:, :e.ns], axis=0)
-        slot = int(np.argmax(far))
-        raise SimulationError(f"atom {self.system.id[e.state.row[slot]]} moved {far[slot]:.4g} since the neighbour list was built, more "
-                              "than the width of the box: the time step is too long, or atoms are too close together")
-
     def _rebuild(self) -> None:
         try:
-            self._check_step()
+            self.watchdog.before_build(self._compiled)
             self._with_lost(self.engine.rebuild)
         except SimulationError as error:
             self.engine.store()
@@ -227,6 +221,7 @@ class Loop:
         if self.engine.changed:
             self._make_module()
         self._ago = 0
+        self.watchdog.after_build()
 
     def _with_lost(self, build) -> None:
         """A list build; atoms that are lost by then leave the system, unless `settings.lost` makes that an error."""

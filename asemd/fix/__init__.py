@@ -131,6 +131,10 @@ class Fix:
     def resize(self, loop: Loop) -> None:
         """Called when atoms have left the system during a run, after `atom_arrays`; numbers in ``p`` that depend on them are set here."""
 
+    def broken_constraint(self, loop: Loop) -> str:
+        """What a constraint of this fix does not keep any more, with atom ids and numbers: a run stops with it. Empty: all is well."""
+        return ""
+
     def finish(self, loop: Loop) -> None:
         """Called after every run; read results back from ``p`` here."""
 

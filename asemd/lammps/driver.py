@@ -158,12 +158,14 @@ class Driver:
                      scene.groups, scene.dt)
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
             loop.warn = session.warn
+            loop.watchdog.path = f"{session.log.path}.last_good.dump" if session.log.path else ""
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
                 checkpoint.resume(loop, state)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         else:
             loop.sync_in()      # commands between the runs may have changed velocities
+            loop.watchdog.begin()
         loop.begin, loop.end, loop.dt = plan.first, plan.last, scene.dt
         engine = loop.engine
         counted = engine if fresh else session.moment.progress      # without a new setup the counters go on
