@@ -1,6 +1,7 @@
 """The compiled time loop as an ASE dynamics: observers, trajectories and log files as everywhere in ASE, compiled steps in between."""
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -44,7 +45,8 @@ class MolecularDynamics(ASEMolecularDynamics):
 
     FixAtoms and FixCartesian act as `asemd.fix.SetForce` with the velocities set to zero; forces of fixes that are part of the calculator
     act without being named here. After Ctrl-C the atoms are those of the last complete step, after an error those of the last observer
-    call.
+    call; the error tells what went wrong, its attribute ``verdict.good`` is the last good state, and with a log file or trajectory that
+    state is written beside it (``NAME.last_good.extxyz``).
     """
 
     def __init__(self, atoms, timestep: float, fixes: Sequence[Fix] | None = None, groups=None, trajectory=None, logfile=None,
@@ -56,6 +58,8 @@ class MolecularDynamics(ASEMolecularDynamics):
             fixes = [NVE()]
         self.fixes, self.groups = list(fixes), dict(groups or {})
         self._held(atoms)
+        named = [os.fspath(f) for f in (logfile, trajectory) if isinstance(f, (str, os.PathLike)) and f != "-"]
+        self._last_good = f"{named[0]}.last_good.extxyz" if named else ""
         super().__init__(atoms, timestep, trajectory=trajectory, logfile=logfile, loginterval=loginterval, **kwargs)
         self._loop: Loop | None = None
 
@@ -101,18 +105,31 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._given = (calc, self.dt, list(self.fixes), dict(self.groups), held)
         self._loop = Loop(system, calc.interactions, calc.neighbor_settings(atoms), fixes, groups, self.dt / u["time"], self.nsteps)
         self._forces_are_own = not any("post_force" in fix.hooks() for fix in fixes)
+        self._loop.watchdog.path, self._loop.watchdog.save = self._last_good, self._save
         self._loop.setup(self.nsteps, self.nsteps + steps)
         self._from = atoms.get_positions(), system.box.unwrap(system.x, system.image)
         return self._loop
 
     # ---- loop -> atoms ------------------------------------------------------------------------------------------------------------------
-    def _publish(self, result) -> None:
-        """Positions, momenta and results of the loop to the atoms."""
-        atoms, calc, system = self.atoms, self.atoms.calc, self._loop.system
-        u = {d: unit_styles.factor(d, calc.units) for d in ("distance", "velocity")}
+    def _move(self, atoms, system) -> None:
+        """Positions and momenta of a system to atoms."""
+        u = {d: unit_styles.factor(d, self.atoms.calc.units) for d in ("distance", "velocity")}
         there, here = self._from     # atoms that do not move keep their positions to the last bit
         atoms.arrays["positions"][:] = there + (system.box.unwrap(system.x, system.image) - here) * u["distance"]
         atoms.set_momenta(system.v * u["velocity"] * self.masses, apply_constraint=False)
+
+    def _save(self, system, path: str) -> None:
+        """Write the last good state of a run that failed."""
+        from ase.io import write
+        atoms = self.atoms.copy()
+        self._move(atoms, system)
+        atoms.info["step"] = system.step
+        write(path, atoms, format="extxyz")
+
+    def _publish(self, result) -> None:
+        """Positions, momenta and results of the loop to the atoms."""
+        atoms, calc = self.atoms, self.atoms.calc
+        self._move(atoms, self._loop.system)
         if result is not None:
             results = calc.convert(result, atoms)
             if not self._forces_are_own:     # the loop's forces hold those of thermostats too: the calculator computes its own when asked

@@ -85,14 +85,17 @@ class Watchdog:
     ----------
     path : str
         Where the last good frame is written when a run fails; empty: nowhere.
-    active : bool
-        False: it looks at nothing and keeps nothing.
+    explains : bool
+        False: it stops runs, but keeps no frames and adds nothing to errors (for runs that are meant to find out where they break).
+    save : callable
+        Writes a system to a path; by default a text dump with all digits.
     seconds : float
         What it has cost so far.
     """
 
     def __init__(self, loop):
-        self.loop, self.path, self.active = loop, "", True
+        self.loop, self.path, self.explains = loop, "", True
+        self.save = self._dump
         self.frames: list[Frame] = []
         self._energies: tuple[float, float] | None = None       # total and kinetic, of the start
         self.seconds, self._next = 0.0, 0.0
@@ -111,9 +114,8 @@ class Watchdog:
         self._energies = None
         self._free = _conserving(loop)
         self._next = 0.0
-        if self.active:
-            self._look_at_energy(loop.result)
-            self._keep()
+        self._look_at_energy(loop.result)
+        self._keep()
 
     # ---- during the run -----------------------------------------------------------------------------------------------------------------
     def before_build(self, compiled: bool) -> None:
@@ -124,7 +126,7 @@ class Watchdog:
         SimulationError
         """
         e = self.loop.engine
-        if not e.terms or not self.active:
+        if not e.terms:
             return
         limit = min(self.reach, self.width) ** 2
         if compiled and e.farthest.max() <= limit:      # the loop has measured it
@@ -144,7 +146,7 @@ class Watchdog:
         self._built = self.loop.step
         if self._atoms != self.loop.system.n:       # some were lost, with their energy
             self._atoms, self._energies = self.loop.system.n, None
-        if self.active and time.perf_counter() > self._next:
+        if time.perf_counter() > self._next:
             self._timed(self._keep)
 
     def look(self) -> None:
@@ -154,7 +156,7 @@ class Watchdog:
         ------
         SimulationError
         """
-        if self.active and time.perf_counter() > self._next:
+        if time.perf_counter() > self._next:
             self._timed(self._look)
 
     def energy(self, result) -> None:
@@ -165,7 +167,7 @@ class Watchdog:
         SimulationError
             Energy came from nowhere.
         """
-        if self.active and self._free:
+        if self._free:
             began = time.perf_counter()
             self._look_at_energy(result)
             self.seconds += time.perf_counter() - began
@@ -238,6 +240,8 @@ class Watchdog:
 
     def _keep(self) -> None:
         """Keep this frame, and the one before."""
+        if not self.explains:
+            return
         loop, e = self.loop, self.loop.engine
         s, image = e.state, e.system.image
         if len(self.frames) == 2 and self.frames[0].x.shape[1] == e.ns and len(self.frames[0].image) == len(image):
@@ -255,7 +259,7 @@ class Watchdog:
         return self
 
     def __exit__(self, kind, error, trace) -> None:
-        if isinstance(error, SimulationError) and self.active and not hasattr(error, "verdict"):
+        if isinstance(error, SimulationError) and self.explains and not hasattr(error, "verdict"):
             self.explain(error)
 
     def good_frame(self) -> Frame | None:
@@ -286,23 +290,27 @@ class Watchdog:
         error.args = (text,)
 
     def _write(self, verdict: Verdict) -> list[str]:
-        """Write the last good state as a text dump, whole or not at all; returns words about it."""
+        """Write the last good state, whole or not at all; returns words about it."""
         if not self.path:
             return []
-        from asemd.dump.custom import Custom
-        system = verdict.good
-        columns = ["id", *["mol"] * system.molecular, "type", *["q"] * system.has_charge, *"xyz", "ix", "iy", "iz", "vx", "vy", "vz"]
-        part = f"{self.path}.part"
-        dump = Custom("all", 1, part, columns)
-        dump.formats["float"] = "%.17g"
+        base, ending = os.path.splitext(self.path)
+        part = f"{base}.part{ending}"
         try:
-            dump.write(Snapshot(system, None, {"all": np.ones(system.n, bool)}, self.loop.dt, system.step), system.step)
-            dump.close()
+            self.save(verdict.good, part)
             os.replace(part, self.path)
         except (OSError, InputError) as problem:
             return [f"the last good state could not be written: {problem}"]
         verdict.path = self.path
-        return [f"last good state (step {system.step}): {self.path}"]
+        return [f"last good state (step {verdict.good.step}): {self.path}"]
+
+    def _dump(self, system, path: str) -> None:
+        """A text dump that ``read_dump`` takes back to the last digit."""
+        from asemd.dump.custom import Custom
+        columns = ["id", *["mol"] * system.molecular, "type", *["q"] * system.has_charge, *"xyz", "ix", "iy", "iz", "vx", "vy", "vz"]
+        dump = Custom("all", 1, path, columns)
+        dump.formats["float"] = "%.17g"
+        dump.write(Snapshot(system, None, {"all": np.ones(system.n, bool)}, self.loop.dt, system.step), system.step)
+        dump.close()
 
 
 def _longest_bond(system) -> float:
