@@ -58,3 +58,9 @@ def test_peptide_scene(compare, tmp_path):
     lmp.commands_string(scenes.PEPTIDE.format(data=tmp_path / "peptide.data").replace("replicate 2 2 4", "") + "run 0")
     bond, angle, dihedral, improper = (lmp.get_thermo(word) for word in ("ebond", "eangle", "edihed", "eimp"))
     assert 0.0 < bond < 1.0 and 0.0 < angle < 5.0 and 0.0 < dihedral < 0.4 * 182 and 0.0 <= improper < 1e-3
+
+
+def test_watchdog_is_timed(compare):
+    from tests.benchmarks import watchdog
+    script, _ = watchdog.SCENES["LJ, 500 atoms"]
+    assert 0.0 < watchdog.share(script, 200) < 50.0

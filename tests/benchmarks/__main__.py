@@ -9,7 +9,7 @@ import argparse
 import json
 from pathlib import Path
 
-from tests.benchmarks import compare, memory, neighbour, run_bonded, run_chain, run_lj, run_small, scenes, startup
+from tests.benchmarks import compare, memory, neighbour, run_bonded, run_chain, run_lj, run_small, scenes, startup, watchdog
 
 README = scenes.ROOT / "README.md"
 BEGIN, END = "<!-- benchmarks: begin -->", "<!-- benchmarks: end -->"
@@ -57,7 +57,9 @@ def main() -> None:
     result = results["neighbour build"] = neighbour.measure(samples=samples)
     table += rows("neighbour list, 32,000 atoms", result, "ms_per_build", "ms")
     results["memory"], results["startup"] = memory.measure(samples=1 if o.quick else 3), startup.measure(2 if o.quick else 5)
-    others = [*compare.lines("memory", results["memory"]), *compare.lines("start-up", results["startup"])]
+    results["watchdog"] = watchdog.measure(2 if o.quick else 5, o.quick)
+    others = [*compare.lines("watchdog, percent of the loop", results["watchdog"]),
+              *compare.lines("memory", results["memory"]), *compare.lines("start-up", results["startup"])]
     text = "\n".join([*table, "", "Machine: " + ", ".join(f"{k} {v}" for k, v in results["machine"].items()) + ".", "",
                       "```text", *others, "```"])
     print("\n" + text)

@@ -1,0 +1,290 @@
+"""The watchdog of runs: what it stops and how it tells, what it must leave alone, that it changes nothing."""
+from __future__ import annotations
+
+import math
+
+import both
+import numpy as np
+import pytest
+from ase import io, units
+from wheel import ask
+
+import asemd
+from asemd.box import Box
+from asemd.culprit import Item, advice, worst_item
+from asemd.engine import Settings
+from asemd.errors import SimulationError
+from asemd.fix.nve import NVE
+from asemd.forcefield import Interactions
+from asemd.lammps import Lammps
+from asemd.lammps.session import Session
+from asemd.lammps.switches import Switches
+from asemd.loop import Loop
+from asemd.system import System
+from asemd.topology import Topology
+
+MELT = """units lj
+lattice fcc 0.8442
+region box block 0 {n} 0 {n} 0 {n}
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+fix 1 all nve
+thermo 10
+timestep {dt}
+"""
+CRAMMED = """units lj
+region box block 0 8 0 8 0 8
+create_box 1 box
+create_atoms 1 random 300 1234 box
+mass 1 1.0
+velocity all create 1.0 87287
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+timestep 0.003
+thermo 20
+"""
+
+
+def chain(stretch: float = 0.0, k: float = 100.0, dt: float = 0.01, n: int = 8, fixes=None, **options) -> Loop:
+    """A loop of a straight chain of harmonic bonds; the one in the middle is `stretch` too long."""
+    x = np.zeros((n, 3)) + 10.0
+    x[:, 0] += np.arange(n) - n / 2
+    x[n // 2:, 0] += stretch
+    system = System(box=Box(np.zeros(3), np.eye(3) * 20.0), x=x, type=1, units="lj", mass=np.array([np.nan, 1.0]),
+                    id=np.arange(n) + 101, topology=Topology(bonds=[(i, i + 1) for i in range(n - 1)]))
+    inter = Interactions.build(bond={"harmonic": {1: (k, 1.0)}})
+    return Loop(system, inter, Settings(**options), fixes or [NVE()], {"all": np.ones(n, bool)}, dt)
+
+
+def failure(text: str, folder, log: str = "log.run") -> tuple[SimulationError, Session]:
+    switches = Switches()
+    switches.log = str(folder / log)
+    session = Session(switches=switches, screen=None)
+    with pytest.raises(SimulationError) as caught:
+        session.commands(text)
+    session.close()
+    return caught.value, session
+
+
+# --------------------------------------------------------------------------------------------------------------- what it stops ---
+
+def test_overlapping_atoms(tmp_path):
+    """The pair is named, the frame before the first step is written, the advice is to relax."""
+    error, _ = failure(CRAMMED + "fix 1 all nve\nrun 500\n", tmp_path)
+    v = error.verdict
+    assert v.item.kind == "pair" and v.item.distance < 0.3 and v.item.energy > 1e6
+    assert v.good.step == 0 and v.path == str(tmp_path / "log.run.last_good.dump")
+    for words in ("step ", f"pair between atoms {v.item.ids[0]} {v.item.ids[1]} (pair_style lj/cut, r = ", "log.run.last_good.dump",
+                  "try minimize", "nve/limit", "timestep "):
+        assert words in str(error), words
+    assert "\n" not in str(error)
+
+
+def test_the_pair_is_that_of_a_brute_search(tmp_path):
+    _, session = failure(CRAMMED + "fix 1 all nve\nrun 500\n", tmp_path)
+    good = session.loop.watchdog.frames[0].system(session.scene.system)
+    d = good.box.minimum_image((good.x[:, None] - good.x[None]).reshape(-1, 3))[0].reshape(300, 300, 3)
+    r = np.linalg.norm(d, axis=2) + 9.0 * np.eye(300)
+    i, j = np.unravel_index(np.argmin(r), r.shape)
+    item = worst_item(good, session.scene.interactions, Settings(), 0.003)
+    assert set(item.ids) == {good.id[i], good.id[j]}
+    assert item.distance == pytest.approx(r[i, j], rel=1e-12)
+    assert item.energy == pytest.approx(4 * (r[i, j]**-12 - r[i, j]**-6), rel=1e-10)
+    assert item.force == pytest.approx(24 * (2 * r[i, j]**-13 - r[i, j]**-7), rel=1e-10)
+    omega = math.sqrt(2 * 4 * (156 * r[i, j]**-14 - 42 * r[i, j]**-8))        # reduced mass 1/2
+    assert item.period == pytest.approx(2 * math.pi / omega, rel=1e-4)
+
+
+def test_the_last_good_state_goes_on(tmp_path):
+    """The file holds the state to the last digit, and read_dump takes it."""
+    error, session = failure(MELT.format(n=4, dt=0.05) + "run 400\n", tmp_path)
+    good = error.verdict.good
+    assert 0 <= good.step < error.verdict.step
+    fresh = both.asemd(MELT.format(n=4, dt=0.002))
+    fresh.call("read_dump", [error.verdict.path, str(good.step), *"x y z vx vy vz ix iy iz".split(), "box", "yes"])
+    system = fresh.scene.system
+    np.testing.assert_array_equal(system.x, good.x)
+    np.testing.assert_array_equal(system.v, good.v)
+    np.testing.assert_array_equal(system.image, good.image)
+    fresh.call("run", ["10"])
+    assert not list(tmp_path.glob("*.part*"))
+
+
+def test_a_timestep_far_too_long_in_a_melt(tmp_path):
+    """Energy from nowhere: found long before anything is infinite; LAMMPS goes on with it, or loses atoms."""
+    error, _ = failure(MELT.format(n=5, dt=0.05) + "run 1000\n", tmp_path)
+    good = error.verdict.good
+    assert error.verdict.step < 300 and "timestep 0.01" in str(error)
+    assert np.abs(good.v).max() * 0.05 < 2.5 and error.verdict.item.energy < 1e4
+
+
+def test_energy_from_nowhere_alone():
+    """A harmonic bond just above its limit of stability: energy grows by a small factor in each step, no atom ever flies."""
+    loop = chain(0.01, k=100.0, dt=2.0 / math.sqrt(400.0) * 1.005, n=2)
+    told = []
+    loop.warn = told.append
+    loop.setup()
+    with pytest.raises(SimulationError, match=r"total energy rose by .* not for the first time") as caught:
+        for _ in range(200):
+            loop.watchdog._next_energy = 0.0
+            loop.advance(10)
+    v = caught.value.verdict
+    assert v.item.ids == (101, 102) and v.item.period == pytest.approx(2 * math.pi / 20.0, rel=1e-6)
+    assert len(told) == 1 and "total energy rose" in told[0]
+    assert any("vibrates with a period of 0.314, " in line and line.startswith("timestep 0.016") for line in v.advice)
+
+
+def test_a_bond_beyond_its_length(tmp_path):
+    """An error that a kernel raises gets the same treatment."""
+    system = chain(n=2).system
+    inter = Interactions.build(bond={"fene": {1: (30.0, 1.5, 1.0, 1.0)}})
+    system.v[:, 0] = -15.0, 15.0
+    loop = Loop(system, inter, Settings(), [NVE()], {"all": np.ones(2, bool)}, 0.01)
+    loop.watchdog.path = str(tmp_path / "state.dump")
+    loop.setup()
+    with pytest.raises(SimulationError, match=r"step \d+: bond of type 1 between atoms 101 102 .* R0") as caught:
+        loop.advance(100)
+    assert "strongest pull" in str(caught.value) and "last good state (step" in str(caught.value)
+    assert (tmp_path / "state.dump").read_text().startswith("ITEM: TIMESTEP")
+    assert caught.value.verdict.item.ids == (101, 102)
+
+
+def test_velocities_that_are_not_numbers_and_never_a_list():
+    loop = chain(every=10**6)
+    loop.setup()
+    loop.advance(5)
+    loop.state.v[1, 3] = np.nan
+    loop.watchdog._next = 0.0
+    with pytest.raises(SimulationError, match=r"step 6: .* atoms 10\d 10\d: .* not a number"):
+        loop.advance(1)
+
+
+class Rigid(NVE):
+    """Stands for a fix with constraints."""
+
+    broken = ""
+
+    def broken_constraint(self, loop):
+        return self.broken
+
+
+def test_broken_constraints():
+    fix = Rigid()
+    fix.id = "7"
+    loop = chain(fixes=[fix])
+    loop.setup()
+    loop.advance(10)
+    fix.broken, loop.watchdog._next = "bond 101 102 is off by 0.3", 0.0
+    with pytest.raises(SimulationError, match=r"step \d+: fix 7 \(style nve\): bond 101 102 is off by 0.3; last|bond 101 102 is off"):
+        loop.advance(10)
+
+
+def test_runs_of_atoms(tmp_path):
+    atoms = asemd.Atoms("Ar2", [(0, 0, 0), (1.0, 0, 0)], cell=[20] * 3, pbc=True)
+    atoms.calc = asemd.ForceField(bond={"harmonic": {1: (10.0, 1.0)}}, topology=Topology(bonds=[(0, 1)]))
+    atoms.set_velocities([(0, 0, 0), (0.01, 0, 0)])
+    dyn = asemd.MolecularDynamics(atoms, 200 * units.fs, logfile=str(tmp_path / "md.log"), loginterval=10)
+    with pytest.raises(SimulationError, match="md.log.last_good.extxyz"):
+        dyn.run(5000)
+    saved = io.read(tmp_path / "md.log.last_good.extxyz")
+    assert len(saved) == 2 and np.isfinite(saved.get_velocities()).all() and "step" in saved.info
+
+
+# ------------------------------------------------------------------------------------------------------- what it leaves alone ---
+
+def finishes(text: str) -> float:
+    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as own:
+        own.commands_string(text)
+        return own.get_thermo("temp")
+
+
+def wheel_finishes(text: str) -> float:
+    return ask("""
+l = start()
+l.commands_string(given["text"])
+answer = l.get_thermo("temp")
+""", text=text)
+
+
+SANE = {
+    "overlaps pushed apart": CRAMMED + "fix 1 all nve/limit 0.05\nrun 300\nunfix 1\nfix 1 all nve\nrun 100\n",
+    "soft push off": CRAMMED.replace("lj/cut 2.5", "soft 1.1").replace("1.0 1.0", "60.0")
+    + "fix 1 all nve\nfix 2 all langevin 1 1 0.1 5\nrun 300\n",
+    "exothermic": MELT.format(n=4, dt=0.0005).replace("0.8442", "3.2").replace("create 1.44", "create 0.0001") + "run 600\n",
+    "projectile": MELT.format(n=5, dt=0.0001) + "group one id 1\nvelocity one set 100.0 20.0 3.0\nrun 400\n",
+    "heated": MELT.format(n=4, dt=0.001) + "fix 2 all langevin 500.0 500.0 0.02 7\nrun 300\n",
+    "pulled": MELT.format(n=4, dt=0.002) + "fix 2 all addforce 200.0 0 0\nrun 300\n",
+    "gas": MELT.format(n=5, dt=0.0005).replace("0.8442", "0.01") + "velocity all scale 400.0\nrun 300\n",
+    "velocities set between runs": MELT.format(n=4, dt=0.001) + "run 50\nvelocity all scale 300.0\nrun 50 pre no\n",
+}
+
+
+@pytest.mark.parametrize("name", SANE)
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_sound_runs_go_on(name):
+    """Hot, violent and pushed runs that LAMMPS completes."""
+    assert math.isfinite(finishes(SANE[name]))
+
+
+def test_hot_runs_are_as_in_lammps():
+    for name in ("exothermic", "gas"):
+        assert finishes(SANE[name]) == pytest.approx(wheel_finishes(SANE[name]), rel=1e-3)
+
+
+def test_free_atoms_may_fly():
+    loop = chain(n=2)
+    loop.system.topology = Topology()
+    loop.engine.update(loop.system)
+    loop.system.v[0] = 900.0, 0.0, 0.0
+    loop.setup()
+    loop.advance(200)
+    assert loop.system.image[0].any()
+
+
+# ------------------------------------------------------------------------------------------------------------------ how it works ---
+
+def test_it_changes_nothing():
+    """The same digits with and without."""
+    out = []
+    for explains in (True, False):
+        session = both.asemd(MELT.format(n=4, dt=0.005) + "run 0\n")
+        loop = session.loop
+        loop.watchdog.explains = explains
+        loop.watchdog._next = 0.0 if explains else np.inf
+        for _ in range(5):
+            loop.advance(30)
+            loop.watchdog._next = 0.0 if explains else np.inf
+        out.append((loop.system.x.copy(), loop.system.v.copy()))
+    np.testing.assert_array_equal(out[0], out[1])
+
+
+def test_it_keeps_two_frames_and_waits():
+    """After a look it waits 200 times as long as that took: half a percent at most."""
+    session = both.asemd(MELT.format(n=4, dt=0.005) + "run 2000\n")
+    dog = session.loop.watchdog
+    assert len(dog.frames) == 2 and 0 < dog.frames[0].step < dog.frames[1].step <= 2000
+    for frame in dog.frames:
+        state = frame.system(session.scene.system)
+        assert np.isfinite(state.x).all() and state.step == frame.step and state.x is not session.scene.system.x
+
+
+def test_quiet_without_an_explanation():
+    loop = chain(0.2, k=100.0, dt=0.2)
+    loop.watchdog.explains = False
+    loop.setup()
+    with pytest.raises(SimulationError) as caught:
+        loop.advance(1000)
+    assert not loop.watchdog.frames and not hasattr(caught.value, "verdict") and "try" not in str(caught.value)
+
+
+def test_advice():
+    bond = Item("bond", "bond_style harmonic", 1, (1, 2), 1.0, 5.0, 100.0, 0.01, period=0.4)
+    assert advice(bond, 0.1, 5000) == ["timestep 0.02 (this bond vibrates with a period of 0.4, 4 steps)"]
+    pair = Item("pair", "pair_style lj/cut", 0, (1, 2), 0.1, 1e9, 1e11, 1e6, period=1e-6)
+    near, far = advice(pair, 0.004, 3), advice(pair, 0.004, 10**6)
+    assert near[0].startswith("minimize") and near[1] == "timestep 0.001" and far == ["timestep 0.001"]
+    assert advice(None, 1.0, 0) == ["timestep 0.25"]
