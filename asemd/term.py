@@ -124,6 +124,7 @@ class PairTerm:
         self.style, self.tables, self.single = term.style, term.tables, single
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
         self.row = 0
+        self.tables4 = np.zeros((1, 2, 0, 4))
 
     def kernel(self, energy, per_atom):
         return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single,
@@ -134,7 +135,10 @@ class PairTerm:
         return engine.list
 
     def rebuild(self, engine):
-        clusters = self.clusters(engine)
+        clusters, slots = self.clusters(engine), engine.state.x.shape[1]
+        if self.tables4.shape[2] != slots:
+            self.tables4 = aligned((engine.threads, 2, slots, 4))
+        self.shifts4 = np.column_stack([clusters.shifts, np.zeros(len(clusters.shifts))])
         self.outdated = engine.settings.outdated
         self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(clusters.longest())
@@ -151,10 +155,10 @@ class PairTerm:
 
     def arguments(self, engine, tid):
         s, c = engine.state, self.clusters(engine)
-        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts,
+        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, self.shifts4,
                 c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
-                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], engine.acc[tid, self.index], c.hide[tid],
-                engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1])
+                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], *self.tables4[tid], engine.acc[tid, self.index],
+                c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1])
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")

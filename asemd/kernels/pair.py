@@ -102,10 +102,11 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
     b.line("from asemd.kernels.fuse import madd")
+    b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
-                            CHARGED=style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
+                            CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
                             OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):

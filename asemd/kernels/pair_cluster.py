@@ -20,6 +20,7 @@ import math
 import numpy as np
 
 from asemd.kernels.fuse import madd
+from asemd.kernels.gather import gather8, give8, scatter8, take8
 from asemd.kernels.pair_sums import add, eight, plus
 
 CLUSTER = 8
@@ -29,6 +30,7 @@ NROWS = 0
 ENERGY = CHARGED = VARYING = SHARE = False
 EXCLUDE = OUTDATED = HIDE = True
 SLOT_BITS = 0x3FFFFFF
+CHARGE_ROW = 0           # where charges stand in the buffer, 0 for nowhere
 real = np.float64
 place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
 pair_force = pair_energy = fill_rows = inner_hidden = None
@@ -125,7 +127,7 @@ def one_pair(b, k, x, y, z, qi, p, rows):
 
 
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
-                   qqr2e, b, types, saved, acc, hide, skin, moved, farthest):
+                   qqr2e, b, types, saved, near, push, acc, hide, skin, moved, farthest):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz).
 
     The last four arguments are for OUTDATED: the mask of the entries, squared displacements of the slots since the list was built, and
@@ -133,6 +135,9 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
     """
     far = real(far_)
     late = False
+    cap = x.shape[1]
+    for k in range(0, cap, 8):
+        take8(near, k, x, q)
     if OUTDATED:
         rest = 0.999999 * skin - math.sqrt(farthest[0])      # how far another atom may have moved
     done = real(2) * far      # atoms of the cluster that have had their turn
@@ -145,26 +150,15 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         full = ((np.int64(first[ci + 1]) - f0) // WIDTH) * WIDTH     # rows are padded: whole vectors
         mine = np.int64(own[ci])
         if unshifted[ci]:
-            for k in range(full):
-                j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
-                b[k] = x[0, j] - ox
-                b[k + ROW] = x[1, j] - oy
-                b[k + 2 * ROW] = x[2, j] - oz
+            for k in range(0, full, 8):
+                gather8(b, k, ROW, near, entries, f0 + k, ox, oy, oz, shifts, SLOT_BITS, False, CHARGE_ROW)
         else:
-            for k in range(full):
-                e = entries[place(f0 + k)]
-                j = np.uint32(e & np.int32(SLOT_BITS))
-                c = np.uint32(e >> 26)
-                b[k] = (x[0, j] + shifts[c, 0]) - ox
-                b[k + ROW] = (x[1, j] + shifts[c, 1]) - oy
-                b[k + 2 * ROW] = (x[2, j] + shifts[c, 2]) - oz
+            for k in range(0, full, 8):
+                gather8(b, k, ROW, near, entries, f0 + k, ox, oy, oz, shifts, SLOT_BITS, True, CHARGE_ROW)
         for k in range(full):
             b[k + 3 * ROW] = real(0)
             b[k + 4 * ROW] = real(0)
             b[k + 5 * ROW] = real(0)
-        if CHARGED:
-            for k in range(full):
-                b[k + 6 * ROW] = q[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
         if VARYING:
             for k in range(full):
                 types[k] = type_of[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
@@ -259,8 +253,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             b[place(mine + a0 + 1 + 5 * ROW)] += fzb
             if ENERGY:
                 add(acc, sums)
-        for k in range(full):
-            j = np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))
-            f[0, j] += b[k + 3 * ROW]
-            f[1, j] += b[k + 4 * ROW]
-            f[2, j] += b[k + 5 * ROW]
+        for k in range(0, full, 8):
+            scatter8(b, k + 3 * ROW, ROW, push, entries, f0 + k, SLOT_BITS)
+    for k in range(0, cap, 8):
+        give8(push, k, f)
