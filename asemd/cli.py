@@ -127,6 +127,7 @@ def run(context: typer.Context,
         dry: Annotated[bool, typer.Option("--dry", help="Read and bind all commands, report all problems, compute nothing.")] = False,
         safe: Annotated[bool, typer.Option("--safe", help="For scripts from strangers: no shell, no python, no writing outside.")] = False,
         import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
+        html: Annotated[str | None, typer.Option(help="Write a page to look at: curves, timing, plan and a molecule that turns.")] = None,
         ) -> int:
     """Run a LAMMPS input script (- is standard input; LAMMPS's switches such as -var -in -log -echo -screen -sf are accepted)."""
     from asemd.lammps.session import Session, Stop
@@ -152,6 +153,9 @@ def run(context: typer.Context,
     watcher = make_watcher(options.screen is not None)
     session = Session(switches=options, screen=watcher.write if options.screen is None else None)
     session.observer = watcher
+    if html:
+        from asemd.lammps.record import Record
+        session.record = Record()
     status = 0
     with interruptible(session), warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)       # printed as WARNING already
@@ -171,10 +175,20 @@ def run(context: typer.Context,
             for problem in getattr(e, "problems", [e]):
                 session.log.to_file(f"ERROR: {problem}\n")
             session.close_dumps()
+            write_page(session, html, path, str(e))
             session.log.close()
             raise
+    write_page(session, html, path, "interrupted" if status == INTERRUPTED else "")
     session.close()
     return complain("interrupted", INTERRUPTED) if status == INTERRUPTED else status
+
+
+def write_page(session, target: str | None, script: str | None, error: str) -> None:
+    """``--html``: the page of what was run, also when the run ended early."""
+    if target:
+        from asemd.page.run import page_of_run
+        page = page_of_run(session, script if script and script != "-" else "standard input", error)
+        session.log.write(f"Page: {page.write(target)}\n")
 
 
 def rehearse(path: str | None, options: Switches) -> int:

@@ -127,6 +127,8 @@ class Driver:
     plan : Plan
     """
 
+    kind = "run"
+
     def __init__(self, session, plan: Plan):
         self.session, self.plan, self.scene = session, plan, session.scene
         self.words = self.scene.thermo.columns(self.scene.box_changes)
@@ -313,6 +315,8 @@ class Driver:
         session.log.write(scene.thermo.row(self.words, values, step, self.progress.cpu() if step > self.progress.begin else 0.0) + "\n")
         session.last_thermo = {scene.thermo.name(k, w): v for k, (w, v) in enumerate(zip(self.words, values), 1)}
         session.last_words, session.last_thermo_step = self.words, step
+        if session.record is not None:
+            session.record.row(self, values)
         if scene.thermo.flush or session.watched:
             session.log.flush()
 
@@ -333,6 +337,9 @@ class Driver:
         scene, write = self.scene, self.session.log.write
         n, engine = scene.system.n, self.session.loop.engine
         timer = self.session.timer
+        timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
+        if self.session.record is not None:
+            self.session.record.ended(self, steps, seconds, timings)
         if timer.style != "off":
             write(log.loop_line(seconds, steps, n) + "\n")
         if not self.plan.post:
@@ -341,7 +348,6 @@ class Driver:
             write(log.performance(seconds, steps, n, scene.dt, scene.units, units.get(scene.units).femtosecond))
             write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n")
         write("\n")
-        timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0
                         or (s == "Bond" and scene.system.molecular))
         write(log.timing_table(seconds, timings, present, timer))

@@ -35,6 +35,7 @@ class Log:
         self.unbuffered = False
         self.started = time.time()
         self.warnings, self.max_warnings = 0, 100
+        self.warned: list[str] = []         # what was said
         if path and path != "none":
             self.open(path)
         self.to_file(f"LAMMPS ({LANGUAGE} - asemd {__version__})\n")       # readers of logs look for the first word
@@ -92,6 +93,7 @@ class Log:
         self.warnings += 1
         if self.warnings > self.max_warnings:
             return
+        self.warned.append(message)
         self.write(f"WARNING: {message}\n")
         self.flush()
         warnings.warn(message, InputWarning, stacklevel=3)

@@ -84,6 +84,7 @@ class Session:
         self.interrupted = False
         self.timer = Timer()
         self.observer: Any = None          # told about progress by the driver: .start(steps), .update(done), .stop()
+        self.record: Any = None            # an asemd.lammps.record.Record, which the driver fills
         self.label: str | None = None      # text is skipped up to this label
         self.exhausted = False             # `next` ran out: the next `jump` is skipped
         self._depth = 0                    # scripts within scripts
@@ -94,7 +95,7 @@ class Session:
 
     def __getstate__(self) -> dict[str, Any]:
         """Copies have no log, no terminal and no compiled loop: the next run makes the loop anew."""
-        return {**self.__dict__, "loop": None, "observer": None}
+        return {**self.__dict__, "loop": None, "observer": None, "record": None}
 
     def _fresh_scene(self) -> Scene:
         scene = Scene()

@@ -214,7 +214,7 @@ def loglog_plot(title: str, series: Sequence[Series], xlabel: str, ylabel: str, 
         chosen = [rows[i] for i in pareto(np.array([r["x"] for r in rows]), np.array([r["y"] for r in rows]))]
         plain = [{"x": r["x"], "y": r["y"]} for r in chosen]
         steps = {"type": "line", "interpolate": "step-after", "strokeDash": [6, 4], "color": "#888888"}
-        rings = {"type": "point", "size": 190, "strokeWidth": 1.6, "color": "#888888", "tooltip": "on the Pareto front"}
+        rings = {"type": "point", "size": 190, "strokeWidth": 1.6, "color": "#888888"}
         layer += [{"data": {"values": plain}, "mark": mark, "encoding": {"x": xs, "y": ys}} for mark in (steps, rings)]
     layer.append({"mark": {"type": "line"}, "encoding": {"x": xs, "y": ys, "color": colour, "order": {"field": "k"}}})
     layer.append({"mark": {"type": "point", "filled": True, "size": 60, "opacity": 1},

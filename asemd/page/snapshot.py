@@ -55,6 +55,7 @@ def describe(system) -> dict[str, Any]:
             "bonds": _pack(bonds.astype("<u4")), "crossing": [int(i) for i in crossing],
             "toward": np.round(shift[crossing] @ box.cell * scale, 3).tolist(), "spacing": spacing * scale,
             "kinds": [[k.name, k.colour, round(k.radius, 3), k.count] for k in kinds],
+            "centre": np.round((seen.max(axis=0) - low) * 0.5 * scale, 3).tolist(),
             "corners": np.round((corners - low) * scale, 3).tolist(), "edges": [list(e) for e in edges]}
 
 

@@ -50,6 +50,8 @@ class Landscape:
 class Minimization(Driver):
     """Carries out one minimisation, with the output of a run."""
 
+    kind = "minimize"
+
     def __init__(self, session, etol: float, ftol: float, maxiter: int, maxeval: int):
         begin = session.scene.step
         super().__init__(session, Plan(maxiter, begin, begin + maxiter))
@@ -88,8 +90,12 @@ class Minimization(Driver):
             session.log.write(scene.thermo.footer() + "\n")
         loop.finish()
         scene.set_dt(scene.dt)
+        timings = dict(loop.engine.timings)
+        timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
+        if session.record is not None:
+            session.record.ended(self, result.iterations, seconds, timings)
         session.loop = None         # a run after a minimisation starts afresh
-        self._report(loop, result, seconds)
+        self._report(loop, result, seconds, timings)
         if session.interrupted:
             raise KeyboardInterrupt
 
@@ -143,14 +149,12 @@ class Minimization(Driver):
             restart.write_due(session, scene.step, all_of_them=True)
         return result
 
-    def _report(self, loop, result, seconds: float) -> None:
+    def _report(self, loop, result, seconds: float, timings: dict[str, float]) -> None:
         session, scene, engine, write = self.session, self.scene, loop.engine, self.session.log.write
         if session.timer.style != "off":
             write(log.loop_line(seconds, result.iterations, scene.system.n) + "\n")
             write(f"100.0% CPU use with 1 MPI tasks x {scene.threads} OpenMP threads\n")
         write(f"\n{result.text()}\n\n")
-        timings = dict(engine.timings)
-        timings["Output"] = timings.get("Output", 0.0) + self.output_seconds
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0)
         write(log.timing_table(seconds, timings, present, session.timer))
         write(log.counts(scene.system.n, 0, int(engine.pairs), engine.builds, engine.dangerous if scene.neighbor.check else None))

@@ -94,6 +94,8 @@
   const array = (Kind, text) => new Kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
 
   function makeViewer(place) {
+    const probe = document.createElement("canvas");
+    if (!(probe.getContext("webgl2") || probe.getContext("webgl"))) throw new Error("this browser has no WebGL");
     const data = JSON.parse(place.querySelector("script").textContent);
     const raw = array(Uint16Array, data.position), kind = array(Uint16Array, data.kind), bonds = array(Uint32Array, data.bonds);
     const ids = data.id ? array(Uint32Array, data.id) : null;
@@ -106,7 +108,6 @@
     place.append(stage);
     const viewer = $3Dmol.createViewer(stage, { backgroundAlpha: 0, backgroundColor: "white", antialias: true, orthographic: data.flat, disableFog: data.flat,
       cartoonQuality: 1 });
-    if (!viewer) throw new Error("no WebGL");
 
     function model() {
       const radius = { sticks: 0.24, balls: 0.36, full: 0.5 }[look.style] * data.spacing;
@@ -158,15 +159,16 @@
       viewer.render();
     }
 
+    // z points up, the box is turned a little; in two dimensions x and y lie in the picture
     function aim() {
-      viewer.setView([0, 0, 0, 0, 0, 0, 0, 1]);
-      if (!data.flat) {
-        viewer.rotate(-70, "x");
-        viewer.rotate(-25, "y");
-        viewer.rotate(8, "x");
-      }
+      const half = (degrees) => (degrees * Math.PI) / 360;
+      const [a, b] = data.flat ? [0, 0] : [half(-76), half(-24)];
+      const turn = [Math.sin(a) * Math.cos(b), -Math.sin(a) * Math.sin(b), Math.cos(a) * Math.sin(b), Math.cos(a) * Math.cos(b)];
+      viewer.setView([0, 0, 0, 0, ...turn]);
       viewer.zoomTo();
-      viewer.zoom(data.flat ? 0.98 : 1.0);
+      const view = viewer.getView();
+      viewer.setView([...data.centre.map((c) => -c), view[3], ...view.slice(4)]);
+      viewer.zoom(Math.min(1, stage.clientWidth / stage.clientHeight) * (data.flat ? 1.0 : 1.2));
       viewer.render();
     }
 
@@ -174,11 +176,14 @@
     aim();
     views.push({ redraw: build });
     // the wheel scrolls the page until the picture was touched
-    let active = false;
-    stage.addEventListener("pointerdown", () => { active = true; });
+    let active = false, touched = false;
+    stage.addEventListener("pointerdown", () => { active = touched = true; });
     stage.addEventListener("pointerleave", () => { active = false; });
     stage.addEventListener("wheel", (event) => { if (!active) event.stopImmediatePropagation(); }, { capture: true });
-    new ResizeObserver(() => viewer.resize()).observe(stage);
+    new ResizeObserver(() => {
+      viewer.resize();
+      if (!touched) aim();
+    }).observe(stage);
 
     const legend = document.createElement("div");
     legend.className = "legend";
