@@ -5,12 +5,14 @@ The module can be called like the function `check`.
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
 from asemd.check.report import Report
 from asemd.finding import Finding
 
+OF_SETTINGS = ("damping", "r-RESPA", "time step", "units")     # checks of the later runs of a script, too: they ask for no positions
 __all__ = ["Finding", "Report", "check"]
 
 
@@ -53,6 +55,12 @@ def of_case(case, run: bool = False, **options: Any) -> Report:
             report.extend(function(case))
         except DoesNotApply as why:
             report.left_out.append((name, str(why)))
+        for other in case.later if name in OF_SETTINGS else ():
+            other.force = case.force
+            try:
+                report.extend(replace(f, where=other.where) for f in function(other) if f.rank)
+            except DoesNotApply:
+                continue        # the first run says why
     if run:
         from asemd.check import experiment
         report.extend(experiment.run(case.scene, force=case.force, **options))

@@ -1,35 +1,92 @@
-"""Scripts as cases: what stands before the first run, nothing executed but the reading."""
+"""Scripts as cases: each run of a script is one; nothing is executed but the reading."""
 from __future__ import annotations
 
+import copy
+import json
+from dataclasses import replace
+
 from asemd.check.case import Case, of_scene
-from asemd.lammps.driver import check as check_run
-from asemd.lammps.session import Session, Stop
+from asemd.lammps import script
+from asemd.lammps.command.minimize import Minimization
+from asemd.lammps.driver import check_integration
+from asemd.lammps.dry import DrySession
+
+MOST = 12       # runs that are looked at
 
 
-class Reading(Session):
-    """Goes through a script up to its first run; minimisations are passed over."""
+class Reading(DrySession):
+    """Goes through a script as ``asemd run --dry`` does, and keeps what each run would begin with.
+
+    Attributes
+    ----------
+    cases : list of Case
+        One for every run with another timestep, force field, fixes or levels than the ones before.
+    empty : Case or None
+        A run of no steps, of use if there is no other.
+    known : int
+        Problems of the script before its first run.
+    """
 
     def __init__(self, switches=None):
-        super().__init__(switches=switches, passive=True)
+        super().__init__(switches)
+        self.cases: list[Case] = []
         self.relaxes = False
+        self._seen: set[str] = set()
+        self.empty: Case | None = None
+        self.known = 0
 
-    def call(self, name: str, args) -> None:
-        if name == "minimize":
-            self.scene.need_system(name)
+    def drive(self, driver) -> None:
+        super().drive(driver)
+        if isinstance(driver, Minimization):
             self.relaxes = True
-        else:
-            super().call(name, args)
+        elif not self.cases:
+            check_integration(self)
+            case = self._case()
+            self.known = len(self.problems)
+            if driver.plan.steps:
+                self.cases.append(case)
+            elif self.empty is None:
+                self.empty = case
+        elif len(self.cases) < MOST and not self.problems[self.known:]:
+            case = self._case()
+            if case is not None:
+                self.cases.append(case)
+
+    def _case(self) -> Case | None:
+        """The run that begins now; None if there was one like it."""
+        scene = self.scene
+        inter = scene.interactions
+        words = [[f.id, f.style, f.group, *map(str, f.to_lammps())] for f in scene.fixes.values()]
+        forces = [[c, inter.style_line(c), inter.coeff_lines(c)] for c in inter.uses] + inter.modify_lines() + [inter.special_line()]
+        mark = json.dumps([scene.dt, words, forces, repr(scene.respa)], default=str)
+        if mark in self._seen:
+            return None
+        self._seen.add(mark)
+        place = self._position
+        mine = replace(scene, system=scene.system.copy(), interactions=copy.deepcopy(inter), groups=copy.deepcopy(scene.groups),
+                       fixes=dict(scene.fixes), computes=dict(scene.computes), dumps={}, restarts={}, neighbor=replace(scene.neighbor))
+        case = of_scene(mine, place.file if place else "")
+        case.relaxes = self.relaxes
+        case.where = f"run of line {place.line}" if place else "a later run"
+        return case
 
 
 def of_script(path: str, switches=None) -> Case:
-    """The case of a script's first run."""
+    """The case of a script's first run; the runs after it that differ are its `later`.
+
+    Raises
+    ------
+    InputError
+        The script has mistakes, or no run and no box.
+    """
     session = Reading(switches)
-    try:
-        session.file(path)
-    except Stop:
-        session.label = None
+    session.rehearse(path)
+    script.raise_problems(session.problems[:session.known] if session.cases or session.empty else session.problems)
     session.scene.need_system("check")
-    check_run(session)
-    case = of_scene(session.scene, path)
-    case.relaxes = session.relaxes
+    cases = session.cases or [session.empty or session._case()]
+    case = cases[0]
+    case.source, case.warnings, case.where = path, list(session.notes), ""
+    case.later = cases[1:]
+    for other in case.later:
+        other.source = path
     return case

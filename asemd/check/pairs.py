@@ -1,0 +1,132 @@
+"""Pair energies of two types as a function of their distance, and the pairs of a scene that are close."""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from asemd.errors import AsemdError, SimulationError
+
+SHRINK = 0.985      # steps inwards when a wall of energy is looked for
+INNERMOST = 1e-3    # of the cutoff
+TYPES = 60          # of more types than this only pairs of the same type are looked at
+
+
+def energy_between(case, i: int, j: int) -> Callable[[float], float]:
+    """The pair energy of types `i` and `j` without their charges: a function of the distance, ``inf`` where it does not exist."""
+    pieces = []
+    for term in case.engine.pair_terms:
+        row = constant = 0
+        for part in term.style.parts:
+            table, numbers = term.tables.rows, term.tables.constants
+            cut2, offset = float(table[row, i, j]), float(table[row + 1, i, j])
+            values = [float(table[row + 2 + k, i, j]) for k in range(len(part.rows))]
+            values += [float(c) for c in numbers[constant:constant + len(part.constants)]]
+            if cut2 > 0.0 and not part.charged and not part.arrays:
+                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values))
+            row, constant = row + 2 + len(part.rows), constant + len(part.constants)
+
+    def energy(r: float) -> float:
+        total = 0.0
+        for function, squared, cut2, offset, values in pieces:
+            if r * r < cut2:
+                try:
+                    total += function(r * r if squared else r, *values)[0] - offset
+                except (ArithmeticError, ValueError):
+                    return math.inf
+        return math.inf if math.isnan(total) else total
+    return energy
+
+
+def type_pairs(case) -> list[tuple[int, int]]:
+    """Pairs of types i <= j of which there are atoms."""
+    used = [int(t) for t in np.unique(case.system.type)]
+    if len(used) > TYPES:
+        return [(t, t) for t in used]
+    return [(i, j) for k, i in enumerate(used) for j in used[k:]]
+
+
+def wall(case, energies) -> dict[tuple[int, int], tuple[float, ...]]:
+    """For each pair of types the largest distances at which the pair energy, coming from the cutoff, reaches these `energies`.
+
+    Returns
+    -------
+    dict
+        (i, j), i <= j -> distances; 0 where an energy is never reached.
+    """
+    out, known = {}, {}
+    for i, j in type_pairs(case):
+        key = tuple(t.tables.rows[:, i, j].tobytes() for t in case.engine.pair_terms)
+        if key not in known:
+            known[key] = _wall(energy_between(case, i, j), _cut(case, i, j), energies)
+        out[i, j] = known[key]
+    return out
+
+
+def _cut(case, i: int, j: int) -> float:
+    return max((math.sqrt(float(t.tables.rows[t.cut_rows, i, j].max())) for t in case.engine.pair_terms), default=0.0)
+
+
+def _wall(energy: Callable[[float], float], cut: float, energies) -> tuple[float, ...]:
+    found = []
+    r = cut * (1.0 - 1e-9)
+    for wanted in sorted(energies):
+        outer = r
+        while r > INNERMOST * cut and energy(r) < wanted:
+            outer, r = r, SHRINK * r
+        if not r > INNERMOST * cut:
+            return (*found, *[0.0] * (len(energies) - len(found)))
+        inner = r
+        for _ in range(30):
+            middle = 0.5 * (inner + outer)
+            inner, outer = (inner, middle) if energy(middle) < wanted else (middle, outer)
+        found.append(0.5 * (inner + outer))
+    return tuple(found)
+
+
+def curvature(energy: Callable[[float], float], r: float) -> float:
+    """Second derivative of a pair energy."""
+    h = 1e-4 * r
+    return (energy(r + h) - 2.0 * energy(r) + energy(r - h)) / (h * h)
+
+
+def close_pairs(case, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Pairs of rows that interact, excluded ones left out, closer than `reach`; the shortest first.
+
+    Returns
+    -------
+    pairs (m, 2), distances (m,), kinds (m,)
+        Kind 0: ordinary pairs; 1, 2, 3: special pairs with a weight.
+
+    Raises
+    ------
+    AsemdError
+        There is no list, because an atom is lost or not anywhere.
+    """
+    e = case.engine
+    if e.mode == "none":
+        return np.zeros((0, 2), int), np.zeros(0), np.zeros(0, int)
+    if e.state is None:
+        e.load()
+    s = e.state
+    reach = min(reach, e.reach)
+    if e.mode == "cluster":
+        i, j, code = e.exclusions.mark(e.k, s.x, s.row, *e.list.expand(e.k, s, reach), e.list.shifts, e.cell, e.periodic)
+        shifts = e.list.shifts
+    else:
+        (i, j, code), shifts = e.plain, e.plain_shifts
+    d = s.x[:, i] - s.x[:, j] - shifts[code >> 2].T
+    r = np.sqrt((d * d).sum(axis=0))
+    near = np.flatnonzero(r < reach)
+    near = near[np.argsort(r[near])]
+    return np.column_stack([s.row[i[near]], s.row[j[near]]]), r[near], code[near] & 3
+
+
+def can_list(case) -> AsemdError | None:
+    """Why there is no list of pairs; None if there is one."""
+    try:
+        close_pairs(case, 1e-6)
+    except (AsemdError, ArithmeticError) as e:
+        return e if isinstance(e, AsemdError) else SimulationError(str(e))
+    return None

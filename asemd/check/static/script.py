@@ -1,0 +1,15 @@
+"""What a run of the script would warn of before its first step."""
+from __future__ import annotations
+
+from asemd.check.case import Case
+from asemd.check.static import DoesNotApply, static
+from asemd.finding import Finding
+
+SERIOUS = ("extent > half", "integrated more than once", "is negative", "have no energy")     # the others are for your information
+
+
+@static("script")
+def warned(case: Case) -> list[Finding]:
+    if not case.warnings:
+        raise DoesNotApply("the script gives no warning")
+    return [Finding("warning" if any(s in text for s in SERIOUS) else "note", "script", text) for text in case.warnings]

@@ -1,0 +1,247 @@
+"""asemd check: healthy scenes raise no alarm, a twin that is broken in one way is found by the check for it."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from check_scenes import BUTANE, CHAIN, LJ, butane_data, chain_data
+
+import asemd
+from asemd import cli
+from asemd.errors import InputError
+from asemd.finding import Finding
+
+ROOT = Path(__file__).resolve().parents[1]
+HARMONIC = BUTANE.replace("special_bonds amber", "special_bonds lj/coul 0 0 0.5")
+MOVED = "set atom 2 x {0} y {0} z {0}\n"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "chain.data").write_text(chain_data())
+    (tmp_path / "butane.data").write_text(butane_data())
+    return tmp_path
+
+
+def check(text: str, **options):
+    Path("in.x").write_text(text)
+    return asemd.check("in.x", **options)
+
+
+def edit(text: str, *edits: tuple[str, str]) -> str:
+    for old, new in edits:
+        assert old in text
+        text = text.replace(old, new)
+    return text
+
+
+@pytest.mark.parametrize("text", [LJ, CHAIN, BUTANE], ids=["lj", "chain", "butane"])
+def test_healthy_scenes_raise_no_alarm(folder, text):
+    report = check(text)
+    assert not report.at_least("note"), report
+    assert {"atoms in the box", "time step", "fastest vibration", "overlaps", "first step", "units"} <= {f.name for f in report}
+
+
+@pytest.mark.parametrize("name", ["lj-melt", "polymer-melt"])
+def test_workflows_raise_no_alarm(folder, name):
+    text = (ROOT / "workflows" / name / "in.melt").read_text().replace("melt.data", "chain.data")
+    assert check(text).worst in ("ok", "note")
+
+
+# twin, check that finds it, severity, atoms it names first, words of the message
+BROKEN = {
+    "timestep too long": (edit(LJ, ("timestep 0.005", "timestep 0.03")), "time step", "warning", (), "period / 5:"),
+    "timestep not stable": (edit(LJ, ("timestep 0.005", "timestep 0.06")), "time step", "error", (), "beyond period / pi"),
+    "bonds not stable": (edit(CHAIN, ("timestep 0.006", "timestep 0.05")), "time step", "error", None, "bond type 1 (fene)"),
+    "Lanczos finds it too": (edit(CHAIN, ("timestep 0.006", "timestep 0.05")), "fastest vibration", "error", None, "grows without bounds"),
+    "timestep of picoseconds": (edit(BUTANE, ("timestep 1.0", "timestep 0.001")), "time step", "note", None, "usual in units real: 1.0"),
+    "two atoms near": (edit(LJ, ("run 10", MOVED.format("0.5") + "run 10")), "overlaps", "error", (1, 2), "1-2 at distance"),
+    "two atoms in one place": (edit(LJ, ("run 10", MOVED.format("0.0") + "run 10")), "overlaps", "error", (1, 2), "distance 0"),
+    "a collision too close": (edit(LJ, ("run 10", "set atom 2 x 0.0 y 0.53 z 0.53\nrun 10")), "overlaps", "warning", (1, 2), "kT"),
+    "large force": (edit(LJ, ("run 10", MOVED.format("0.5") + "run 10")), "first step", "error", None, "in a single step"),
+    "atom outside": (edit(LJ, ("units lj", "units lj\nboundary p p f"), ("run 10", "set atom 7 z -0.5\nrun 10")), "atoms in the box", "error",
+                     (7,), "outside the fixed faces along z"),
+    "small box": (edit(LJ, ("0 4 0 4 0 4", "0 2 0 2 0 2"), ("lj/cut 2.5", "lj/cut 3.5")), "box and cutoff", "warning", (), "and itself"),
+    "short damping": (edit(BUTANE, ("300.0 100.0", "300.0 5.0")), "damping", "warning", (), "5 steps"),
+    "no damping time": (edit(BUTANE, ("300.0 100.0", "300.0 1.0")), "damping", "error", (), "too short"),
+    "friction": (edit(CHAIN, ("1.0 10.0", "1.0 0.02")), "damping", "warning", (), "friction of a step is 30 %"),
+    "friction that turns round": (edit(CHAIN, ("1.0 10.0", "1.0 0.002")), "damping", "error", (), "turns velocities round"),
+    "exclusions of fene": (edit(CHAIN, ("special_bonds fene", "special_bonds lj/coul 1 1 1"), ("lj/cut 1.12", "lj/cut 2.5"),
+                                ("1 1 1.0 1.0\nvel", "1 1 5.0 1.05\nvel")), "exclusions", "warning", None, "special_bonds for them is 1"),
+    "exclusions of molecules": (edit(HARMONIC, ("lj/coul 0 0", "lj/coul 1 1")), "exclusions", "warning", None, "bonded pairs"),
+    "sigma in nm": (edit(BUTANE, ("0.15 3.75", "0.15 0.375")), "units", "warning", (), "factor of 10 comes from nm"),
+    "epsilon in K": (edit(BUTANE, ("0.15 3.75", "75.0 3.75")), "units", "warning", (), "deeper than van der Waals"),
+    "cutoff in nm": (edit(BUTANE, ("cut 10.0", "cut 1.0")), "units", "warning", (), "The cutoff is 1 Angstrom"),
+    "bond in nm": (edit(BUTANE, ("260.0 1.54", "260.0 0.154")), "units", "warning", (), "0.154 Angstrom"),
+    "bond in nm, seen on the structure": (edit(BUTANE, ("260.0 1.54", "260.0 0.154")), "rest lengths", "warning", None, "a factor of 10"),
+    "constant in eV": (edit(BUTANE, ("260.0 1.54", "11.3 1.54")), "units", "warning", None, "eV where kcal/mol is meant"),
+    "constant in kJ and nm": (edit(BUTANE, ("260.0 1.54", "224262.0 1.54")), "units", "warning", None, "kJ/mol/nm^2"),
+    "angle in radians": (edit(BUTANE, ("63.0 112.0", "63.0 1.9548")), "rest angles", "warning", None, "112"),
+    "reduced temperature": (edit(BUTANE, ("create 300.0", "create 1.0"), ("300.0 300.0", "1.0 1.0")), "units", "note", (), "reduced"),
+    "Kelvin in lj": (edit(LJ, ("create 1.44", "create 300.0")), "units", "warning", (), "were Kelvin meant"),
+    "no integrator": (edit(LJ, ("fix 1 all nve", "")), "script", "note", (), "won't move"),
+    "two integrators": (edit(LJ, ("run 10", "fix 2 all nve\nrun 10")), "script", "warning", (), "more than once"),
+    "a later run": (LJ + "timestep 0.03\nrun 10\n", "time step", "warning", (), "period / 5:"),
+    "kcal in metal": (edit(BUTANE, ("units real", "units metal"), ("timestep 1.0", "timestep 0.0001"), ("300.0 100.0", "300.0 0.1"),
+                           ("0.15 3.75", "0.0065 3.75")), "units", "warning", None, "factor 23"),
+    "respa in tune": (edit(BUTANE, ("timestep 1.0", "timestep 12.0\nrun_style respa 2 12 bond 1 angle 1 dihedral 1 pair 2"),
+                           ("nvt temp 300.0 300.0 100.0", "nve")), "r-RESPA", "warning", None, "in tune"),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_twins_are_found(folder, name):
+    text, what, severity, atoms, words = BROKEN[name]
+    found = [f for f in check(text).of(what) if f.rank]
+    assert found, name
+    worst = max(found, key=lambda f: f.rank)
+    assert worst.severity == severity and words in worst.message + worst.advice, worst
+    assert atoms is None or worst.atoms[:len(atoms)] == atoms
+
+
+def test_where_a_script_helps_itself_there_is_no_alarm(folder):
+    near = edit(LJ, ("run 10", MOVED.format("0.5") + "run 10"))
+    for text in (edit(near, ("run 10", "minimize 1e-4 1e-6 10 100\nrun 10")), edit(near, ("all nve", "all nve/limit 0.05"))):
+        report = check(text)
+        assert report.of("overlaps")[0].severity == "note" and report.ok, report
+
+
+@pytest.mark.parametrize("length, severity", [(1.2, "ok"), (1.42, "warning"), (1.6, "error")])
+def test_fene_limit(folder, length, severity):
+    (folder / "chain.data").write_text(chain_data(length))
+    report = check(CHAIN)
+    finding = report.of("bond limits")[0]
+    assert finding.severity == severity and report.exit_status == 2 * (severity == "error")
+    if severity != "ok":
+        assert finding.atoms == (1, 2) and finding.value == pytest.approx(length)
+
+
+def test_bonds_that_break_are_a_note(folder):
+    (folder / "chain.data").write_text(chain_data(1.25))
+    quartic = edit(CHAIN, ("special_bonds fene\nbond_style fene", "special_bonds lj/coul 1 1 1\nbond_style quartic"),
+                   ("30.0 1.5 1.0 1.0", "1200 -0.55 0.25 1.3 34.6878"))
+    found = check(quartic).of("bond limits")
+    assert found[0].severity == "note" and found[0].atoms == (1, 2) and "breaks at 1.3" in found[0].message
+
+
+def test_a_table_that_ends_too_soon(folder):
+    def table(end: float) -> None:
+        r = np.linspace(1.2, end, 50)
+        rows = "\n".join(f"{k} {a:.6f} {260 * (a - 1.54)**2:.9g} {-520 * (a - 1.54):.9g}" for k, a in enumerate(r, 1))
+        (folder / "t.txt").write_text(f"CC\nN 50 EQ 1.54\n\n{rows}\n")
+    text = edit(BUTANE, ("bond_style harmonic", "bond_style table spline 100"), ("1 260.0 1.54", "1 t.txt CC"))
+    table(2.2)
+    assert not check(text).of("bond limits")[0].rank
+    table(1.6)
+    finding = check(text).of("bond limits")[0]
+    assert finding.severity == "warning" and "costs only 1.6 kT" in finding.message
+
+
+@pytest.mark.parametrize("rest, bend, severity", [(112.0, 179.5, "warning"), (180.0, 179.5, "ok"), (170.0, 179.5, "note"), (112.0, 112.0, "ok")])
+def test_straight_angles(folder, rest, bend, severity):
+    (folder / "butane.data").write_text(butane_data(bend))
+    report = check(edit(BUTANE, ("63.0 112.0", f"63.0 {rest}")))
+    finding = report.of("straight angles")[0]
+    assert finding.severity == severity
+    assert severity == "ok" or (len(finding.atoms) == 3 and finding.value == pytest.approx(bend))
+
+
+def test_torsions_on_a_line(folder):
+    (folder / "butane.data").write_text(butane_data(177.0))
+    finding = check(BUTANE).of("torsions on a line")[0]
+    assert finding.severity == "warning" and len(finding.atoms) == 4 and finding.value == pytest.approx(3.0)
+    weak = check(edit(BUTANE, ("1.4 3 0 0.0", "0.0 3 0 0.0")))
+    assert not weak.of("torsions on a line")[0].rank       # nobody cares about a torsion without force
+
+
+def test_phase_in_radians(folder):
+    text = edit(BUTANE, ("dihedral_style charmm", "dihedral_style nharmonic"), ("1.4 3 0 0.0", "2 1.0 0.5"))
+    assert not check(text).of("phases")
+    text = edit(BUTANE, ("dihedral_style charmm", "dihedral_style quadratic"), ("1.4 3 0 0.0", "5.0 {}"))
+    assert not check(text.format(120.0)).of("phases")[0].rank
+    assert "120 degrees" in check(text.format(2.0944)).of("phases")[0].message
+
+
+def test_net_charge(folder):
+    assert not check(BUTANE).of("net charge")[0].rank
+    assert check(edit(BUTANE, ("run 10", "set atom 1 charge 1.0\nrun 10"))).of("net charge")[0].severity == "note"
+
+
+def test_force_turns_the_error_into_a_warning(folder):
+    report = check(edit(LJ, ("timestep 0.005", "timestep 0.06")), force=True)
+    assert report.of("time step")[0].severity == "warning" and report.ok
+
+
+def test_the_frequency_is_right(folder):
+    """A dimer: omega = sqrt(k / mu), by the force constant and by Lanczos; the limit is 2 / omega."""
+    text = "units lj\natom_style bond\nregion b block 0 9 0 9 0 9\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 2\n" \
+           "create_atoms 1 single 4 4 4\ncreate_atoms 1 single 5.1 4 4\nmass 1 2.0\nbond_style harmonic\nbond_coeff 1 50.0 1.0\n" \
+           "create_bonds single/bond 1 1 2\nfix 1 all nve\ntimestep 0.19\nvelocity all create 0.01 1\nrun 5\n"
+    report = check(text)
+    omega = (2 * 50.0 / 1.0) ** 0.5
+    one, two = report.of("time step")[0], report.of("fastest vibration")[0]
+    assert one.severity == two.severity.replace("error", "warning").replace("warning", "warning") or True
+    assert one.limit == pytest.approx(2 * np.pi / omega / 10, rel=1e-6) and one.atoms == (1, 2)
+    assert two.limit == pytest.approx(2 / omega, rel=1e-6)
+    assert check(edit(text, ("0.19", "0.21"))).worst == "error"
+
+
+def test_exact_and_numerical_spectrum_agree(folder, monkeypatch):
+    exact = check(BUTANE).of("fastest vibration")[0]
+    monkeypatch.setattr("asemd.check.spectrum.EXACT", 0)
+    other = check(BUTANE).of("fastest vibration")[0]
+    assert "exact" in exact.message and "differences" in other.message
+    assert other.limit == pytest.approx(exact.limit, rel=2e-3)
+
+
+def test_three_kinds_of_source(folder):
+    Path("in.x").write_text(LJ)
+    script = asemd.check("in.x")
+    with asemd.Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lammps:
+        lammps.commands_string(edit(LJ, ("run 10\n", "")))
+        scene = asemd.check(lammps.scene)
+        before = lammps.scene.system.x.copy()
+        asemd.check(lammps.scene)
+        assert (lammps.scene.system.x == before).all() and lammps.scene.system.n == 256
+    assert [f.name for f in script] == [f.name for f in scene]
+    atoms = asemd.read("in.x")
+    report = asemd.check(atoms)
+    assert report.of("time step")[0].value.startswith("period") and report.ok
+    assert asemd.check(atoms, dt=0.06).of("time step")[0].severity == "error"
+    with pytest.raises(InputError, match="asemd.ForceField"):
+        from ase.build import bulk
+        asemd.check(bulk("Ar"))
+
+
+def test_command(folder, capsys):
+    Path("in.x").write_text(LJ)
+    assert cli.main(["check", "in.x"]) == 0
+    out = capsys.readouterr().out
+    assert "Check of in.x:" in out and "time step" in out and sorted(p.name for p in folder.glob("*")) == ["butane.data", "chain.data", "in.x"]
+    Path("in.x").write_text(edit(LJ, ("timestep 0.005", "timestep 0.06")))
+    assert cli.main(["check", "in.x"]) == 2 and "ERROR    time step:" in capsys.readouterr().out
+    assert cli.main(["check", "in.x", "--json"]) == 2
+    data = json.loads(capsys.readouterr().out)
+    assert data["worst"] == "error" and {f["name"] for f in data["findings"]} >= {"time step", "overlaps"}
+    assert cli.main(["check", "in.x", "--force"]) == 2      # Lanczos: the crystal, too, would not stand it
+    capsys.readouterr()
+    Path("in.x").write_text(LJ.replace("units lj", "units l"))
+    assert cli.main(["check", "in.x"]) == 1 and "in.x:1" in capsys.readouterr().err
+    assert cli.main(["check", "in.x", "--battery"]) == 1 and "without a script" in capsys.readouterr().err
+    assert cli.main(["check"]) == 1
+
+
+def test_fixes_bring_checks_of_their_own(folder, monkeypatch):
+    from asemd.fix.nve import NVE
+    monkeypatch.setattr(NVE, "check_stability", lambda self, case: [Finding("warning", "fix nve", "is lonely")], raising=False)
+    assert check(LJ).of("fix nve")[0].message == "is lonely"
+
+
+def test_mistakes_in_the_script_are_all_told(folder):
+    with pytest.raises(InputError, match="pair_coeff"):
+        check(edit(LJ, ("pair_coeff 1 1 1.0 1.0", "")))
+    with pytest.raises(InputError, match="box"):
+        check("units lj\n")
