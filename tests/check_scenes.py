@@ -54,10 +54,10 @@ run 10
 
 
 def chain_data(length: float = 0.97) -> str:
-    """Straight chains of 10 beads across a periodic box."""
+    """Straight chains of 10 beads in a periodic box; the first bond has another length."""
     beads, side = 10, 6
     x = [(b * 0.97 + 0.1, i * 1.3 + 0.1, j * 1.3 + 0.1) for i in range(side) for j in range(side) for b in range(beads)]
-    x[1] = (x[0][0] + length, *x[1][1:])
+    x[0] = (x[1][0] - length, *x[0][1:])
     bonds = [(k, k + 1) for k in range(1, len(x)) if k % beads]
     return _data(x, 12.0, side * 1.3, bonds=bonds, masses=[1.0])
 
@@ -65,10 +65,11 @@ def chain_data(length: float = 0.97) -> str:
 def butane_data(bend: float = 112.0, r: float = 1.54) -> str:
     """United-atom butane, all trans, on a grid 7 Angstrom apart."""
     half = np.radians(0.5 * bend)
-    step = np.array([[0.0, 0.0, 0.0], [np.sin(half), np.cos(half), 0.0], [2 * np.sin(half), 0.0, 0.0], [3 * np.sin(half), np.cos(half), 0.0]])
+    a, b = np.sin(half), np.cos(half)
+    step = np.array([[0.0, 0.0, 0.0], [a, b, 0.0], [2 * a, 0.0, 0.0], [3 * a, b, 0.0]])
     phi = np.radians(7.0)       # not exactly flat
     turned = step.copy()
-    turned[3] = [step[3, 0], step[2, 1] + np.cos(half) * np.cos(phi), np.cos(half) * np.sin(phi)]
+    turned[3] = [3 * a, b * np.cos(phi), b * np.sin(phi)]
     x = [tuple(np.array([i, j, k]) * [8.0, 7.0, 7.0] + 1.0 + r * p) for i in range(3) for j in range(3) for k in range(3) for p in turned]
     n = len(x)
     bonds = [(k, k + 1) for k in range(1, n) if k % 4]
@@ -81,8 +82,8 @@ def _data(x, length: float, side: float, masses, charges=None, **items) -> str:
     lines = ["made for a test", "", f"{len(x)} atoms", "1 atom types"]
     for kind, found in items.items():
         lines += [f"{len(found)} {kind}", f"1 {kind[:-1]} types"]
-    lines += [f"0 {length} xlo xhi", f"0 {side} ylo yhi", f"0 {side} zlo zhi", "", "Masses", "", *(f"{k} {m}" for k, m in enumerate(masses, 1))]
-    lines += ["", f"Atoms # {'full' if charges else 'bond'}", ""]
+    lines += [f"0 {length} xlo xhi", f"0 {side} ylo yhi", f"0 {side} zlo zhi", "", "Masses", ""]
+    lines += [*(f"{k} {m}" for k, m in enumerate(masses, 1)), "", f"Atoms # {'full' if charges else 'bond'}", ""]
     for k, (a, b, c) in enumerate(x):
         q = f" {charges[k % len(charges)]}" if charges else ""
         lines.append(f"{k + 1} {k // (4 if charges else 10) + 1} 1{q} {a:.12g} {b:.12g} {c:.12g}")
