@@ -14,6 +14,21 @@ from asemd.errors import InputError
 from asemd.finding import Finding
 
 ROOT = Path(__file__).resolve().parents[1]
+DIMER = """units lj
+atom_style bond
+region b block 0 9 0 9 0 9
+create_box 1 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 2
+create_atoms 1 single 4 4 4
+create_atoms 1 single 5.1 4 4
+mass 1 2.0
+bond_style harmonic
+bond_coeff 1 50.0 1.0
+create_bonds single/bond 1 1 2
+velocity all create 0.01 1
+fix 1 all nve
+timestep 0.19
+run 5
+"""
 HARMONIC = BUTANE.replace("special_bonds amber", "special_bonds lj/coul 0 0 0.5")
 MOVED = "set atom 2 x {} y 0.0 z 0.0\n"
 
@@ -178,16 +193,13 @@ def test_force_turns_the_error_into_a_warning(folder):
 
 def test_the_frequency_is_right(folder):
     """A dimer: omega = sqrt(k / mu), by the force constant and by Lanczos; the limit is 2 / omega."""
-    text = "units lj\natom_style bond\nregion b block 0 9 0 9 0 9\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 2\n" \
-           "create_atoms 1 single 4 4 4\ncreate_atoms 1 single 5.1 4 4\nmass 1 2.0\nbond_style harmonic\nbond_coeff 1 50 1.0\n" \
-           "create_bonds single/bond 1 1 2\nfix 1 all nve\ntimestep 0.19\nvelocity all create 0.01 1\nrun 5\n"
-    report = check(text)
+    report = check(DIMER)
     omega = (2 * 50.0 / 1.0) ** 0.5
     one, two = report.of("time step")[0], report.of("fastest vibration")[0]
     assert one.severity == "warning"
     assert one.limit == pytest.approx(2 * np.pi / omega / 10, rel=1e-6) and one.atoms == (1, 2)
     assert two.limit == pytest.approx(2 / omega, rel=1e-6)
-    assert check(edit(text, ("0.19", "0.21"))).worst == "error"
+    assert check(edit(DIMER, ("0.19", "0.21"))).worst == "error"
 
 
 def test_exact_and_numerical_spectrum_agree(folder, monkeypatch):
