@@ -154,6 +154,8 @@ class Scene:
     map_style: str | None = None
     newton: tuple[bool, bool] = (True, True)
     time_base: tuple[float, int] = (0.0, 0)     # simulation time at the step where the timestep last changed
+    max_special: int = 1        # partners one to three bonds apart that LAMMPS would hold for each atom, as its logs tell
+    special_room: int = 0       # what it would add to that, once
     restarts: dict[int, Any] = field(default_factory=dict)      # 1: a series of restart files, 2: two in turn
     restored: dict[str, Any] | None = None      # what a restart file has for fixes to come and for the first run
 

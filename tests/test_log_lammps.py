@@ -181,3 +181,153 @@ run 30
     found = [re.findall(r"^(Total # of neighbors|Neighbor list builds) = (.*)", log, re.M)
              for log in (theirs, our_log(tmp_path, text))]
     assert len(found[0]) == 2 and found[0] == found[1]
+
+
+CHAIN = """4-chain
+
+4 atoms
+3 bonds
+2 angles
+1 dihedrals
+2 atom types
+1 bond types
+1 angle types
+1 dihedral types
+0 10 xlo xhi
+0 10 ylo yhi
+0 10 zlo zhi
+
+Masses
+
+1 12
+2 12
+
+Atoms # full
+
+1 1 1 0 1.0 1 1
+2 1 1 0 2.0 1.3 1
+3 1 2 0 3.0 1 1
+4 1 2 0 4.0 1.2 1.4
+
+Velocities
+
+1 0 0 0
+2 0 0 0
+3 0 0 0
+4 0 0 0
+
+Bonds
+
+1 1 1 2
+2 1 2 3
+3 1 3 4
+
+Angles
+
+1 1 1 2 3
+2 1 2 3 4
+
+Dihedrals
+
+1 1 1 2 3 4
+"""
+MADE_READY = """
+units real
+atom_style full
+special_bonds lj 0 0.3 0.5 coul 0 0 0.25 angle yes dihedral yes
+pair_style lj/cut 4
+pair_modify mix arithmetic
+bond_style harmonic
+angle_style harmonic
+dihedral_style harmonic
+read_data chain.data extra/bond/per/atom 2 extra/angle/per/atom 1 extra/special/per/atom 3 extra/atom/types 1
+mass 3 12
+pair_coeff 1 1 0.1 2.0
+pair_coeff 2 2 0.1 2.5
+pair_coeff 3 3 0.1 2.5
+pair_coeff 1 3 0.1 2.5
+bond_coeff 1 200 1
+angle_coeff 1 50 120
+dihedral_coeff 1 1 1 2
+fix 1 all nve
+replicate 2 1 1
+run 1
+write_data out.data pair ij
+delete_bonds all bond 1
+delete_bonds all bond 1 undo special
+special_bonds lj 0 0.5 1 coul 0 0 1 angle yes dihedral no
+special_bonds lj 0.1 1 1 coul 0.2 1 1
+special_bonds lj 0 1 1 coul 0.5 1 0.123456789
+create_bonds single/bond 1 1 5
+create_bonds single/angle 1 1 2 3 special no
+pair_modify mix sixthpower
+run 0
+write_restart out.restart
+reset_atoms id
+reset_atoms mol all
+delete_atoms overlap 0.01 all all
+write_coeff coeff.txt
+bond_write 1 10 0.5 1.5 bond.txt B
+read_data chain.data add append shift 0 4 0
+pair_style hybrid lj/cut 4 soft 3
+pair_coeff 1 1 lj/cut 0.1 2
+pair_coeff 2 2 lj/cut 0.1 2
+pair_coeff 3 3 soft 1
+pair_coeff 1*2 3 soft 1
+run 0
+pair_style hybrid/overlay lj/cut 4 soft 3
+pair_coeff * * lj/cut 0.1 2
+pair_coeff 1 1 soft 1
+pair_coeff 2 2 soft 1
+run 0
+special_bonds fene
+create_bonds many all all 1 0.1 0.2
+clear
+atom_style full
+pair_style lj/cut 4
+bond_style harmonic
+angle_style harmonic
+dihedral_style harmonic
+read_restart out.restart
+run 0
+clear
+atom_style bond
+region b block 0 5 0 5 0 5
+create_box 1 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 3
+mass 1 1
+create_atoms 1 single 1 1 1
+create_atoms 1 single 2 1 1
+create_bonds single/bond 1 1 2
+replicate 1 1 2
+write_data none.data
+"""
+LINE = re.compile(r"(Finding|System init|Generated|Ave special|Neighbor list info|Reading data file|  +\d+ = max|  restoring|"
+                  r"  (special bond factors|update|master list|reading|scanning|orthogonal|\d+ = )|"
+                  r"  \d+ (atoms|velocities|bonds|angles|dihedrals)$)")
+
+
+def test_lines_of_the_setup(tmp_path, monkeypatch):
+    """Data files, bonded partners, mixed coefficients: what LAMMPS says of them, with its counts. It describes its list more often."""
+    logs = []
+    for name in ("theirs", "ours"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "chain.data").write_text(CHAIN)
+    monkeypatch.chdir(tmp_path / "theirs")
+    folder = str(tmp_path / "theirs")
+    lines = [*lines_of(MADE_READY), "log none"]
+    logs.append(ask("import os; os.chdir(given['folder'])\n" + THEIRS, folder=folder, log="log.theirs", lines=lines))
+    monkeypatch.chdir(tmp_path / "ours")
+    logs.append(our_log(tmp_path / "ours", MADE_READY))
+    of_list = ("Neighbor list info", "  update", "  master list")
+    theirs, ours = ([line.rstrip() for line in log.splitlines() if LINE.match(line)] for log in logs)
+    plain = [[line for line in lines if not line.startswith(of_list)] for lines in (theirs, ours)]
+    assert plain[1] == plain[0] and len(plain[0]) > 150
+    lists = [list(dict.fromkeys(line for line in lines if line.startswith(of_list))) for lines in (theirs, ours)]
+    assert lists[0] == lists[1]
+
+
+def test_list_is_described_when_it_changes(tmp_path):
+    text = "units lj\nregion b block 0 6 0 6 0 6\ncreate_box 1 b\ncreate_atoms 1 random 20 1234 NULL overlap 1.0 maxtry 100\nmass 1 1\n" \
+           "pair_style lj/cut 2.5\npair_coeff 1 1 1 1\nfix 1 all nve\nrun 1\nrun 1\nneigh_modify every 5 delay 10\nrun 1\n"
+    found = re.findall(r"^  update: .*", our_log(tmp_path, text), re.M)
+    assert found == ["  update: every = 1 steps, delay = 0 steps, check = yes", "  update: every = 5 steps, delay = 10 steps, check = yes"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from asemd import units
 from asemd.errors import InputError, InputWarning
-from asemd.lammps import checkpoint, log, restart
+from asemd.lammps import checkpoint, log, restart, setup_log
 from asemd.lammps.live_coefficients import fill, live_coefficients
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
@@ -62,7 +62,10 @@ def check(session) -> None:
         raise InputError(f"neigh_modify delay {neighbor.delay} must be 0 or a multiple of every {neighbor.every}")
     for kind, atoms, _ in system.topology:
         if len(atoms) and not scene.interactions.uses[kind]:
-            session.warn(f"{kind.capitalize()}s are defined but no {kind} style is set: they have no energy")
+            apart = {"bond": 0, "angle": 1, "dihedral": 2}.get(kind)
+            hidden = apart is not None and (scene.interactions.special_lj[apart] != 1.0 or scene.interactions.special_coul[apart] != 1.0)
+            session.warn(f"{kind.capitalize()}s are defined but no {kind} style is set: they have no energy"
+                         + (f", and special_bonds takes interactions of 1-{apart + 2} pairs away" if hidden else ""))
     check_extent(session)
     if scene.interactions.style_name("bond") == "fene":
         lj, coul = tuple(scene.interactions.special_lj), tuple(scene.interactions.special_coul)
@@ -152,6 +155,7 @@ class Driver:
             from asemd.respa import RespaLoop
             check(session)
             check_integration(session)
+            setup_log.report_mixing(session)
             restart.check_folders(session)
             state = restart.first_run(session)
             session.close_loop()
@@ -164,6 +168,7 @@ class Driver:
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
                 checkpoint.resume(loop, state)
+            setup_log.report_list(session, loop.engine)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         else:
             loop.sync_in()      # commands between the runs may have changed velocities
@@ -351,8 +356,13 @@ class Driver:
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0
                         or (s == "Bond" and scene.system.molecular))
         write(log.timing_table(seconds, timings, present, timer))
-        write(log.counts(n, 0, int(engine.pairs), engine.builds - self.progress.builds,
-                         engine.dangerous - self.progress.dangerous if scene.neighbor.check else None))
+        self._counts(engine, engine.builds - self.progress.builds, engine.dangerous - self.progress.dangerous)
+
+    def _counts(self, engine, builds: int, dangerous: int) -> None:
+        scene = self.scene
+        special = setup_log.partners_per_atom(self.session) if scene.system.molecular else None
+        self.session.log.write(log.counts(scene.system.n, 0, int(engine.pairs), special, builds,
+                                          dangerous if scene.neighbor.check else None))
 
 
 def _multiple(every: int, step: int) -> int:

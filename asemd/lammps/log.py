@@ -164,14 +164,16 @@ def _percent(part: float, total: float) -> float:
     return 100.0 * part / total if total > 0.0 else 0.0
 
 
-def counts(local: int, ghost: int, neighbors: int, builds: int, dangerous: int | None) -> str:
-    """The block of atom and neighbour counts; `dangerous` None: not checked."""
+def counts(local: int, ghost: int, neighbors: int, special: float | None, builds: int, dangerous: int | None) -> str:
+    """The block of atom and neighbour counts; `special` bonded partners per atom (None: no bonds), `dangerous` None: not checked."""
     lines = []
     for title, n in (("Nlocal:", local), ("Nghost:", ghost), ("Neighs:", neighbors)):
-        lines += [f"{title:<8}{n:>15g} ave {n:>11g} max {n:>11g} min", "Histogram: 1 0 0 0 0 0 0 0 0 0"]
+        lines += [f"{title}{n:>15g} ave {n:>11g} max {n:>11g} min", "Histogram: 1 0 0 0 0 0 0 0 0 0"]
     lines += ["", f"Total # of neighbors = {neighbors}"]
     if local:
         lines.append(f"Ave neighs/atom = {neighbors / local:.8g}")
+    if special is not None:
+        lines.append(f"Ave special neighs/atom = {special:.8g}")
     lines.append(f"Neighbor list builds = {builds}")
     lines.append("Dangerous builds not checked" if dangerous is None else f"Dangerous builds = {dangerous}")
     return "\n".join(lines) + "\n"

@@ -20,6 +20,7 @@ from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions, Use
 from asemd.lammps import checkpoint, restart_file
 from asemd.lammps.command.create_box import describe
+from asemd.lammps.setup_log import report_special
 from asemd.style import find
 from asemd.system import System
 from asemd.topology import Topology
@@ -107,7 +108,7 @@ def newest(pattern: str) -> str:
 def contents(session, state: dict[str, Any] | None = None) -> dict[str, Any]:
     """Everything a restart file keeps; `state` is that of `checkpoint.take`."""
     scene, system = session.scene, session.scene.need_system("write_restart")
-    kept = ("units", "dimension", "boundary", "atom_style", "newton", "map_style", "dt", "time_base")
+    kept = ("units", "dimension", "boundary", "atom_style", "newton", "map_style", "dt", "time_base", "max_special")
     fixes = [{"id": f.id, "style": f.style, "group": f.group, "words": [str(w) for w in f.to_lammps()], "state": f.state()}
              for f in scene.fixes.values()]
     return {"asemd": __version__, "step": scene.step, "scene": {name: getattr(scene, name) for name in kept},
@@ -184,7 +185,7 @@ def take_up(session, document: dict[str, Any]) -> None:
     session.print(f"  {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
     scene.interactions = interactions(document["interactions"], scene.interactions.compat)
-    for category in CATEGORIES:
+    for category in ("pair", *(c for c in CATEGORIES if c != "pair")):
         if scene.interactions.uses[category]:
             session.print(f"  restoring {category} style {scene.interactions.style_name(category)} from restart")
     restore_groups(scene, document["groups"])
@@ -192,6 +193,7 @@ def take_up(session, document: dict[str, Any]) -> None:
     for kind, count in scene.system.topology.counts().items():
         if count:
             session.print(f"  {count} {kind}s")
+    report_special(session)
     scene.restored = {"fixes": [f for f in document["fixes"] if f["state"]], "state": document["state"], "told": False}
     if document["exclusions"]:
         session.warn("read_restart: neigh_modify exclude is not kept in restart files, give it again where it is still wanted")

@@ -90,6 +90,8 @@ class Session:
         self._depth = 0                    # scripts within scripts
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
+        self.list_told: str | None = None       # the last description of the neighbour list
+        self.partners_told: Any = None          # see asemd.lammps.setup_log.partners_per_atom
         self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
 
@@ -274,7 +276,7 @@ class Session:
         """Forget the scene; variables, log and working directory stay."""
         self.close_dumps()
         self.scene = self._fresh_scene()
-        self.loop = None
+        self.loop = self.list_told = None
         self.stale()
 
     def changed(self) -> None:

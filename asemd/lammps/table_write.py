@@ -13,6 +13,7 @@ import numpy as np
 from asemd import units as unit_styles
 from asemd.coordinates import pairs_of
 from asemd.errors import InputError
+from asemd.lammps.setup_log import report_mixing
 from asemd.style import VECTORS, Style
 from asemd.words import exactly, whole
 
@@ -51,6 +52,7 @@ def append(session, command: str, path: str, title: str, keyword: str, head: str
     except OSError as e:
         raise InputError(f"{command}: cannot write to file {path}: {e.strerror}") from None
     session.print(f"{'Creating' if new else 'Appending to'} table file {path} with DATE: {today if new else date[1] if date else ''}")
+    report_mixing(session)
 
 
 def one_type(session, category: str, word: str, command: str) -> int:

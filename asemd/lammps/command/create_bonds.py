@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.setup_log import report_mixing, report_special
 from asemd.topology import ATOMS
 from asemd.words import bounds, number, take, whole, yes_no
 
@@ -22,9 +23,12 @@ def run(session, args):
         raise InputError(f"create_bonds: unknown style {style!r}{nearest(style, STYLES)}; there are {' '.join(STYLES)}")
     what = f"create_bonds {style}"
     if style == "many":
+        special = True
         _many(session, system, args[1:], what)
     else:
-        _single(system, style.removeprefix("single/"), args[1:], what)
+        special = _single(system, style.removeprefix("single/"), args[1:], what)
+    if special:
+        report_special(session)
     session.changed()
 
 
@@ -41,7 +45,8 @@ def _append(system, kind: str, atoms: np.ndarray, type_: int, special: bool) -> 
     system.topology = system.topology.replaced({kind: new}, special)
 
 
-def _single(system, kind: str, words: list[str], what: str) -> None:
+def _single(system, kind: str, words: list[str], what: str) -> bool:
+    """One item; whether partners of atoms are to be found anew."""
     width = ATOMS[kind]
     type_word, *ids = take(words, 1 + width, what)[:1 + width]
     special, words = True, words[1 + width:]
@@ -57,6 +62,7 @@ def _single(system, kind: str, words: list[str], what: str) -> None:
         if n not in system.id:
             raise InputError(f"{what}: there is no atom with ID {n}")
     _append(system, kind, system.index_of(np.array(numbers))[None], type_, special)
+    return special
 
 
 def _many(session, system, words: list[str], what: str) -> None:
@@ -73,6 +79,7 @@ def _many(session, system, words: list[str], what: str) -> None:
     interactions = session.scene.interactions
     if interactions.special_lj[0] != 0.0 or interactions.special_coul[0] != 0.0:
         raise InputError(f"{what}: special_bonds must give 1-2 pairs the weight 0.0, or bonded pairs would get a second bond")
+    report_mixing(session)
     system.box.wrap(system.x, system.image)
     i, j, d = primitive_neighbor_list("ijd", system.box.periodic, system.box.cell, system.x - system.box.origin, max(rmax, 0.0))
     keep = (d >= rmin) & (d <= rmax) & (first[i] & second[j] | second[i] & first[j]) & (system.id[i] < system.id[j])

@@ -47,6 +47,8 @@ def run(session, args):
     empty = np.zeros(0)
     scene.system = System(box=box, x=np.zeros((0, 3)), type=empty, counts=counts, units=scene.units,
                           dimension=scene.dimension, step=scene.step, rotation=rotation, **fresh(scene.atom_style, 0))
+    scene.special_room = scene.system.counts["extra_special_per_atom"]
+    scene.max_special = 1 + scene.special_room
     session.print(f"Created {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")
     scene.system.box = scene.system.box.widened()

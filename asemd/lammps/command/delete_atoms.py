@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.setup_log import report_mixing
 from asemd.marsaglia import Marsaglia
 from asemd.topology import KINDS
 from asemd.words import choice, number, take, whole, yes_no
@@ -28,6 +29,8 @@ def run(session, args):
             raise InputError(f"{what}: unknown keyword {words[0]!r}{nearest(words[0], options)}")
         options[words[0]] = yes_no(take(words[1:], 1, f"{what} {words[0]}")[0], f"{what} {words[0]}")
         words = words[2:]
+    if style == "overlap":
+        report_mixing(session, "delete_atoms")
     gone = _chosen(session, system, style, values, what)
     if options["mol"]:
         if not system.molecular:

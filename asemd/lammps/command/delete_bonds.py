@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.setup_log import report_mixing, report_special
 from asemd.topology import KINDS
 from asemd.words import bounds, take
 
@@ -47,9 +48,12 @@ def run(session, args):
         stays = (new > 0) | ~member if "remove" in words else np.ones(len(new), bool)
         parts[kind] = atoms[stays], new[stays]
     system.topology = topology.replaced(parts, "special" in words)
+    report_mixing(session, "delete_bonds")
     session.print("Deleting bonds ...")
     for kind, _, new in system.topology:
         session.print(f"  {len(new)} total {kind}s, {(new > 0).sum()} turned on, {(new <= 0).sum()} turned off")
+    if "special" in words:
+        report_special(session)
     if style != "stats":
         session.changed()
 

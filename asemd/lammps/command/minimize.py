@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.lammps import log, restart
+from asemd.lammps import log, restart, setup_log
 from asemd.lammps.driver import Driver, Plan, check, memory
 from asemd.minimize import WALLTIME, Problem, find
 from asemd.moment import Progress
@@ -66,6 +66,7 @@ class Minimization(Driver):
         if session.timer.expired:
             return
         check(session)
+        setup_log.report_mixing(session)
         restart.check_folders(session)
         restart.first_run(session)
         session.close_loop()
@@ -74,6 +75,7 @@ class Minimization(Driver):
         fixes = [f for f in scene.fixes.values() if f.minimizes]
         loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
         loop.setup(begin, begin + self.plan.steps)
+        setup_log.report_list(session, loop.engine)
         if scene.min_style == "fire":
             session.log.write(find("fire").parameters(scene.min_modify) + "\n")
         session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
@@ -157,5 +159,5 @@ class Minimization(Driver):
         write(f"\n{result.text()}\n\n")
         present = tuple(s for s in log.SECTIONS if s not in ("Bond", "Kspace") or timings.get(s, 0.0) > 0.0)
         write(log.timing_table(seconds, timings, present, session.timer))
-        write(log.counts(scene.system.n, 0, int(engine.pairs), engine.builds, engine.dangerous if scene.neighbor.check else None))
+        self._counts(engine, engine.builds, engine.dangerous)
         self.session.log.flush()

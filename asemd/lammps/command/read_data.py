@@ -10,8 +10,9 @@ import numpy as np
 from asemd.errors import InputError, InputWarning, nearest
 from asemd.lammps.command.create_box import describe
 from asemd.lammps.data import DataFile, read_data
-from asemd.lammps.data_format import COEFFS
+from asemd.lammps.data_format import COEFFS, TOPOLOGY
 from asemd.lammps.live_coefficients import fill
+from asemd.lammps.setup_log import report_special
 from asemd.system import COUNTS, LABELLED, System
 from asemd.topology import KINDS, Topology
 from asemd.words import number, take, whole
@@ -49,6 +50,7 @@ def run(session, args):
     if old is None:
         new, scene.system = data.system, data.system
         new.step = scene.first_step
+        scene.special_room = new.counts["extra_special_per_atom"]
         scene.groups.resize(new.n)
         types = {kind: np.arange(_count(new, kind) + 1) for kind in LABELLED}
     else:
@@ -63,7 +65,7 @@ def run(session, args):
     if not options.nocoeff:
         _set_coefficients(session, data, types)
     session.stale()
-    _report(session, data.box, new, time.perf_counter() - started)
+    _report(session, data, new, started)
 
 
 def _read_options(words: list[str]) -> _Options:
@@ -192,13 +194,26 @@ def _coeff_words(section: str, mark: str, words: list[str], types: np.ndarray) -
     return [*numbers, *rest]
 
 
-def _report(session, box, new: System, seconds: float) -> None:
-    session.print(f"  {describe(box)}")
-    session.print("  1 by 1 by 1 MPI processor grid")
-    session.print("  reading atoms ...")
-    session.print(f"  {new.n} atoms")
-    for kind, count in new.topology.counts().items():
-        if count:
-            session.print(f"  reading {kind}s ...")
-            session.print(f"  {count} {kind}s")
-    session.print(f"  read_data CPU = {seconds:.3f} seconds")
+def _report(session, data: DataFile, new: System, started: float) -> None:
+    """What was read; a file with bonds is told as LAMMPS reads it, twice."""
+    box = f"  {describe(data.box)}\n  1 by 1 by 1 MPI processor grid"
+    sections = [(s, TOPOLOGY[s]) for s in data.headings if s in TOPOLOGY and len(new.topology.items(TOPOLOGY[s])[0])]
+    lines = [box, "  reading atoms ...", f"  {new.n} atoms"]
+    if "Velocities" in data.headings:
+        lines += ["  reading velocities ...", f"  {new.n} velocities"]
+    for name, kind in sections:
+        lines += [f"  scanning {name.lower()} ...", f"  {_most(session.scene, new, kind)} = max {kind}s/atom"]
+    if sections:
+        lines.append(box)
+    for name, kind in sections:
+        lines += [f"  reading {name.lower()} ...", f"  {len(new.topology.items(kind)[0])} {kind}s"]
+    session.print("\n".join(lines))
+    report_special(session)
+    session.print(f"  read_data CPU = {time.perf_counter() - started:.3f} seconds")
+
+
+def _most(scene, new: System, kind: str) -> int:
+    """Items that LAMMPS would hold for one atom: with newton on each belongs to one of its atoms."""
+    atoms = new.topology.items(kind)[0]
+    holders = atoms[:, 0 if kind == "bond" else 1] if scene.newton[1] else atoms
+    return int(np.bincount(holders.ravel()).max()) + (new.counts[f"extra_{kind}_per_atom"] if new is scene.system else 0)

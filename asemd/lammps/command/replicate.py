@@ -2,16 +2,19 @@
 from __future__ import annotations
 
 import math
+import time
 import warnings
 
 import numpy as np
 
 from asemd.errors import InputError, InputWarning, nearest
 from asemd.lammps.command.create_box import check_number, describe
+from asemd.lammps.setup_log import report_special
 from asemd.words import take, whole
 
 
 def run(session, args):
+    started = time.perf_counter()
     scene, system = session.scene, session.scene.need_system("replicate")
     times = [whole(w, "replicate") for w in take(args, 3, "replicate")]
     periodic = False
@@ -40,7 +43,9 @@ def run(session, args):
     session.stale()
     session.print(f"Replication is creating a {times[0]}x{times[1]}x{times[2]} = {np.prod(times)} times larger system...")
     session.print(f"  {describe(new.box)}")
-    session.print(f"  {new.n} atoms")
+    session.print(f"  1 by 1 by 1 MPI processor grid\n  {new.n} atoms")
     for kind, count in new.topology.counts().items():
         if count:
             session.print(f"  {count} {kind}s")
+    report_special(session)
+    session.print(f"  replicate CPU = {time.perf_counter() - started:.3f} seconds")

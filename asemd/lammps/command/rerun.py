@@ -4,7 +4,7 @@ from __future__ import annotations
 import time
 
 from asemd.errors import InputError, nearest
-from asemd.lammps import log
+from asemd.lammps import log, setup_log
 from asemd.lammps.command.read_dump import read_request, take_snapshot
 from asemd.lammps.driver import Driver, Plan, check, memory
 from asemd.lammps.dump_read import frames
@@ -73,6 +73,7 @@ class Rerun(Driver):
     def run(self) -> None:
         session, scene = self.session, self.scene
         check(session)
+        setup_log.report_mixing(session)
         session.close_loop()
         done, seconds = 0, 0.0
         session.running = True
@@ -116,6 +117,7 @@ class Rerun(Driver):
         loop.setup(self.plan.first, min(self.plan.last, FOREVER), virial=True)
         loop.end_of_step()
         if fresh:
+            setup_log.report_list(session, loop.engine)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
             self.progress = Progress(begin=step, first=self.plan.first, last=self.plan.last)
             if scene.thermo.header(self.words):

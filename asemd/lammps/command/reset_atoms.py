@@ -6,6 +6,7 @@ import time
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.setup_log import report_mixing, report_special
 from asemd.words import take, whole, yes_no
 
 PER_BIN = 10        # atoms of a bin of `id sort yes`
@@ -29,9 +30,11 @@ def reset_ids(session, words: list[str]) -> None:
             raise InputError(f"reset_atoms id: unknown keyword {words[0]!r}, there is sort")
         sort, words = yes_no(take(words[1:], 1, "reset_atoms id sort")[0], "reset_atoms id sort"), words[2:]
     session.print("Resetting atom IDs ...")
+    report_mixing(session)
     system.box.wrap(system.x, system.image)
     order = _places(system) if sort else np.arange(system.n)
     system.id[order] = np.arange(1, system.n + 1)
+    report_special(session)
     session.changed()
 
 
@@ -97,6 +100,7 @@ def reset_molecules(session, words: list[str]) -> None:
     if options["offset"] < -1:
         raise InputError(f"{what} offset: must not be negative (-1: the largest molecule of other atoms), got {options['offset']}")
     session.print("Resetting molecule IDs ...")
+    report_mixing(session)
     label = fragments(system, mask)
     members, inverse = np.unique(label[mask], return_inverse=True)
     wanted = np.full(len(members), options["single"])
@@ -125,6 +129,7 @@ def reset_images(session, words: list[str]) -> None:
     if len(words) > 1:
         raise InputError(f"{what} takes a group and no more words, got {' '.join(words[1:])}")
     session.print("Resetting image flags ...")
+    report_mixing(session)
     members, inverse = np.unique(fragments(system, np.ones(system.n, bool)), return_inverse=True)    # whole ones, also for a group
     image = system.image
     low, high = np.full((len(members), 3), 2**30), np.full((len(members), 3), -(2**30))

@@ -1,6 +1,8 @@
 """``special_bonds keyword values ...``: how much of a pair interaction is left between atoms one, two and three bonds apart."""
 from __future__ import annotations
 
+from asemd.lammps.setup_log import report_special
+
 
 def run(session, args):
     scene = session.scene
@@ -8,6 +10,7 @@ def run(session, args):
     scene.interactions.set_special(args)
     if scene.system is not None and _of_lists(scene.interactions) != before:
         scene.system.topology.frozen = None     # lists of 1-3 and 1-4 pairs are made anew
+        report_special(session)
 
 
 def _of_lists(interactions) -> tuple:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
+from asemd.lammps.setup_log import report_mixing
 from asemd.pairing import complete
 from asemd.words import exactly
 
@@ -17,6 +18,7 @@ def run(session, args):
     system, interactions = session.scene.need_system("write_coeff"), session.scene.interactions
     if not any(interactions.uses.values()):
         raise InputError("write_coeff: there is no pair, bond, angle, dihedral or improper style yet")
+    report_mixing(session)
     lines = ["# LAMMPS coeff file via write_coeff of asemd"]
     for category in ("pair", *(c for c in CATEGORIES if c != "pair")):
         if interactions.uses[category] and system.counts["ntypes" if category == "pair" else f"n{category}types"]:

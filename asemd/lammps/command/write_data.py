@@ -5,6 +5,7 @@ import warnings
 
 from asemd.errors import InputError, InputWarning, nearest
 from asemd.lammps.data_write import write_data
+from asemd.lammps.setup_log import report_mixing
 from asemd.words import choice, take
 
 KEYWORDS = ("pair", "nocoeff", "nofix", "nolabelmap", "types", "triclinic/general")
@@ -32,6 +33,7 @@ def run(session, args):
             options["general"] = True
         elif key != "nofix":       # no fix of asemd writes to data files
             raise InputError(f"write_data: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
+    report_mixing(session, "write_data")
     with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
         warnings.simplefilter("always", InputWarning)
         write_data(path, system, scene.interactions if coeffs else None, progress=progress, **options)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from asemd.errors import InputError, nearest
 from asemd.lammps import restart
+from asemd.lammps.setup_log import report_mixing
 from asemd.words import take, whole
 
 
@@ -10,6 +11,7 @@ def run(session, args):
     name = take(args, 1, "write_restart")[0]
     session.scene.need_system("write_restart")
     no_pieces(args[1:], [name], "write_restart")
+    report_mixing(session, "write_restart")
     restart.write(session, restart.file_name(name, session.scene.step))
     session.loop = None         # the next run begins as one that is continued from the file
 
