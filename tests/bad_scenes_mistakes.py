@@ -132,7 +132,7 @@ line("digits of another alphabet", "timestep \u0663", "\u0663")
 # ---- minimisers, limits of time, lists, plugins
 line("hftn with the longest force", "min_style hftn\nmin_modify norm max\nminimize 0 1e-6 5 50", "norm max;hftn;two")
 line("abcfire maybe", "min_modify abcfire maybe", "abcfire;maybe;yes or no")
-line("line search of spins", "min_modify line spin_cubic", "spin_cubic;spins")
+line("line search of spins", "min_modify line spin_cubic\nminimize 0 1e-6 5 50", "spin_cubic;spins", at=("in.scene", "minimize 0 1e-6 5 50"))
 line("limit of time in words", "timer timeout soon", "timer timeout;soon;seconds")
 line("limit of time looked at never", "timer every 0", "timer every;positive")
 line("plugin", "plugin load morse2plugin.so", "morse2plugin.so;--import")

@@ -1,6 +1,7 @@
 """Dumps of whole runs: the same snapshots as LAMMPS writes, in files that MDAnalysis, ASE and LAMMPS read."""
 from __future__ import annotations
 
+import gzip
 import lzma
 import re
 
@@ -69,6 +70,17 @@ dump f4 all custom 2 skip.txt id type
 dump_modify f4 skip v_sk sort id thresh type |^ 0
 dump f5 all custom 4 delay.txt id typelabel
 dump_modify f5 delay 7 balance yes sort id
+compute pairs all property/local patom1 patom2
+dump z0 all atom/gz 2 z0.gz
+dump_modify z0 sort id compression_level 1 format line "%d %d %g"
+dump z1 all custom/gz 10 z1.*.gz id type x
+dump_modify z1 sort id format line "%d %d %.12g %g %s"
+dump z2 all xyz/gz 2 z2.gz
+dump_modify z2 sort id format line "%s %g" compression_level -1
+dump z3 all cfg/gz 10 z3.*.gz mass type xs ys zs
+dump_modify z3 sort id element C H format line "%d %d %.8f %g %g"
+dump z4 all local/gz 10 z4.gz index c_pairs[1] c_pairs[2]
+dump_modify z4 sort 2
 thermo 4
 run 11
 run 9
@@ -110,9 +122,11 @@ def test_same_files(both):
 def test_same_text(both):
     theirs, ours = both
     names = [p.name for p in theirs.iterdir() if not p.name.endswith((".bin", ".dcd", ".xtc"))]
-    assert len(names) > 20
+    assert len(names) > 25
     for name in names:
-        assert same_text((ours / name).read_text(), (theirs / name).read_text()), name
+        a, b = ((gzip.open if name.endswith(".gz") else open)(folder / name, "rt") for folder in (ours, theirs))
+        with a, b:
+            assert same_text(a.read(), b.read()), name
 
 
 def test_same_binary_files(both):
@@ -311,12 +325,15 @@ def test_colour_maps():
     ("dump_modify c maxfiles 2", "with \\*"), ("dump_modify c skip 3", "v_name"), ("dump_modify c every/time -1", "positive"),
     ("dump d all image 1 F.* type type up 0 0 0", "direction"), ("dump d all image 1 F.* type type ssao yes 0 0.5", "seed"),
     ("dump_modify i amap 1 0 cf 0 2 min red max blue", "above the upper"), ("dump_modify c pad -1", "negative"),
+    ("dump d all atom/gz 1 F", "must end in .gz"), ("dump_modify z compression_level 10", "0 to 9"),
+    ("dump_modify c compression_level 3", "not supported"), ("dump_modify z format float %g", "only line and none"),
     ("dump_modify c triclinic/general yes", "general triclinic"),
     ("dump_modify c thermo yes", "not supported"), ("dump d all custom 1 F id i_no", "no property"),
 ])
 def test_mistakes(line, message, tmp_path):
     session = asemd(SCENE + f"dump i all image 1 {tmp_path}/i.* type type\ndump t all dcd 1 {tmp_path}/t\n"
-                            f"dump x all xtc 1 {tmp_path}/x\ndump c all custom 1 {tmp_path}/c id")
+                            f"dump x all xtc 1 {tmp_path}/x\ndump c all custom 1 {tmp_path}/c id\n"
+                            f"dump z all atom/gz 1 {tmp_path}/z.gz")
     with pytest.raises(InputError, match=message):
         session.execute(line.replace("F", str(tmp_path / "f")))
         session.execute("run 0")

@@ -255,11 +255,21 @@ def test_from_ase():
 @pytest.mark.parametrize("words, message", [
     ("dmx 0.1", "did you mean dmax"), ("dmax", "no value"), ("dmax x", "number"), ("dmax -1", "positive"),
     ("line cubic", "quadratic"), ("norm three", "two max inf"), ("halfstepback maybe", "yes or no"), ("dmax nan", "positive"),
-    ("", "keyword"), ("line spin_cubic", "spins"), ("discrete_factor 10", "spins"), ("abcfire maybe", "yes or no"),
+    ("", "keyword"), ("discrete_factor 10", "spins"), ("abcfire maybe", "yes or no"),
 ])
 def test_mistakes(words, message):
     with pytest.raises(InputError, match=message):
         Options().modify(words.split())
+
+
+@pytest.mark.parametrize("word", ["spin_cubic", "spin_none"])
+def test_line_searches_for_spins(word):
+    """Styles without a line search take the word and do as before, as LAMMPS does (which crashes with the others)."""
+    for style in ("fire", "quickmin"):
+        plain, asked = (minimized(style, "0 1e-3 20 100", line) for line in ("", f"line {word}"))
+        assert plain.energy_final == asked.energy_final and plain.iterations == asked.iterations
+    with pytest.raises(InputError, match=f"{word}.*spins"):
+        minimized("cg", "0 1e-3 20 100", f"line {word}")
 
 
 def test_newton_steps_converge_in_few_iterations():

@@ -13,6 +13,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.registry import class_called, class_of
+from asemd.words import number, yes_no
 
 
 class Compute:
@@ -22,11 +23,18 @@ class Compute:
     ----------
     group : str
         Name of the group it looks at.
+
+    Attributes
+    ----------
+    extra_dof, dynamic : float or None, bool
+        ``compute_modify ID extra/dof N`` and ``dynamic/dof yes``, which every compute takes; temperatures use them.
     """
 
     style: ClassVar[str] = ""
     needs: frozenset[str] = frozenset()
     id: str = ""
+    extra_dof: float | None = None
+    dynamic: bool = False
 
     def __init__(self, group: str = "all"):
         self.group = group
@@ -63,8 +71,17 @@ class Compute:
         return None
 
     def modify(self, words: list[str], session) -> None:
-        """``compute_modify`` words."""
-        raise InputError(f"compute_modify: compute {self.id} (style {self.style}) does not take {words[0]!r}")
+        """``compute_modify`` words: pairs of keyword and value."""
+        if len(words) % 2 or not words:
+            raise InputError(f"compute_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
+        for keyword, value in zip(words[::2], words[1::2], strict=True):
+            what = f"compute_modify {keyword}"
+            if keyword in ("extra/dof", "extra"):
+                self.extra_dof = number(value, what)
+            elif keyword in ("dynamic/dof", "dynamic"):
+                self.dynamic = yes_no(value, what)
+            else:
+                raise InputError(f"compute_modify: compute {self.id} (style {self.style}) does not take {keyword!r}")
 
 
 def find(name: str) -> type[Compute]:

@@ -15,7 +15,6 @@ import numpy as np
 from asemd.compute import Compute
 from asemd.errors import InputError
 from asemd.result import COMPONENTS
-from asemd.words import number, yes_no
 
 
 class Temp(Compute):
@@ -35,7 +34,6 @@ class Temp(Compute):
     def __init__(self, group: str = "all", extra_dof: float | None = None):
         super().__init__(group)
         self.extra_dof = extra_dof
-        self.dynamic = False
 
     def dof(self, state) -> float:
         """Degrees of freedom of the group; `state` is a `asemd.engine.Snapshot` or a `asemd.loop.Loop`.
@@ -71,15 +69,3 @@ class Temp(Compute):
         """(6,) sum of m v v in energy units: xx yy zz xy xz yz."""
         w, v = self._weights(state), state.system.v
         return state.units.mvv2e * np.array([np.einsum("i,i,i->", w, v[:, i], v[:, j]) for i, j in COMPONENTS])
-
-    def modify(self, words: list[str], session) -> None:
-        """``compute_modify``: extra/dof N (older: extra N), dynamic/dof yes|no (older: dynamic)."""
-        if len(words) % 2 or not words:
-            raise InputError(f"compute_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
-        for keyword, value in zip(words[::2], words[1::2], strict=True):
-            if keyword in ("extra/dof", "extra"):
-                self.extra_dof = number(value, f"compute_modify {keyword}")
-            elif keyword in ("dynamic/dof", "dynamic"):
-                self.dynamic = yes_no(value, f"compute_modify {keyword}")
-            else:
-                super().modify([keyword], session)

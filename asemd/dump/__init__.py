@@ -16,7 +16,7 @@ import numpy as np
 from asemd.dump import _binary
 from asemd.dump._columns import COLUMNS, LABELS, View, column_of, kind_of
 from asemd.dump._files import Series, is_compressed, open_binary
-from asemd.dump._modify import Modify
+from asemd.dump._modify import Modify, conversions
 from asemd.dump._schedule import Schedule
 from asemd.errors import InputError
 
@@ -195,7 +195,8 @@ class Dump(Modify):
         """All lines of atoms."""
         columns = [column_of(view, c) for c in self.columns]
         form = self.format()
-        return "".join([form % row for row in zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in columns))])
+        used = columns[:conversions(form)]      # a line of dump atom may leave out the last columns
+        return "".join([form % row for row in zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in used))])
 
     def column_names(self) -> list[str]:
         """What the header calls the columns."""
@@ -270,7 +271,7 @@ class Dump(Modify):
         path = self.files.name(step)
         try:
             if self._file is None:
-                self._file = open_binary(path, self.append)
+                self._file = self.open(path)
             self._file.write(data)
             if self.files.is_many:
                 self.close()
@@ -279,6 +280,10 @@ class Dump(Modify):
                 self._file.flush()
         except OSError as e:
             raise self.cannot_write(path, e) from None
+
+    def open(self, path: str) -> IO[bytes]:
+        """The file of a snapshot, ready to be written or continued."""
+        return open_binary(path, self.append)
 
     def cannot_write(self, path: str, e: OSError) -> InputError:
         return InputError(f"dump {self.id or self.style}: cannot write {path}: {e.strerror or e}")

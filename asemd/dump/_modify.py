@@ -19,6 +19,8 @@ class Modify:
     A keyword ``key`` with values of its own kind is read by the method ``_modify_key``; the others are switches, yes or no.
     """
 
+    by_column: ClassVar[bool] = True        # dump_modify format sets columns and kinds, not only line and none
+
     # keyword -> number of values
     KEYWORDS: ClassVar[dict[str, int]] = {
         "append": 1, "balance": 1, "buffer": 1, "colname": 2, "delay": 1, "every": 1, "every/time": 1, "fileper": 1, "first": 1, "flush": 1,
@@ -117,15 +119,21 @@ class Modify:
         if which == "none":
             self.formats, self.line = {}, ""
             return
+        if which != "line" and not self.by_column:
+            raise InputError(f"{what} {which}: dump style {self.style} takes only line and none")
         text = values[1]
-        found = [c[-1] for c in CONVERSION.findall(text) if c != "%%"]
+        found = kinds_in(text)
         if "%" in CONVERSION.sub("", text):
             raise InputError(f"{what}: {text!r} is not a C format of numbers and strings")
         if which == "line":
             kinds = [self.kind(c) for c in self.columns]
-            if len(found) < len(kinds):
-                raise InputError(f"{what} line: {len(found)} formats for {len(kinds)} columns: {text!r}")
-            if len(found) > len(kinds) or any(c not in FITS[k] for c, k in zip(found, kinds)):
+            if self.by_column:      # a word for each column, further ones are not used
+                if len(text.split()) < len(kinds):
+                    raise InputError(f"{what} line: {len(text.split())} formats for {len(kinds)} columns: {text!r}")
+                text = " ".join(text.split()[:len(kinds)])
+                found = kinds_in(text)
+            if (self.by_column and len(found) != len(kinds)) or len(found) > len(kinds) or \
+                    not all(self.fits(n, c, k) for n, (c, k) in enumerate(zip(found, kinds))):
                 raise InputError(f"{what} line: {text!r} does not fit the columns {' '.join(self.columns)}")
             self.line = text
             return
@@ -137,6 +145,10 @@ class Modify:
         if len(found) != 1 or found[0] not in FITS[kind]:
             raise InputError(f"{what} {which}: {text!r} is not a format for one {kind} value")
         self.formats[key] = text
+
+    def fits(self, column: int, conversion: str, kind: str) -> bool:
+        """Whether a conversion such as ``g`` writes a column (from 0) of this kind."""
+        return conversion in FITS[kind]
 
     def _modify_maxfiles(self, values, what, session):
         if not self.files.is_many:
@@ -202,4 +214,14 @@ class Modify:
         self.columns = [swap.get(c, c) for c in self.columns]
 
 
-__all__ = ["SELECT", "Modify"]
+def kinds_in(text: str) -> list[str]:
+    """The letters of the conversions in a format."""
+    return [c[-1] for c in CONVERSION.findall(text) if c != "%%"]
+
+
+def conversions(text: str) -> int:
+    """How many values a format takes."""
+    return len(kinds_in(text))
+
+
+__all__ = ["SELECT", "Modify", "conversions"]

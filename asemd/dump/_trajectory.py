@@ -11,8 +11,9 @@ class Trajectory(Dump):
     """Base class; a subclass opens, writes and closes the file of the library that knows the format."""
 
     wildcards = ""
+    by_column = False       # there is no text: a format is taken and not used
     KEYWORDS = {**{k: n for k, n in Dump.KEYWORDS.items()
-                   if k not in ("colname", "fileper", "format", "header", "maxfiles", "nfile", "pad")}, "unwrap": 1}
+                   if k not in ("colname", "fileper", "header", "maxfiles", "nfile", "pad")}, "unwrap": 1}
 
     def __init__(self, group: str, every: int, path: str, *, variables=None, regions=None):
         super().__init__(group, every, path, ["id", "x", "y", "z"], variables=variables, regions=regions)

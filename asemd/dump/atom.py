@@ -10,6 +10,7 @@ class Atom(Dump):
 
     style = "atom"
     binary = True
+    by_column = False
     KEYWORDS = {**Dump.KEYWORDS, "image": 1, "scale": 1, "triclinic/general": 1, "types": 1}
 
     def __init__(self, group: str, every: int, path: str, *, variables=None, regions=None):

@@ -28,6 +28,9 @@ class CFG(Custom):
             raise InputError("dump cfg: the columns must begin with mass type xs ys zs or mass type xsu ysu zsu")
         super().__init__(group, every, path, columns, variables=variables, regions=regions)
 
+    def fits(self, column, conversion, kind):
+        return column < 2 or super().fits(column, conversion, kind)     # mass and element have their own lines and formats
+
     def head(self, snapshot, step, n):
         box, _ = frame(snapshot.system.box)
         size = EXPANSION if self.columns[2] == "xsu" else 1.0

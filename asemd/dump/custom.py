@@ -35,7 +35,3 @@ class Custom(Dump):
         kind, id, first, last = found.groups()
         width = variables.provider.per_atom_columns(kind[:-1], id)
         return [f"{kind}{id}[{k}]" for k in range(int(first or 1), int(last or width) + 1)]
-
-    def _modify_format(self, values, what, session):
-        super()._modify_format(values, what, session)
-        self.line = " ".join(self.line.split())

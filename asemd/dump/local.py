@@ -96,10 +96,6 @@ class Local(Dump):
         form = self.format()
         return "".join([form % row for row in zip(*(c.tolist() for c in view.columns))])
 
-    def _modify_format(self, values, what, session):
-        super()._modify_format(values, what, session)
-        self.line = " ".join(self.line.split())
-
     def _modify_label(self, values, what, session):
         self.label = values[0]
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from asemd.dump import Dump
 from asemd.dump._columns import column_of
+from asemd.dump._modify import conversions
 from asemd.errors import InputError
 
 
@@ -11,6 +12,7 @@ class XYZ(Dump):
 
     style = "xyz"
     wildcards = "*"
+    by_column = False
     KEYWORDS = {**{k: n for k, n in Dump.KEYWORDS.items() if k != "colname"}, "element": 0, "types": 1}
 
     def __init__(self, group: str, every: int, path: str, *, variables=None, regions=None):
@@ -23,7 +25,8 @@ class XYZ(Dump):
 
     def lines(self, view):
         form = self.format()
-        return "".join([form % row for row in zip(self.symbols(view), *(column_of(view, c).tolist() for c in self.columns[1:]))])
+        columns = [self.symbols(view), *(column_of(view, c).tolist() for c in self.columns[1:])]
+        return "".join([form % row for row in zip(*columns[:conversions(form)])])
 
     def head(self, snapshot, step, n):
         time = f" Time: {step * snapshot.dt:f}" if self.time else ""

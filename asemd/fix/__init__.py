@@ -37,7 +37,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.registry import class_called, class_of
-from asemd.words import whole
+from asemd.words import whole, yes_no
 
 if TYPE_CHECKING:
     from asemd.loop import Loop
@@ -155,7 +155,9 @@ class Fix:
         if len(words) % 2 or not words:
             raise InputError(f"fix_modify: needs pairs of keyword and value, got {' '.join(words) or 'nothing'}")
         for keyword, value in zip(words[::2], words[1::2], strict=True):
-            if not self.modify_option(keyword, value, session):
+            if keyword == "dynamic/dof":        # every fix takes it; atoms that a fix holds are counted anew at each run
+                yes_no(value, "fix_modify dynamic/dof")
+            elif not self.modify_option(keyword, value, session):
                 raise InputError(f"fix_modify: fix {self.id} (style {self.style}) does not support {keyword} {value}")
 
     def modify_option(self, keyword: str, value: str, session) -> bool:

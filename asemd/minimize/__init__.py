@@ -85,7 +85,7 @@ class Options:
     dmax : float
         Largest move of any coordinate in one line search or step, distance units.
     line : str
-        ``quadratic``, ``backtrack`` or ``forcezero``.
+        ``quadratic``, ``backtrack``, ``forcezero``; ``spin_cubic`` and ``spin_none`` are for spins, and cg and sd cannot use them.
     norm : str
         ``two`` (length of the whole force vector), ``max`` (longest force on an atom) or ``inf`` (largest component).
     integrator, tmax, tmin, delaystep, dtgrow, dtshrink, alpha0, alphashrink, vdfmax, halfstepback, initialdelay, abcfire
@@ -108,7 +108,7 @@ class Options:
     initialdelay: bool = True
     abcfire: bool = False
 
-    WORDS = {"line": ("quadratic", "backtrack", "forcezero"), "norm": ("two", "max", "inf"),
+    WORDS = {"line": ("quadratic", "backtrack", "forcezero", "spin_cubic", "spin_none"), "norm": ("two", "max", "inf"),
              "integrator": ("eulerimplicit", "verlet", "leapfrog", "eulerexplicit")}
 
     def modify(self, words: list[str]) -> None:
@@ -125,7 +125,7 @@ class Options:
         if len(words) % 2:
             raise InputError(f"min_modify: keyword {words[-1]!r} has no value")
         for key, word in zip(words[::2], words[1::2]):
-            if key == "line" and word in ("spin_cubic", "spin_none") or key in ("alpha_damp", "discrete_factor"):
+            if key in ("alpha_damp", "discrete_factor"):
                 raise InputError(f"min_modify {key} {word} is for spins, which are not supported")
             if key not in kinds:
                 raise InputError(f"min_modify: unknown keyword {key!r}{nearest(key, kinds)}")

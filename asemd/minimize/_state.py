@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from asemd.errors import SimulationError
+from asemd.errors import InputError, SimulationError
 from asemd.minimize import DOWNHILL, EPS_ENERGY, ETOL, FTOL, INTERRUPTED, MAXEVAL, ZEROALPHA, ZEROFORCE, ZEROQUAD, Options, Problem, Result
 
 ALPHA_MAX = 1.0         # longest step along the direction, in units of it
@@ -103,6 +103,8 @@ class State:
         if self.options.line != "forcezero":
             alpha = min(ALPHA_MAX, alpha)
         lines = {"quadratic": self._quadratic, "backtrack": self._backtrack, "forcezero": self._force_zero}
+        if self.options.line not in lines:
+            raise InputError(f"min_modify line {self.options.line} is for spins, which are not supported: choose {' '.join(lines)}")
         return lines[self.options.line](h, slope, alpha)
 
     def _slope(self, h: np.ndarray) -> float:
