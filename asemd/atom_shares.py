@@ -27,7 +27,7 @@ def add(engine: Engine, result: Result) -> Result:
         if isinstance(t, PairListTerm) and t.pairs == "special":
             continue
         if isinstance(t, (PairTerm, PairRowsTerm)):
-            t, index = PairListTerm(t.style, t.tables, t.style.parts, "all"), t.index
+            t, index = PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t.owner), t.index
             t.index = index
             t.rebuild(engine)
         engine.atom_energy[:] = 0.0

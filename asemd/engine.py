@@ -95,7 +95,8 @@ class Engine:
             self.mode, self.why = "plain", "a periodic cell width is below twice cutoff plus skin"
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
-        self.expanded = self.mode == "cluster" and (table or bool(len(self.exclusions.rules)))
+        chosen = not all(t.is_plain for t in self.pair_terms)
+        self.expanded = self.mode == "cluster" and (table or chosen or bool(len(self.exclusions.rules)))
         volume = abs(float(np.linalg.det(self.vectors)))
         self.sparse = self.mode == "cluster" and not self.expanded and 2.1 * self.reach**3 * n < SPARSE * volume
         if self.sparse:
@@ -109,9 +110,9 @@ class Engine:
             if self.mode == "cluster" and not self.expanded:
                 terms.append(PairRowsTerm(t) if self.sparse else PairTerm(t, single))
                 if weighted:
-                    terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special"))
+                    terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special", owner=t))
             else:
-                terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all"))
+                terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t))
         return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]
 
     def _set_box(self) -> None:

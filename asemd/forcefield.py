@@ -11,39 +11,11 @@ from asemd import modifiers
 from asemd import words as read
 from asemd.errors import InputError, nearest
 from asemd.pairing import PairTerm, check_complete, make_terms, reach
-from asemd.registry import exists, find, plain_name
-from asemd.style import Style
+from asemd.registry import find, plain_name
 from asemd.topology import ATOMS
+from asemd.uses import ADDED, HYBRID, Use, sub_styles
 
 CATEGORIES = (*ATOMS, "pair")
-HYBRID = ("hybrid", "hybrid/overlay")
-
-
-@dataclass
-class Use:
-    """One style in use.
-
-    Attributes
-    ----------
-    style : Style
-    settings : dict
-        Values of the ``*_style`` command.
-    coeff : dict
-        Type (bonded) or (i, j), i <= j (pair) -> values by name, as given; angles in degrees.
-    label : str
-        The style's name; in a hybrid with the same style twice with a number, ``lj/cut 1``.
-    modify : dict
-        What ``pair_modify pair LABEL ...`` set for this sub-style alone.
-    memory : dict
-        What a bond style remembers from run to run: reference lengths, broken bonds.
-    """
-
-    style: Style
-    settings: dict[str, Any]
-    coeff: dict[Any, dict[str, Any]] = field(default_factory=dict)
-    label: str = ""
-    modify: dict[str, Any] = field(default_factory=dict)
-    memory: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
 
 def _property(category: str) -> property:
@@ -62,7 +34,7 @@ class Interactions:
     uses : dict
         bond, angle, dihedral, improper, pair -> list of `Use`; empty: no such interactions.
     hybrid : dict
-        Category -> ``""``, ``"hybrid"`` or ``"hybrid/overlay"``.
+        Category -> ``""``, ``"hybrid"``, or for pairs ``"hybrid/overlay"``, ``"hybrid/scaled"``, ``"hybrid/molecular"``.
     none : dict
         Category -> types (or pairs of types) of a hybrid set to ``none``.
     special_lj, special_coul : (float, float, float)
@@ -118,9 +90,9 @@ class Interactions:
                 raise InputError(f"{command} none takes no arguments, got {' '.join(rest)}")
             uses: list[Use] = []
         elif name in HYBRID:
-            if name == "hybrid/overlay" and category != "pair":
-                raise InputError(f"unknown {category} style 'hybrid/overlay' (did you mean hybrid?)")
-            uses = self._sub_styles(category, name, rest)
+            if name != "hybrid" and category != "pair":
+                raise InputError(f"unknown {category} style {name!r} (did you mean hybrid?)")
+            uses = sub_styles(category, name, rest)
         else:
             style = find(category, name)
             uses = [Use(style, style.parse_settings(rest), label=name)]
@@ -133,34 +105,6 @@ class Interactions:
         self.hybrid[category] = name if name in HYBRID else ""
         if category == "pair":
             self.shift, self.tail, self.mix, self.compute, self.table = False, False, None, True, {}
-
-    @staticmethod
-    def _sub_styles(category: str, hybrid: str, words: list[str]) -> list[Use]:
-        command = f"{category}_style {hybrid}"
-        if not words:
-            raise InputError(f"{command} needs the names of its sub-styles")
-        groups: list[list[str]] = []
-        for word in words:
-            if not groups or exists(category, plain_name(word)):
-                groups.append([plain_name(word)])
-            else:
-                groups[-1].append(word)
-        uses = []
-        for name, *rest in groups:
-            if name in HYBRID or name == "none":
-                raise InputError(f"{command} cannot have {name} as a sub-style")
-            style = find(category, name)
-            strange = [w for w in rest if w[0].isalpha()]
-            if strange and not any(p.unit == "word" for p in style.settings):
-                find(category, strange[0])        # a style that does not exist: say so, not that there are too many values
-            uses.append(Use(style, style.parse_settings(rest), label=name))
-        names = [use.label for use in uses]
-        for k, use in enumerate(uses):
-            if names.count(names[k]) > 1:
-                if category != "pair":
-                    raise InputError(f"{command} cannot use the style {names[k]} twice")
-                use.label = f"{names[k]} {names[:k + 1].count(names[k])}"
-        return uses
 
     def set_coeff(self, category: str, words: list[str], system) -> None:
         """``bond_coeff WORDS`` and its relatives.
@@ -204,7 +148,7 @@ class Interactions:
         values = use.style.parse_coeff(words, use.settings)
         for key in keys:
             joined = use.style.join(use.coeff.get(key, {}), values)
-            if self.hybrid[category] != "hybrid/overlay":
+            if self.hybrid[category] not in ADDED:
                 self._forget(category, key)
             self.none[category].discard(key)
             use.coeff[key] = joined
@@ -289,6 +233,7 @@ class Interactions:
         """Words after ``*_style`` that make the styles again."""
         out = [self.hybrid[category]] if self.hybrid[category] else []
         for use in self.uses[category]:
+            out += [str(use.scale)] if self.hybrid[category] == "hybrid/scaled" else []
             out += [use.style.name, *use.style.format_settings(use.settings)]
         return out or ["none"]
 
@@ -308,8 +253,9 @@ class Interactions:
         out[0] += ["mix", self.mix] if self.mix else []
         for name, value in self.table.items():
             out[0] += [name, repr(value)]
-        for use in self.uses["pair"]:
-            words = [w for k, v in use.modify.items() for w in (k, v if k == "mix" else _yes(v))]
+        for use in sorted(self.uses["pair"], key=lambda use: use.modify.get("tail", self.tail) == self.tail):     # the last one decides
+            words = [w for name, three in use.special.items() for w in ("special", name, *map(repr, three))]
+            words += [w for k, v in use.modify.items() for w in (k, v if k == "mix" else _yes(v))]
             if words:
                 out.append(["pair", *use.label.split(), *words])
         return out

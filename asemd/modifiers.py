@@ -9,8 +9,10 @@ from asemd.registry import plain_name
 
 if TYPE_CHECKING:
     from asemd.forcefield import Interactions
+    from asemd.uses import Use
 
-KEYWORDS = ("pair", "shift", "tail", "compute", "mix", "table", "table/disp", "tabinner", "tabinner/disp", "nofdotr", "neigh/trim")
+KEYWORDS = ("pair", "shift", "tail", "compute", "mix", "table", "table/disp", "tabinner", "tabinner/disp", "nofdotr", "neigh/trim",
+            "special", "compute/tally")
 MIX_RULES = ("geometric", "arithmetic", "sixthpower")
 FACTORS = {          # special_bonds NAME -> Lennard-Jones and Coulomb factors of 1-2, 1-3, 1-4 pairs
     "amber": ((0.0, 0.0, 0.5), (0.0, 0.0, 5.0 / 6.0)),
@@ -31,13 +33,14 @@ def modify_pair(interactions: Interactions, words: list[str]) -> None:
         if not interactions.hybrid["pair"] or len(words) < 2:
             raise InputError("pair_modify pair needs pair_style hybrid and the name of a sub-style")
         target, words = interactions.sub_style("pair", plain_name(words[1]), words[2:])
+        words = _of_sub_style(target, words)
     while words:
         keyword, *words = words
         what = f"pair_modify {keyword}"
         if keyword == "nofdotr":      # how the virial is summed, not what it is
             continue
-        if keyword == "special":
-            raise InputError("pair_modify special is not supported: all sub-styles follow special_bonds")
+        if keyword in ("special", "compute/tally", "pair"):
+            raise InputError(f"{what} must stand first: pair_modify pair NAME {keyword} ...")
         value = read.take(words, 1, what)[0]
         words = words[1:]
         if keyword in ("shift", "tail", "compute", "neigh/trim"):
@@ -55,11 +58,47 @@ def modify_pair(interactions: Interactions, words: list[str]) -> None:
         else:
             raise InputError(f"unknown pair_modify keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
         if target is not None:
+            if keyword == "tail":       # of the hybrid as a whole, too: without it no sub-style has a tail
+                for use in interactions.uses["pair"]:
+                    use.modify.setdefault("tail", interactions.tail)
+                interactions.tail = new
             target.modify[keyword] = new
         else:
             setattr(interactions, keyword, new)
             for use in interactions.uses["pair"]:
                 use.modify.pop(keyword, None)
+
+
+def _of_sub_style(use: Use, words: list[str]) -> list[str]:
+    """``special lj|coul|lj/coul w12 w13 w14`` and ``compute/tally yes|no`` right after the name of a sub-style; returns what follows."""
+    while words and words[0] in ("special", "compute/tally"):
+        what = f"pair_modify pair {use.label} {words[0]}"
+        if words[0] == "special":
+            kind, *three = read.take(words[1:], 4, what)
+            weights = tuple(read.number(w, what) for w in three)
+            for name in ("lj", "coul") if read.choice(kind, ("lj", "coul", "lj/coul"), what) == "lj/coul" else (kind,):
+                use.special[name] = weights
+            words = words[5:]
+        else:
+            read.yes_no(read.take(words[1:], 1, what)[0], what)     # which computes see the pairs; there are none that would
+            words = words[2:]
+    return words
+
+
+def check_special(interactions: Interactions) -> None:
+    """Refuse weights of a sub-style where the common one says that pairs are left out (0) or like any other (1).
+
+    Raises
+    ------
+    InputError
+        The message names the sub-style and the kind of pairs.
+    """
+    for use in interactions.uses["pair"]:
+        for name, weights in use.special.items():
+            for kind, (own, common) in enumerate(zip(weights, getattr(interactions, f"special_{name}")), 2):
+                if own != common and common in (0.0, 1.0):
+                    raise InputError(f"pair_modify pair {use.label} special {name}: weight {own:g} of 1-{kind} pairs is incompatible with "
+                                     f"special_bonds, where it is {common:g}: give these pairs another one there, such as 1e-20 or 0.5")
 
 
 def set_special(interactions: Interactions, words: list[str]) -> None:

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from asemd import modifiers
 from asemd.errors import InputError, InputWarning
 from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 
 if TYPE_CHECKING:
-    from asemd.forcefield import Interactions, Use
+    from asemd.forcefield import Interactions
+    from asemd.uses import Use
 
 NO_REPULSION = "angle style {} takes the repulsion of its ends from a pair style such as lj/spica: use one, or give repulsion = 0"
 
@@ -27,6 +29,8 @@ class PairTerm:
     tables : PairTables
     filled : dict
         (i, j) -> complete coefficients, mixed ones included.
+    molecules : str
+        ``same`` or ``other``: only pairs of atoms of one molecule, or of two.
     """
 
     use: Use
@@ -35,6 +39,22 @@ class PairTerm:
     filled: dict[tuple[int, int], dict[str, Any]]
     label: str
     has_tail: bool
+    molecules: str = ""
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether all pairs of the list count, with the same weight."""
+        return not self.molecules and not isinstance(self.use.scale, str) and self.use.scale == 1.0
+
+    def weights(self, lj: np.ndarray, coul: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The weights of kinds of pairs, (5,) each, as they are for this style."""
+        out = []
+        for name, weight in (("lj", lj), ("coul", coul)):
+            weight = weight.copy()
+            if name in self.use.special:
+                weight[1:4] = self.use.special[name]
+            out.append(weight * self.use.factor if np.ndim(self.use.factor) == 0 else weight)
+        return tuple(out)
 
     @property
     def cut_rows(self) -> list[int]:
@@ -101,11 +121,13 @@ def complete(interactions: Interactions, ntypes: int) -> list[tuple[Use, dict[tu
 def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]:
     """See `asemd.forcefield.Interactions.pair_terms`."""
     out = []
-    for use, filled in complete(interactions, ntypes):
+    for k, (use, filled) in enumerate(complete(interactions, ntypes)):
         if interactions.modified(use, "compute"):
             shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
             style = use.style.variant(use.settings, interactions.compat).bind(use.settings, filled)
-            out.append(PairTerm(use, style, style.pack_pairs(use.settings, filled, ntypes, units, shift), filled, use.label, tail))
+            molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else ""
+            tables = style.pack_pairs(use.settings, filled, ntypes, units, shift)
+            out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))
     return out
 
 
@@ -145,6 +167,9 @@ def check_complete(interactions: Interactions, system) -> None:
         for use in uses:
             use.style.check_scene(interactions, system)
     complete(interactions, system.counts["ntypes"])
+    modifiers.check_special(interactions)
+    if interactions.hybrid["pair"] == "hybrid/molecular" and not system.molecular:
+        raise InputError("pair_style hybrid/molecular needs an atom_style with molecule numbers, such as full")
     for use in interactions.uses["pair"]:
         if use.style.charged and system.q is None:
             raise InputError(f"pair style {use.style.name} needs atom attribute q: use atom_style charge or full")

@@ -225,7 +225,7 @@ class RespaLoop(Loop):
         short = within < SHORT * self.engine.reach
         if isinstance(t, PairListTerm):
             kind = ShortListTerm if short and t.pairs == "all" else PairListTerm
-            new = kind(owner.style, owner.tables, t.parts, t.pairs)
+            new = kind(owner.style, owner.tables, t.parts, t.pairs, owner=owner)
         elif isinstance(t, PairTerm):
             new = (ShortClusterTerm if short else PairTerm)(owner, t.single)
         else:

@@ -121,7 +121,7 @@ class PairTerm:
     piece = ""
 
     def __init__(self, term, single: bool):
-        self.style, self.tables, self.single = term.style, term.tables, single
+        self.owner, self.style, self.tables, self.single = term, term.style, term.tables, single
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
         self.row = 0
         self.tables4 = np.zeros((1, 2, 0, 4))
@@ -171,7 +171,7 @@ class PairRowsTerm:
     piece = ""
 
     def __init__(self, term):
-        self.style, self.tables = term.style, term.tables
+        self.owner, self.style, self.tables = term, term.style, term.tables
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
         self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
 
@@ -199,24 +199,33 @@ class PairListTerm:
     pairs : str
         ``all``, ``special``, or pairs that bonded styles ask for, given by `one_four` as pairs (m, 2), kinds (m,) and the weights of the
         kinds: ``one_four`` (dihedral charmm) and ``ends`` (angle spica, whose energy they are part of).
+    owner : asemd.pairing.PairTerm, optional
+        The pair style with its own weights of kinds of pairs and its factor.
     """
 
     piece = ""
 
-    def __init__(self, style, tables, parts, pairs: str, one_four=None):
-        self.style, self.tables, self.parts, self.pairs = style, tables, parts, pairs
+    def __init__(self, style, tables, parts, pairs: str, one_four=None, owner=None):
+        self.style, self.tables, self.parts, self.pairs, self.owner = style, tables, parts, pairs, owner
         self.one_four, self.category = one_four, "angle" if pairs == "ends" else "pair"
+        self.by_atom = owner is not None and np.ndim(owner.use.factor) > 0
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom, piece=self.piece)[0]
+        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom, factor=self.by_atom, piece=self.piece)[0]
 
     def rebuild(self, engine):
-        if self.pairs == "all":
-            self.i, self.j, self.code, self.shifts = *engine.plain, engine.plain_shifts
-            self.lj, self.coul = engine.exclusions.weight_lj, engine.exclusions.weight_coul
-        elif self.pairs == "special":
-            self.i, self.j, self.code, self.shifts = *engine.special, engine.shifts27
-            self.lj, self.coul = engine.exclusions.weight_lj, engine.exclusions.weight_coul
+        if self.pairs in ("all", "special"):
+            found = (*engine.plain, engine.plain_shifts) if self.pairs == "all" else (*engine.special, engine.shifts27)
+            self.i, self.j, self.code, self.shifts = found
+            rules = engine.exclusions
+            self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul)
+            if self.owner.molecules:
+                molecule = rules.molecule[engine.state.row]
+                chosen = (molecule[self.i] == molecule[self.j]) == (self.owner.molecules == "same")
+                self.i, self.j, self.code = self.i[chosen], self.j[chosen], self.code[chosen]
+            if self.by_atom:
+                self.factor = np.zeros(engine.state.x.shape[1])
+                self.scale(engine)
         else:
             pairs, kinds, weights = self.one_four
             out = [np.empty(len(pairs), np.int32) for _ in range(3)]
@@ -224,11 +233,20 @@ class PairListTerm:
             self.i, self.j, self.code = out
             self.shifts, self.lj, self.coul = engine.shifts27, weights, weights
 
+    def scale(self, engine) -> None:
+        """Take up the present factor of the pair style; the arrays that kernels work on stay the same."""
+        if self.by_atom:
+            row = engine.state.row
+            self.factor[row >= 0] = self.owner.use.factor[row[row >= 0]]
+        elif self.owner is not None:
+            self.lj[:], self.coul[:] = self.owner.weights(engine.exclusions.weight_lj, engine.exclusions.weight_coul)
+
     def arguments(self, engine, tid):
         s, m, nth = engine.state, len(self.i), engine.threads
         return (s.x, engine.buffers[tid], s.q, s.type, self.i, self.j, self.code, self.shifts, self.lj, self.coul, m * tid // nth,
                 m * (tid + 1) // nth, self.tables.rows, self.tables.constants, self.tables.arrays, engine.qqr2e,
-                engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+                engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index],
+                *([self.factor] if self.by_atom else []))
 
     def describe(self, engine, item, value):
         s = engine.state

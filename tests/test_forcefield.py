@@ -183,7 +183,7 @@ def test_pair_modify():
     ("", "needs a keyword"), ("foo 1", "unknown pair_modify keyword 'foo'"), ("shfit yes", "did you mean shift"),
     ("shift", "needs 1 value"),
     ("shift maybe", "yes or no"), ("mix cubic", "expected one of geometric"), ("table x", "whole number"), ("table -1", "negative"),
-    ("pair lj/cut shift yes", "hybrid"), ("special lj 0 0 0", "not supported"),
+    ("pair lj/cut shift yes", "hybrid"), ("special lj 0 0 0", "must stand first"),
 ])
 def test_wrong_pair_modify(words, message):
     with pytest.raises(InputError, match=message):

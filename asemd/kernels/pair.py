@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_list, pair_sums
+from asemd.kernels import bond_history, pair_cluster, pair_factor, pair_list, pair_sums
 from asemd.kernels.generate import Builder, text_of
 from asemd.pairstyle import PairStyle
 
@@ -144,8 +144,10 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
 
 
 @cache
-def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, piece: str = ""):
-    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`.
+def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, factor: bool = False,
+                piece: str = ""):
+    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`;
+    `factor`: atoms have a factor each, see `pair_factor`.
 
     `piece` as in `cluster_kernel`.
     """
@@ -182,6 +184,10 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     b.text("\n".join(lines))
     for f in (pair_sums.eight, pair_sums.add):
         b.function(f)
+    if factor:
+        b.function(pair_factor.factor_forces)
+        module = b.build()
+        return module.factor_forces, module
     b.function(pair_list.list_forces)
     if broken:
         b.function(bond_history.broken_pairs)

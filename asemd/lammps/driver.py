@@ -11,7 +11,7 @@ import numpy as np
 from asemd import units
 from asemd.errors import InputError, InputWarning
 from asemd.lammps import checkpoint, log, restart, setup_log
-from asemd.lammps.live_coefficients import fill, live_coefficients
+from asemd.lammps.live_coefficients import fill, live_coefficients, scale
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
 
@@ -41,6 +41,7 @@ def check(session) -> None:
     scene = session.scene
     system = scene.system
     fill(session)
+    scale(session)
     if system.rmass is None:
         for kind in sorted({int(t) for t in np.unique(system.type)}):
             if not math.isfinite(system.mass[kind]):

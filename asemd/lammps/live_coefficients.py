@@ -1,14 +1,18 @@
-"""Expressions of force fields that name variables of the script (``v_k``): their values, at the start of a run and at each step of it."""
+"""Force fields that name variables of the script (``v_k``), in expressions or as factors of ``pair_style hybrid/scaled``: their values, at
+the start of a run and at each step of it."""
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from asemd.errors import InputError
 from asemd.expression_style import ExpressionStyle, fill_variables
 from asemd.fix import Fix
 from asemd.formula import CONSTANTS
 from asemd.formula_functions import MATH
+from asemd.term import PairListTerm
 
 if TYPE_CHECKING:
     from asemd.lammps.session import Session
@@ -21,6 +25,30 @@ def fill(session: Session, category: str = "") -> list[str]:
     """Put the present values of variables into the expressions of one category or of all; returns the names of these variables."""
     uses = session.scene.interactions.uses
     return fill_variables([use for c in uses if category in ("", c) for use in uses[c]], session.variables.value)
+
+
+def scale(session: Session) -> list[str]:
+    """Put the present values of variables into the factors of ``hybrid/scaled``; returns the names of these variables.
+
+    Raises
+    ------
+    InputError
+        A variable does not exist or is neither of style equal or internal, nor of style atom or atomfile.
+    """
+    names = []
+    for use in session.scene.interactions.uses["pair"]:
+        if not isinstance(use.scale, str):
+            continue
+        name = use.scale[2:]
+        style = session.variables.find(name).style
+        if style in ("equal", "internal"):
+            use.factor = float(session.variables.number(name))
+        elif style in ("atom", "atomfile"):
+            use.factor = np.asarray(session.variables.per_atom(name, session.scene.system.n), float)
+        else:
+            raise InputError(f"pair_style hybrid/scaled: variable {name} has style {style}, it must be equal or atom")
+        names.append(name)
+    return names
 
 
 def changes(session: Session, name: str) -> bool:
@@ -43,8 +71,15 @@ class LiveCoefficients(Fix):
         loop.sync_out()
         loop.system.step = loop.step
         self.session.moment.forget()
+        self.update(loop)
+
+    def update(self, loop: Loop) -> None:
+        """Take up the values that the variables have now."""
         fill(self.session)
+        scale(self.session)
         for term in loop.engine.terms:
+            if isinstance(term, PairListTerm):
+                term.scale(loop.engine)
             use = getattr(term, "use", None)
             if use is not None and isinstance(use.style, ExpressionStyle):
                 if use.style.bind(use.settings, use.coeff) is not term.style:
@@ -58,4 +93,4 @@ def live_coefficients(session: Session) -> list[Fix]:
     for name in fill(session, "pair"):
         if changes(session, name):
             raise InputError(f"pair_coeff lepton: the variable {name} changes during the run: an expression of pairs must stay the same")
-    return [LiveCoefficients(session)] if any(changes(session, name) for name in fill(session)) else []
+    return [LiveCoefficients(session)] if any(changes(session, name) for name in (*fill(session), *scale(session))) else []

@@ -17,13 +17,14 @@ import numpy as np
 
 from asemd import __version__
 from asemd.errors import InputError
-from asemd.forcefield import CATEGORIES, Interactions, Use
+from asemd.forcefield import CATEGORIES, Interactions
 from asemd.lammps import checkpoint, restart_file
 from asemd.lammps.command.create_box import describe
 from asemd.lammps.setup_log import report_special
 from asemd.style import find
 from asemd.system import System
 from asemd.topology import Topology
+from asemd.uses import Use
 
 NEIGHBOR = ("skin", "every", "delay", "check")
 
@@ -122,7 +123,7 @@ def contents(session, state: dict[str, Any] | None = None) -> dict[str, Any]:
 def force_field(interactions: Interactions) -> dict[str, Any]:
     """Interactions as plain data."""
     out = {f.name: getattr(interactions, f.name) for f in fields(interactions) if f.name not in ("uses", "compat", "compute")}
-    names = ("settings", "coeff", "label", "modify", "memory")
+    names = ("settings", "coeff", "label", "modify", "special", "scale", "memory")
     out["uses"] = {category: [{"style": use.style.name, **{n: getattr(use, n) for n in names}} for use in uses]
                    for category, uses in interactions.uses.items()}
     return out

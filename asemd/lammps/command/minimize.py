@@ -8,6 +8,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.lammps import log, restart, setup_log
 from asemd.lammps.driver import Driver, Plan, check, memory
+from asemd.lammps.live_coefficients import live_coefficients
 from asemd.minimize import WALLTIME, Problem, find
 from asemd.moment import Progress
 from asemd.words import number, whole
@@ -34,14 +35,22 @@ class Landscape:
     The neighbour list is rebuilt only when some atom has moved more than half the skin.
     """
 
-    def __init__(self, loop):
-        self.loop, self.system = loop, loop.system
+    def __init__(self, loop, session):
+        self.loop, self.system, self.session = loop, loop.system, session
+        self.live = live_coefficients(session)
         self.image = loop.system.image.copy()
+        self.step = loop.step
+        self.next_step = loop.step + 1
         self.x0 = loop.system.x.copy()
 
     def __call__(self, x: np.ndarray) -> tuple[float, np.ndarray]:
         loop, system = self.loop, self.system
         system.x[:] = x - (system.image - self.image) @ system.box.cell
+        for fix in self.live:       # variables see the step of the iteration
+            loop.step = self.session.scene.step = system.step = self.step
+            self.session.moment.forget()
+            fix.update(loop)
+            self.step = self.next_step
         result = loop.evaluate()
         fixes = sum(f.scalar() for f in loop.fixes if f.thermo_energy)
         return result.potential + fixes, system.f
@@ -110,7 +119,7 @@ class Minimization(Driver):
         self._watch("start", self.plan.steps)
         self.progress.started = time.perf_counter()
         self.output_seconds = 0.0
-        landscape = Landscape(loop)
+        landscape = Landscape(loop, session)
         system, norm = scene.system, scene.thermo.is_normalised(scene.units)
         def due(step: int) -> bool:
             return self._is_thermo(step) or any(d.schedule.next == step for d in scene.dumps.values())
@@ -123,6 +132,7 @@ class Minimization(Driver):
 
         def look(iteration: int, x, v, energy, forces) -> bool | str:
             loop.step = scene.step = begin + iteration
+            landscape.step = landscape.next_step = scene.step + 1
             if scene.min_style in DAMPED:
                 system.v[:] = v
             self._watch("update", iteration)
@@ -141,6 +151,7 @@ class Minimization(Driver):
         result = find(scene.min_style).minimize(problem, *self.arguments, scene.min_modify, look)
         if scene.min_style in DAMPED:
             system.v[:] = result.v
+        landscape.step = begin + result.steps
         landscape(result.x)
         loop.step = scene.step = begin + result.steps
         told = session.last_thermo_step == scene.step       # by the last iteration's output

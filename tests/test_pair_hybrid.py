@@ -1,0 +1,162 @@
+"""Hybrid pair styles: weights of special pairs by sub-style, factors, molecules; LAMMPS's numbers, and mistakes."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from both import asemd, lines_of
+from wheel import ask
+
+from asemd.errors import InputError
+
+COLUMNS = ("evdwl", "ecoul", "emol", "etail", "pxx", "pxy")
+
+
+def chain(n_chains: int = 3, length: int = 6) -> str:
+    """Commands that make short zigzag chains with charges, bonds and velocities."""
+    out = ["units real", "atom_style full", "region b block 0 16 0 16 0 16",
+           "create_box 2 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 8", "mass * 12",
+           "bond_style harmonic", "bond_coeff 1 100 1.5"]
+    rng = np.random.default_rng(4)
+    n = 0
+    for c in range(n_chains):
+        for k in range(length):
+            n += 1
+            x = np.array([3 + 1.4 * k, 4 + 3.5 * c + 0.6 * (k % 2), 8.0]) + rng.normal(0, 0.05, 3)
+            out += [f"create_atoms {1 + k % 2} single {x[0]:.6f} {x[1]:.6f} {x[2]:.6f} units box", f"set atom {n} mol {c + 1}",
+                    f"set atom {n} charge {[0.3, -0.3, 0.1][k % 3]}"]
+    out += [f"create_bonds single/bond 1 {n} {n + 1} special no" for n in range(1, n_chains * length) if n % length]
+    out += ["special_bonds lj 0.2 0.3 0.5 coul 0.1 0.4 0.6", "velocity all create 300 4829 loop geom", "fix 1 all nve",
+            f"thermo_style custom {' '.join(COLUMNS)}"]
+    return "\n".join(out) + "\n"
+
+
+PAIRS = "pair_style hybrid/overlay lj/cut 6 coul/cut 5\npair_coeff * * lj/cut 0.1 2.5\npair_coeff * * coul/cut\n"
+TWICE = "pair_style hybrid/overlay lj/cut 6 lj/cut 5\npair_coeff * * lj/cut 1 0.1 2.5\npair_coeff * * lj/cut 2 0.05 2\n"
+COEFF = "pair_coeff * * lj/cut 0.1 2.5\npair_coeff * * coul/cut\n"
+VARIABLES = ("variable s equal 0.1*step+0.3\nvariable rest equal 1-v_s\nvariable c equal 0.25\nvariable n internal 0.5\n"
+             "variable a atom 0.1*id+0.01*step\n")
+CASES = {
+    "lj and coul": PAIRS + "pair_modify pair lj/cut special lj/coul 0 0.1 0.9",
+    "coul": PAIRS + "pair_modify pair coul/cut special coul 0 0.1 0.9 shift yes",
+    "twice said": PAIRS + "pair_modify pair lj/cut special lj 0 0 0.5 special coul 1 1 1\npair_modify pair coul/cut special lj 2 -1 7",
+    "one of two": TWICE + "pair_modify pair lj/cut 2 special lj 0 0 0",
+    "as common": "special_bonds lj/coul 0 0 0.5\n" + PAIRS + "pair_modify pair lj/cut special lj 0 0 0",
+    "all or nothing": "special_bonds lj/coul 1e-50 0.5 1\n" + PAIRS + "pair_modify pair lj/cut special lj 1 0 1",
+    "tally": PAIRS + "pair_modify pair lj/cut compute/tally no special lj 0 0 0",
+    "tail of one": TWICE + "pair_modify pair lj/cut 1 tail yes",
+    "tail taken away": TWICE + "pair_modify tail yes\npair_modify pair lj/cut 1 tail no",
+    "tail given again": TWICE + "pair_modify pair lj/cut 2 tail no\npair_modify pair lj/cut 1 tail yes",
+    "respa": PAIRS + "pair_modify pair lj/cut special lj 0 0.1 0.9\nrun_style respa 2 2 bond 1 pair 2",
+    "numbers": "pair_style hybrid/scaled 0.5 lj/cut 6 -0.25 coul/cut 5\n" + COEFF,
+    "off": "pair_style hybrid/scaled 1 lj/cut 6 0 coul/cut 5\n" + COEFF,
+    "tail scaled": "pair_style hybrid/scaled 0.5 lj/cut 6 2 coul/cut 5\n" + COEFF + "pair_modify tail yes",
+    "shift scaled": "pair_style hybrid/scaled 0.5 lj/cut 6 2 coul/cut 5\n" + COEFF + "pair_modify shift yes",
+    "same style": "pair_style hybrid/scaled v_s lj/cut 6 v_rest lj/cut 5\npair_coeff * * lj/cut 1 0.1 2.5\npair_coeff * * lj/cut 2 0.2 2",
+    "changing": "pair_style hybrid/scaled v_s lj/cut 6 v_c coul/cut 5\n" + COEFF,
+    "internal": "pair_style hybrid/scaled v_n lj/cut 6 v_c coul/cut 5\n" + COEFF,
+    "special and scaled": "pair_style hybrid/scaled v_s lj/cut 6 v_c coul/cut 5\n" + COEFF + "pair_modify pair lj/cut special lj 0 0.1 0.9",
+    "some pairs": "pair_style hybrid/scaled v_s lj/cut 6 v_c coul/cut 5\npair_coeff * * lj/cut 0.1 2.5\npair_coeff 2 2 coul/cut\n"
+                  "pair_coeff 1 1 none\npair_coeff 1 1 coul/cut",
+    "scaled respa": "pair_style hybrid/scaled v_s lj/cut 6 v_c coul/cut 5\n" + COEFF + "run_style respa 2 2 hybrid 1 2",
+    "molecules": "pair_style hybrid/molecular lj/cut 6 coul/cut 5\n" + COEFF,
+    "molecules, twice": "pair_style hybrid/molecular lj/cut 6 lj/cut 8\npair_coeff * * lj/cut 1 0.1 2.5\npair_coeff 2 2 lj/cut 2 0.3 3",
+    "by atom": "pair_style hybrid/scaled v_a lj/cut 6 v_c coul/cut 5\n" + COEFF,
+}
+THEIRS = """
+import numpy as np
+answer = {}
+for name, lines in given["cases"].items():
+    lmp = start()
+    for line in lines:
+        lmp.command(line)
+    rows = []
+    for run in ("run 0", "run 3"):
+        lmp.command(run)
+        rows.append({"thermo": [lmp.get_thermo(c) for c in given["columns"]], "f": np.array(lmp.gather_atoms("f", 1, 3)).tolist(),
+                     "x": np.array(lmp.gather_atoms("x", 1, 3)).tolist()})
+    answer[name] = rows
+    lmp.close()
+"""
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return ask(THEIRS, cases={name: lines_of(chain() + VARIABLES + text) for name, text in CASES.items()}, columns=COLUMNS)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_like_lammps(theirs, name):
+    session = asemd(chain() + VARIABLES + CASES[name])
+    for run, expected in zip(("run 0", "run 3"), theirs[name]):
+        session.execute(run)
+        system = session.scene.system
+        order = np.argsort(system.id)
+        for mine, other in ((system.x[order], expected["x"]), (system.f[order], expected["f"])):
+            other = np.reshape(other, (-1, 3))
+            np.testing.assert_allclose(mine, other, rtol=0, atol=1e-11 * np.abs(other).max())
+        row = [session.variables.evaluate(c) for c in COLUMNS]
+        count = len(COLUMNS) if name != "by atom" else 4        # forces that are not opposite: LAMMPS's virial depends on the origin
+        np.testing.assert_allclose(row[:count], expected["thermo"][:count], rtol=1e-10, atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["special and scaled", "molecules", "one of two", "numbers"])
+def test_shares_of_atoms_add_up(name):
+    session = asemd(chain() + VARIABLES + CASES[name] + "\ncompute p all pe/atom pair\nrun 2")
+    values = session.variables.provider.source("c", "p").per_atom(session.moment.snapshot)
+    assert values.sum() == pytest.approx(session.variables.evaluate("evdwl+ecoul"), rel=1e-12)
+
+
+def test_large_systems_are_the_same():
+    """The lists of many atoms, whose special pairs are one by one, give what the plain list of few gives."""
+    for name in ("lj and coul", "numbers", "molecules"):
+        small, large = (asemd(chain() + VARIABLES + CASES[name] + f"\n{more}\nrun 0") for more in ("print x", "replicate 4 4 4"))
+        assert large.loop.engine.mode == "cluster" and small.loop.engine.mode == "plain"
+        sums = [s.variables.evaluate("evdwl+ecoul") for s in (small, large)]
+        assert 64 * sums[0] == pytest.approx(sums[1], rel=1e-11)
+
+
+def test_written_and_read_again(tmp_path):
+    """Scripts, restart files and the terms made of them have the factors and the weights."""
+    session = asemd(chain() + VARIABLES + CASES["special and scaled"] + f"\nrun 0\nwrite_restart {tmp_path}/r")
+    inter = session.scene.interactions
+    assert inter.style_line("pair") == "hybrid/scaled v_s lj/cut 6.0 v_c coul/cut 5.0".split()
+    assert inter.modify_lines()[-1] == "pair lj/cut special lj 0.0 0.1 0.9".split()
+    again = asemd(VARIABLES + f"read_restart {tmp_path}/r\nrun 0")
+    assert [u.special for u in again.scene.interactions.uses["pair"]] == [{"lj": (0.0, 0.1, 0.9)}, {}]
+    assert again.variables.evaluate("pe") == session.variables.evaluate("pe")
+
+
+def test_minimisation_sees_the_step():
+    session = asemd(chain() + VARIABLES + CASES["changing"] + "\nminimize 0 0 4 40")
+    assert session.scene.interactions.uses["pair"][0].factor == pytest.approx(0.1 * session.scene.step + 0.3)
+
+
+@pytest.mark.parametrize("lines, message", [
+    (PAIRS + "pair_modify special lj 0 0 0", "must stand first"),
+    (PAIRS + "pair_modify pair lj/cut shift yes special lj 0 0 0", "must stand first"),
+    (PAIRS + "pair_modify pair lj/cut special foo 0 0 0", "expected one of lj coul"),
+    (PAIRS + "pair_modify pair lj/cut special lj 0 0", "4 values"),
+    (PAIRS + "pair_modify pair lj/cut special lj 0 0 a", "number"), (PAIRS + "pair_modify pair morse special lj 0 0 0", "morse"),
+    (PAIRS + "pair_modify pair lj/cut compute/tally maybe", "yes or no"),
+    (PAIRS + "pair_modify pair lj/cut shift yes pair coul/cut shift no", "first"),
+    (PAIRS + "special_bonds lj 0 0 0.5\npair_modify pair lj/cut special lj 0.5 0 0.5\nrun 0", "1-2 pairs is incompatible"),
+    (PAIRS + "special_bonds lj/coul 0 0 1\npair_modify pair lj/cut special coul 0 0 0.5\nrun 0", "special coul.*1-4 pairs is incompatible"),
+    ("pair_style hybrid/scaled", "sub-styles"), ("pair_style hybrid/scaled 0.5", "must follow the factor"),
+    ("pair_style hybrid/scaled lj/cut 6 0.5 coul/cut 5", "a factor stands before"),
+    ("pair_style hybrid/scaled 0.5 lj/cut 6 coul/cut 5", "needs cut"),
+    ("pair_style hybrid/scaled 0.5 lj/cut coul/cut 5", "must stand before coul/cut"),
+    ("pair_style hybrid/scaled 1 none 1 lj/cut 5", "cannot have none"),
+    ("pair_style hybrid/scaled 1 hybrid 1 lj/cut 5", "cannot have hybrid"), ("bond_style hybrid/scaled 1 harmonic", "did you mean hybrid"),
+    ("pair_style hybrid/scaled v_no lj/cut 6 1 coul/cut 5\n" + COEFF + "run 0", "undefined variable"),
+    ("variable i index 0.5\npair_style hybrid/scaled v_i lj/cut 6 1 coul/cut 5\n" + COEFF + "run 0", "index, it must be equal"),
+    ("pair_style hybrid/molecular lj/cut 6", "two sub-styles"), ("pair_style hybrid/molecular lj/cut 6 coul/cut 5 morse 3", "got 3"),
+])
+def test_mistakes(lines, message):
+    with pytest.raises(InputError, match=message):
+        asemd(chain(1, 4) + lines)
+
+
+def test_molecules_are_needed():
+    with pytest.raises(InputError, match="molecule numbers"):
+        asemd("region b block 0 8 0 8 0 8\ncreate_box 1 b\nmass 1 1\npair_style hybrid/molecular lj/cut 3 lj/cut 3\n"
+              "pair_coeff 1 1 lj/cut 1 1 1\npair_coeff 1 1 lj/cut 2 1 1\nrun 0")
