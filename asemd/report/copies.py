@@ -3,44 +3,111 @@ from __future__ import annotations
 
 import copy
 import os
+import warnings
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from asemd.errors import InputError
+from asemd.errors import AsemdError, InputError
+from asemd.lammps.session import ACTIONS, Session, Stop
+from asemd.lammps.switches import Switches
 from asemd.scene import GroupTable, Scene, default_computes
 
-if TYPE_CHECKING:
-    from asemd.lammps.switches import Switches
+EARLIER = 1000      # steps of runs before the one that is asked for
+SILENT = ("write_data", "write_restart", "write_dump", "write_coeff", "group2ndx")      # commands that only write files
 
 
-def load(source, switches: Switches | None = None) -> Scene:
+class Reader(Session):
+    """Executes a script up to one of its runs: no log, no dumps, no restart files, no ``write_data``, no shell.
+
+    Attributes
+    ----------
+    runs : int
+        How many runs were reached.
+    where : asemd.errors.Where or None
+        The place of the run whose scene is `taken`.
+    taken : Scene or None
+        The scene at the run that is asked for; with ``at=None`` at the last one reached so far.
+    action : str
+        The command of that run.
+    stopped : str
+        With ``at=None``: the error that ended the script, perhaps because a file was not written.
+    """
+
+    def __init__(self, switches: Switches | None, at: int | None):
+        super().__init__(switches=copy.deepcopy(switches), passive=True)
+        if at != 1:
+            self.switches.cap = EARLIER if self.switches.cap is None else min(EARLIER, self.switches.cap)
+        self.at, self.runs, self.where, self.taken, self.skipped = at, 0, None, None, []
+        self.action = self.stopped = ""
+
+    def call(self, name, args):
+        if name in SILENT:
+            self.skipped.append(name)
+            return
+        if name not in ACTIONS:
+            super().call(name, args)
+            return
+        scene = self.scene
+        scene.need_system(name)
+        if name == "run":
+            self.runs += 1
+            if self.at is None or self.runs == self.at:
+                self.taken, self.where, self.action = copied(scene), self._position, " ".join([name, *args])
+            if self.runs == self.at:
+                raise Stop
+        dumps, restarts, scene.dumps, scene.restarts = scene.dumps, scene.restarts, {}, {}
+        self.passive = False
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                super().call(name, args)
+        finally:
+            self.passive, scene.dumps, scene.restarts = True, dumps, restarts
+
+
+def load(source, switches: Switches | None = None, at: int | None = 1) -> Scene:
     """A scene of one's own, to be changed at will.
 
     Parameters
     ----------
     source : path, asemd.scene.Scene or ase.Atoms
-        A script is executed up to its first run, without log, dumps and shell; atoms need `asemd.ForceField` as calculator.
+        A script is executed up to one of its runs; minimisations before it are carried out. No log and no dump is written and no shell
+        runs. Atoms need `asemd.ForceField` as calculator.
     switches : asemd.lammps.switches.Switches, optional
         LAMMPS's command line switches, for a script.
+    at : int or None
+        Which run, from 1; None: the last one. Runs before it are cut to 1000 steps.
 
     Raises
     ------
     InputError
-        A mistake in the script, missing coefficients, atoms without a force field.
+        A mistake in the script, fewer runs, missing coefficients, atoms without a force field.
     """
     if isinstance(source, (str, os.PathLike)):
-        from asemd.lammps.session import Session, Stop
-        session = Session(switches=switches, passive=True)
-        try:
-            session.file(os.fspath(source))
-        except Stop:
-            session.label = None
-        source = session.scene
+        source = read(os.fspath(source), switches, at).taken
     elif not isinstance(source, Scene):
         source = of_atoms(source)
     source.need_system("report")
     source.interactions.check_complete(source.system)
     return copied(source)
+
+
+def read(path: str, switches: Switches | None = None, at: int | None = 1) -> Reader:
+    """The script, executed up to one of its runs (see `load`); without any run up to its end."""
+    session = Reader(switches, at)
+    try:
+        session.file(path)
+    except Stop:
+        session.label = None
+    except AsemdError as error:
+        if at is not None or session.taken is None:
+            raise
+        session.stopped = str(error)
+    session.scene.need_system("report")
+    if at is not None and session.runs < at and at != 1:
+        raise InputError(f"{path} has {session.runs} run{'s' * (session.runs != 1)}, there is no run {at}")
+    if session.taken is None:
+        session.taken = copied(session.scene)
+    return session
 
 
 def copied(scene: Scene) -> Scene:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -109,6 +109,14 @@ class Series:
         return float(np.sqrt(np.mean(residual(self.time, self.conserved) ** 2))) if len(self.time) > 2 else math.nan
 
     @property
+    def fluctuation_error(self) -> float:
+        """Standard error of `fluctuation`, from its values in five stretches of the run."""
+        if len(self.time) < 20:
+            return math.nan
+        squares = [float(np.mean(part)) for part in np.array_split(residual(self.time, self.conserved) ** 2, 5)]
+        return float(np.std(squares, ddof=1)) / math.sqrt(5.0) / (2.0 * self.fluctuation) if self.fluctuation > 0.0 else 0.0
+
+    @property
     def relative_fluctuation(self) -> float:
         """`fluctuation` divided by that of the kinetic energy; above 0.2 a timestep is too long."""
         scatter = float(np.std(self.kinetic))
@@ -117,8 +125,14 @@ class Series:
     @property
     def seconds_per_step(self) -> float:
         """Median over the stretches."""
+        return float(np.median(self.step_seconds)) if len(self.step_seconds) else math.nan
+
+    @property
+    def step_seconds(self) -> np.ndarray:
+        """Wall time of one step in each stretch; the first stretch is left out where there are others."""
         steps = np.diff(self.time) / self.dt
-        return float(np.median(self.seconds[:len(steps)] / steps)) if len(steps) else math.nan
+        per = self.seconds[:len(steps)] / steps
+        return per[1:] if len(per) > 1 else per
 
 
 @dataclass
@@ -147,7 +161,8 @@ class Order:
 
 def run(source, dt: float | None = None, steps: int = 1000, settings: Settings | None = None, *, precision: str | None = None,
         threads: int | None = None, fixes: str = "nve", levels=None, samples: int = 200, configurational: int = 0,
-        temperature: float | None = None, seed: int = 1, shift: bool = True) -> Series:
+        temperature: float | None = None, seed: int = 1, shift: bool = True, observe: Callable | None = None,
+        deadline: float = math.inf) -> Series:
     """Run a copy of a scene.
 
     Parameters
@@ -165,7 +180,7 @@ def run(source, dt: float | None = None, steps: int = 1000, settings: Settings |
         ``nve``: constant energy for the atoms that the script's own fixes move (all if none does), under its forces that do not depend on
         velocities. ``own``: the fixes of the scene as they are.
     levels : asemd.respa.Levels, optional
-        Multiple timesteps; `dt` is then the outermost one.
+        Multiple timesteps, by default those of the scene (``run_style respa``); `dt` is the outermost one.
     samples : int
         How often energies are looked at, at equal distances; each sample costs one computation of energies.
     configurational : int
@@ -176,6 +191,10 @@ def run(source, dt: float | None = None, steps: int = 1000, settings: Settings |
         Of fresh velocities, and of the directions that the configurational temperature is measured along.
     shift : bool
         Shift pair energies to zero at the cutoff, which changes no force.
+    observe : callable, optional
+        ``observe(k, loop, result)`` sees each sample, from k = 0; it must change nothing.
+    deadline : float
+        Reading of ``time.perf_counter`` at which the run stops early, between two samples.
 
     Returns
     -------
@@ -202,12 +221,21 @@ def run(source, dt: float | None = None, steps: int = 1000, settings: Settings |
     for fix in baths:
         if hasattr(fix, "tally"):
             fix.tally = True
-    loop = make_loop(scene, chosen, dt, levels)
+    loop = make_loop(scene, chosen, dt, levels or scene.respa)
     probe = Probe(scene, seed) if configurational else None
-    return _carry_out(scene, loop, steps, samples, configurational, potentials, baths, probe)
+    return _carry_out(scene, loop, steps, samples, configurational, potentials, baths, probe, observe, deadline)
 
 
-def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, probe) -> Series:
+def start(source: Scene, fixes: str = "nve") -> Loop:
+    """A loop for a copy of a scene as it is, set up and ready for ``advance``."""
+    scene = copied(source)
+    chosen = constant_energy(scene) if fixes == "nve" else [*scene.dynamic_groups.values(), *scene.fixes.values()]
+    loop = make_loop(scene, chosen, scene.dt, scene.respa)
+    loop.setup(loop.step, loop.step)
+    return loop
+
+
+def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, probe, observe, deadline) -> Series:
     every = max(1, steps // samples)
     marks = [*range(every, steps, every), steps]
     looks = set(np.unique(np.linspace(0, len(marks), configurational + 1, dtype=int)[1:])) if configurational else set()
@@ -225,6 +253,8 @@ def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, 
                   max((f.constraint_error(loop) for f in loop.fixes if hasattr(f, "constraint_error")), default=0.0))
         for series, value in zip(keep.values(), values, strict=True):
             series.append(value)
+        if observe is not None:
+            observe(k, loop, result)
 
     began = time.perf_counter()
     try:
@@ -235,6 +265,8 @@ def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, 
         look(0, result)
         for k, mark in enumerate(marks, 1):
             began = time.perf_counter()
+            if began > deadline and done:
+                break
             result = loop.advance(mark - done)
             seconds.append(time.perf_counter() - began)
             done = mark

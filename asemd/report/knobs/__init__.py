@@ -1,0 +1,1 @@
+"""The knobs that every scene may have, one a file; see `asemd.report.knob`."""

@@ -1,0 +1,79 @@
+"""The cutoff of pair forces: what lies beyond is missing from the model."""
+from __future__ import annotations
+
+import copy
+
+from asemd.report.knob import Knob, nice
+
+FACTORS = (0.8, 1.2, 0.7, 1.4, 0.9)
+LONGEST = 1.8       # the reference, relative to the script's own
+
+
+def lengths(values: dict) -> list[str]:
+    """Names of what must grow with the cutoff: cutoffs and the limits of a switch."""
+    return [name for name, value in values.items() if name.startswith(("cut", "inner", "outer")) and isinstance(value, float)]
+
+
+def scaled(scene, factor: float):
+    """The interactions with all cutoffs of pair styles multiplied."""
+    out = copy.deepcopy(scene.interactions)
+    for use in out.uses["pair"]:
+        for values in (use.settings, *use.coeff.values()):
+            for name in lengths(values):
+                values[name] = nice(values[name] * factor)
+    return out
+
+
+def pair_commands(interactions) -> list[str]:
+    """The commands that make the pair styles of these interactions."""
+    lines = [" ".join(["pair_style", *interactions.style_line("pair")])]
+    lines += [" ".join(["pair_coeff", *words]) for words in interactions.coeff_lines("pair")]
+    return lines + [" ".join(["pair_modify", *words]) for words in interactions.modify_lines()]
+
+
+class Cutoff(Knob):
+    """All cutoffs of pair styles, multiplied; those of a switch with it."""
+
+    name, title, order = "cutoff", "cutoff", 60
+    model = True
+
+    def needs(self, scene):
+        uses = scene.interactions.uses["pair"]
+        if not uses:
+            return "no pair style"
+        for use in uses:
+            if use.style.name == "table":
+                return "pair style table ends where its table does"
+            if not lengths(use.settings) and not any(lengths(c) for c in use.coeff.values()):
+                return f"pair style {use.style.name} has no cutoff to change"
+        return "the force is zero at the cutoff, which is part of the model" if self._designed(scene) else None
+
+    def _designed(self, scene) -> bool:
+        """Whether all forces vanish at their cutoffs without a switch that makes them: the repulsive half of a potential, a soft bump."""
+        terms = scene.interactions.pair_terms(scene.system.counts["ntypes"], None)
+        for term in terms:
+            if term.style.charged or any(name.startswith("inner") for name in term.use.settings):
+                return False
+            constants = term.style.constants(term.use.settings)
+            for c in term.filled.values():
+                for part, cut in zip(term.style.parts, term.style.cutoffs(c, term.use.settings), strict=True):
+                    rest = [c[n] for n in part.rows] + [float(constants[n]) for n in part.constants]
+                    at, near = (abs(part.function(r * r if part.coordinate == "r2" else r, *rest)[1]) for r in (cut, 0.8 * cut))
+                    if at > 1e-4 * near:
+                        return False
+        return bool(terms)
+
+    def values(self, scene):
+        return list(FACTORS)
+
+    def current(self, scene):
+        return 1.0
+
+    def reference(self, scene):
+        return LONGEST
+
+    def commands(self, scene, value, folder):
+        return pair_commands(scaled(scene, value))
+
+    def label(self, value):
+        return f"x {value:g}"

