@@ -15,6 +15,7 @@ _LAZY = {
     "ForceField": "asemd.calculator",
     "plan": "asemd.lammps.plan",
     "check": "asemd.check",
+    "report": "asemd.report",
     "validate": "asemd.testing.validate",
     "MolecularDynamics": "asemd.dynamics",
     "Atoms": "asemd.system",
@@ -32,7 +33,7 @@ def __getattr__(name: str) -> Any:
     if name not in _LAZY:
         raise AttributeError(f"module 'asemd' has no attribute {name!r}")
     module = importlib.import_module(_LAZY[name])
-    value = module if name == "check" else getattr(module, name)      # a package that can be called
+    value = module if name in ("check", "report") else getattr(module, name)      # packages that can be called
     globals()[name] = value
     return value
 

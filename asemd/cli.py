@@ -25,6 +25,7 @@ COMMANDS: dict[str, str] = {
     "doctor": "asemd.cli_inspect:doctor",
     "convert": "asemd.cli_convert:convert",
     "check": "asemd.cli_check:check",
+    "report": "asemd.cli_report:report",
 }
 INTERRUPTED = 130
 

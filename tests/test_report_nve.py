@@ -62,7 +62,8 @@ def test_unstable_run_says_so(melt):
 def test_drift_is_the_slope():
     t = np.linspace(0.0, 10.0, 41)
     flat = np.zeros_like(t)
-    found = nve.Series(0.1, "lj", 10, 27.0, t, flat, flat + 13.5, 13.5 + 0.054 * t, flat + 1.0, flat, flat, flat[1:] + 1.0, 0.0, 100)
+    found = nve.Series(0.1, "lj", 10, 27.0, t, flat, flat + 13.5, 13.5 + 0.054 * t, flat + 1.0, flat, flat, flat[1:] + 1.0,
+                       flat[1:], 0.0, 100)
     assert found.drift == pytest.approx(0.054 * 1000.0 / 27.0) and found.drift_error == pytest.approx(0.0, abs=1e-9)
     assert found.fluctuation == pytest.approx(0.0, abs=1e-12)
 

@@ -12,7 +12,7 @@ FORCE = 1e-5            # relative force error that no run notices beside that o
 DRIFT = 0.05            # kT per degree of freedom and ns (1000 tau), below which a drift does not matter
 FLUCTUATION = 0.1       # of the conserved quantity, relative to that of the kinetic energy
 FASTER = 1.03           # what is gained must be more than this
-NOISE = {"drift": "drift_error", "fluctuation": "fluctuation_error", "temperature": "temperature_error",
+NOISE = {"drift": "drift_error", "relative_fluctuation": "relative_fluctuation_error", "temperature": "temperature_error",
          "configurational": "configurational_error", "temperature_offset": "offset_error"}
 
 
@@ -25,7 +25,7 @@ def tied(a: Point, b: Point, name: str) -> bool:
 def mark_ties(points: Sequence[Point], script: Point) -> None:
     """Fill `Point.ties`."""
     for p in points:
-        p.ties = [name for name in NOISE if p is not script and not p.failed and tied(p, script, name)]
+        p.ties = [name for name in NOISE if not p.own and not p.failed and tied(p, script, name)]
 
 
 def objections(point: Point, script: Point, force: float = FORCE) -> list[str]:
@@ -62,7 +62,7 @@ def errors(point: Point, script: Point) -> tuple[float, ...]:
     """
     out = [max(_known(point.force_error), FORCE)]
     for name, least in (("relative_fluctuation", 0.0), ("drift", DRIFT), ("temperature_offset", 0.0)):
-        same = name in point.ties or point is script or (name == "relative_fluctuation" and "fluctuation" in point.ties)
+        same = name in point.ties or point is script
         value = getattr(script if same else point, name)
         out.append(max(abs(_known(value)), least) if math.isfinite(getattr(script, name)) else 0.0)
     return tuple(out)
@@ -81,30 +81,38 @@ def dominates(a: Sequence[float], b: Sequence[float]) -> bool:
     return all(x <= y for x, y in zip(a, b)) and any(x < y for x, y in zip(a, b))
 
 
-def candidates(curves: Sequence[Curve], script: Point, knobs: Mapping[str, Knob], force: float = FORCE) -> list[dict]:
-    """Settings worth measuring together: the fastest faultless value of each knob, all of them first, then with the last ones left out.
-
-    Of knobs that exclude each other the faster one stays.
-    """
-    best: dict[str, Point] = {}
+def candidates(curves: Sequence[Curve], script: Point, knobs: Mapping[str, Knob], force: float = FORCE) -> list[Point]:
+    """Points worth trying together: the two fastest faultless values of each knob, the largest gains first."""
+    out = []
     for curve in curves:
-        if curve.model:
-            continue
-        good = [p for p in curve.points if p is not script and not objections(p, script, force) and gain(p, script) > FASTER]
-        if good:
-            best[curve.name] = min(good, key=lambda p: p.seconds_per_span)
-    order = sorted(best, key=lambda name: -gain(best[name], script))
-    chosen: list[str] = []
-    for name in order:
-        if not any(name in knobs[other].excludes or other in knobs[name].excludes for other in chosen):
-            chosen.append(name)
-    return [{name: best[name].settings[name] for name in chosen[:count]} for count in range(len(chosen), 0, -1)]
+        good = [p for p in curve.points if not p.own and not faults(p, script, knobs, force) and gain(p, script) > FASTER]
+        out += sorted(good, key=lambda p: p.seconds_per_span)[:2]
+    return sorted(out, key=lambda p: p.seconds_per_span)
+
+
+def together(base: Mapping[str, object], more: Mapping[str, object], knobs: Mapping[str, Knob]) -> dict | None:
+    """The settings of both; None if they have a knob in common, or knobs that exclude each other."""
+    for a in base:
+        for b in more:
+            if a == b or b in knobs[a].excludes or a in knobs[b].excludes:
+                return None
+    return {**base, **more}
+
+
+def faults(point: Point, script: Point, knobs: Mapping[str, Knob], force: float = FORCE) -> list[str]:
+    """Why a point is not recommended: its `objections`, another model, a risk."""
+    out = objections(point, script, force)
+    for name, value in point.settings.items():
+        if knobs[name].model:
+            out.append(f"{knobs[name].title}: another model")
+        if risk := knobs[name].risk(value):
+            out.append(f"{knobs[name].title}: {risk}")
+    return out
 
 
 def choose(points: Sequence[Point], script: Point, knobs: Mapping[str, Knob], force: float = FORCE) -> Point | None:
     """The fastest point that is as good as the script's settings, None if the script's own are."""
-    good = [p for p in points if p is not script and not any(knobs[name].model for name in p.settings)
-            and not objections(p, script, force) and gain(p, script) > FASTER]
+    good = [p for p in points if not p.own and not faults(p, script, knobs, force) and gain(p, script) > FASTER]
     return min(good, key=lambda p: p.seconds_per_span) if good else None
 
 

@@ -14,6 +14,7 @@ from asemd import units as unit_styles
 from asemd.compute.temp import Temp
 from asemd.engine import Engine
 from asemd.report import nve
+from asemd.report.clock import Clock
 from asemd.report.copies import copied
 from asemd.report.knob import Knob
 from asemd.report.knobs.thermostat import baths
@@ -26,7 +27,6 @@ LOOKS = 6           # samples with reference forces and configurational temperat
 WARM = 10           # steps that compile what a run needs
 COMPLETE = 0.9      # part of its time that a run must have covered for its fluctuation to be compared
 BURSTS = 12         # of each runner in a race
-NOTICED = 0.25      # seconds of a warm-up after which it is done again, to know what compilation took
 
 
 class Reference:
@@ -52,16 +52,19 @@ class Bench:
         Where all runs start; not changed.
     knobs : mapping
         Name -> knob.
+    clock : Clock
+        Knows what compilation takes.
     seed : int
     """
 
-    def __init__(self, scene: Scene, knobs: Mapping[str, Knob], seed: int = 1):
-        self.scene, self.knobs, self.seed = scene, dict(knobs), seed
+    def __init__(self, scene: Scene, knobs: Mapping[str, Knob], clock: Clock, seed: int = 1):
+        self.scene, self.knobs, self.clock, self.seed = scene, dict(knobs), clock, seed
         self.shifted = copied(scene)
         nve.prepare(self.shifted)
         self.frames = [scene.system.x.copy()]
         self.references: dict[str, Reference] = {}
-        self.compile_seconds = 0.0
+        self.shares: list[float] = []       # processor time by wall time of runs with one thread
+        self.busy = False                   # other work on the machine: processor time counts
         self.forced = self._forced()
 
     def _forced(self) -> np.ndarray:
@@ -91,17 +94,11 @@ class Bench:
         return self.references[key]
 
     # ---- measurements -------------------------------------------------------------------------------------------------------------------
-    def warm(self, scene: Scene, fixes: str) -> tuple[float, float, float]:
-        """Compile what a run of the scene needs; seconds of compilation, of set-up, and of a step, roughly."""
-        began = time.perf_counter()
+    def warm(self, scene: Scene, fixes: str) -> tuple[float, float]:
+        """Compile what a run of the scene needs; seconds of compilation, and of a step, roughly."""
+        before = self.clock.compiled
         series = nve.run(scene, steps=WARM, samples=2, fixes=fixes, seed=self.seed)
-        first, compiling = time.perf_counter() - began, 0.0
-        if first > NOTICED:
-            began = time.perf_counter()
-            series = nve.run(scene, steps=WARM, samples=2, fixes=fixes, seed=self.seed)
-            compiling = max(0.0, first - (time.perf_counter() - began))
-        self.compile_seconds += compiling
-        return compiling, series.setup_seconds, series.seconds_per_step
+        return self.clock.compiled - before, series.seconds_per_step
 
     def measure(self, knob: str, label: str, number: float, settings: Mapping[str, Any], duration: float, deadline: float,
                 keep_frame: bool = False) -> Point:
@@ -122,7 +119,7 @@ class Bench:
         fixes = next((self.knobs[n].fixes for n in settings if self.knobs[n].fixes != "nve"), "nve")
         with tempfile.TemporaryDirectory(prefix="asemd-report-") as folder:
             scene = self.trial(settings, folder)
-            point.compile_seconds, point.setup_seconds, _ = self.warm(scene, fixes)
+            point.compile_seconds, _ = self.warm(scene, fixes)
             series = self._run(point, scene, settings, fixes, duration, deadline + point.compile_seconds)
         with tempfile.TemporaryDirectory(prefix="asemd-report-") as folder:
             if keep_frame and not series.failed:
@@ -153,18 +150,21 @@ class Bench:
     def _fill(self, point: Point, scene: Scene, s: nve.Series, fixes: str, duration: float) -> None:
         """Numbers of a run."""
         point.dt, point.steps, point.failed, point.dangerous = s.dt, s.steps, s.failed, s.dangerous
-        if len(s.step_seconds):
-            point.setup_seconds = s.setup_seconds
+        point.setup_seconds = s.setup_seconds
         if s.failed or len(s.step_seconds) == 0:
             point.failed = s.failed or "no time for a run"
             return
-        point.seconds_per_step = s.seconds_per_step
-        point.quartiles = tuple(float(q) for q in np.percentile(s.step_seconds, (25, 75)))
-        point.seconds_per_span = s.seconds_per_step * s.span / s.dt
+        point.wall = [float(q) for q in np.percentile(s.step_seconds, (25, 50, 75))]
+        point.processor = [float(q) / scene.threads for q in np.percentile(s.step_processor, (25, 50, 75))]
+        if scene.threads == 1:
+            self.shares.append(float(s.processor.sum() / max(s.seconds.sum(), 1e-9)))
+        self.choose_clock(point)
         point.builds_per_step = s.builds / max(s.steps, 1)
         point.drift, point.drift_error = s.drift, s.drift_error
         if s.time[-1] >= COMPLETE * duration:       # a shorter run is no comparison
-            point.fluctuation, point.fluctuation_error, point.relative_fluctuation = s.fluctuation, s.fluctuation_error, s.relative_fluctuation
+            point.fluctuation, point.fluctuation_error = s.fluctuation, s.fluctuation_error
+            point.relative_fluctuation = s.relative_fluctuation
+            point.relative_fluctuation_error = s.fluctuation_error * s.relative_fluctuation / s.fluctuation if s.fluctuation > 0.0 else 0.0
         half = len(s.temperature) // 2 if len(s.temperature) > 8 else 0
         point.temperature, point.temperature_error = float(np.mean(s.temperature[half:])), block_error(s.temperature[half:])
         conf = s.configurational[np.isfinite(s.configurational)]
@@ -177,12 +177,18 @@ class Bench:
             point.offset_error = math.hypot(point.temperature_error, 0.0 if fixes == "own" else point.configurational_error) / target
         point.constraint_error = float(np.max(s.constraint, initial=0.0))
 
+    def choose_clock(self, point: Point) -> None:
+        """Times of a point by wall clock, or by processor time on a busy machine."""
+        low, middle, high = point.processor if self.busy else point.wall
+        point.seconds_per_step, point.quartiles = middle, (low, high)
+        point.seconds_per_span = middle * nve.span(self.scene.units) / point.dt
+
     def race(self, settings: Mapping[str, Any], seconds: float) -> tuple[float, float, float]:
         """How many times faster a simulated time is with these settings than with the script's, by turns; median and quartiles."""
         times: list[list[float]] = [[], []]
         with tempfile.TemporaryDirectory(prefix="asemd-report-") as folder:
             runners = [(nve.start(scene), scene.dt) for scene in (self.trial({}, folder), self.trial(settings, folder))]
-            bursts = []
+            clock, bursts = time.process_time if self.busy else time.perf_counter, []
             for loop, _ in runners:
                 loop.advance(WARM)
                 began = time.perf_counter()
@@ -190,9 +196,9 @@ class Bench:
                 bursts.append(max(1, int(WARM * seconds / (2 * BURSTS) / max(time.perf_counter() - began, 1e-9))))
             for _ in range(BURSTS):
                 for (loop, dt), steps, found in zip(runners, bursts, times):
-                    began = time.perf_counter()
+                    began = clock()
                     loop.advance(steps)
-                    found.append((time.perf_counter() - began) / (steps * dt))
+                    found.append((clock() - began) / (steps * dt) / (loop.engine.threads if self.busy else 1))
         low, middle, high = np.percentile(np.array(times[0]) / np.array(times[1]), (25, 50, 75))
         return float(middle), float(low), float(high)
 

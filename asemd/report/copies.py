@@ -2,10 +2,14 @@
 from __future__ import annotations
 
 import copy
+import math
 import os
 import warnings
 from dataclasses import replace
 
+import numpy as np
+
+from asemd import units as unit_styles
 from asemd.errors import AsemdError, InputError
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
@@ -121,7 +125,6 @@ def copied(scene: Scene) -> Scene:
 
 def of_atoms(atoms) -> Scene:
     """The scene of ``ase.Atoms`` whose calculator is `asemd.ForceField`, velocities included; it has no fixes of its own."""
-    from asemd import units as unit_styles
     from asemd.calculator import ForceField
     calc = getattr(atoms, "calc", None)
     if not isinstance(calc, ForceField):
@@ -138,3 +141,23 @@ def of_atoms(atoms) -> Scene:
         if name != "all":
             scene.groups[name] = calc.mask(atoms, name)
     return scene
+
+
+def warm(scene: Scene, temperature: float, seed: int = 1) -> None:
+    """Velocities of a Maxwell distribution without total momentum, scaled to that temperature exactly."""
+    system, u = scene.system, unit_styles.get(scene.units)
+    mass = system.atom_masses()
+    v = np.random.default_rng(seed).standard_normal((system.n, 3)) / np.sqrt(mass)[:, None]
+    if system.dimension == 2:
+        v[:, 2] = 0.0
+    moving = np.zeros(system.n, bool)
+    for fix in scene.fixes.values():
+        if fix.integrates:
+            moving |= scene.groups.mask(fix.group)
+    v[~moving if moving.any() else slice(0, 0)] = 0.0
+    part = v.any(axis=1)
+    if part.sum() > 1:
+        v[part] -= (mass[part, None] * v[part]).sum(axis=0) / mass[part].sum()
+    dof = max(system.dimension * (int(part.sum()) - 1), 1)
+    now = u.mvv2e * float(np.einsum("i,ij,ij->", mass, v, v)) / (dof * u.boltz)
+    system.v = v * math.sqrt(temperature / now) if now > 0.0 else v

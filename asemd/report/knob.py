@@ -91,6 +91,10 @@ class Knob:
         """Set the value on a scene that may be changed."""
         execute(scene, self.commands(scene, value, folder))
 
+    def risk(self, value: Any) -> str:
+        """Why a value is measured but never recommended, even if its errors are small; empty if it may be."""
+        return ""
+
     def label(self, value: Any) -> str:
         """The value in a few characters."""
         return f"{value:g}" if isinstance(value, float) else str(value)

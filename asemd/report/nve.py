@@ -26,7 +26,7 @@ from asemd.errors import InputError, SimulationError
 from asemd.fix.nve import NVE
 from asemd.loop import Loop
 from asemd.report.configurational import Probe
-from asemd.report.copies import copied, load
+from asemd.report.copies import copied, load, warm
 from asemd.report.statistics import block_error, fit_exponent, residual, slope
 from asemd.scene import Scene
 
@@ -49,6 +49,8 @@ class Series:
         Degrees of freedom.
     seconds : (m - 1,) array
         Wall time of each stretch between samples, list builds included, without set-up.
+    processor : (m - 1,) array
+        Processor time of the same stretches, of all threads together.
     setup_seconds : float
         Wall time of set-up: lists, first forces, compilation.
     steps : int
@@ -73,6 +75,7 @@ class Series:
     configurational: np.ndarray
     constraint: np.ndarray
     seconds: np.ndarray
+    processor: np.ndarray
     setup_seconds: float
     steps: int
     builds: int = 0
@@ -130,8 +133,16 @@ class Series:
     @property
     def step_seconds(self) -> np.ndarray:
         """Wall time of one step in each stretch; the first stretch is left out where there are others."""
+        return self._per_step(self.seconds)
+
+    @property
+    def step_processor(self) -> np.ndarray:
+        """Processor time of one step in each stretch, likewise."""
+        return self._per_step(self.processor)
+
+    def _per_step(self, seconds: np.ndarray) -> np.ndarray:
         steps = np.diff(self.time) / self.dt
-        per = self.seconds[:len(steps)] / steps
+        per = seconds[:len(steps)] / steps
         return per[1:] if len(per) > 1 else per
 
 
@@ -241,7 +252,7 @@ def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, 
     looks = set(np.unique(np.linspace(0, len(marks), configurational + 1, dtype=int)[1:])) if configurational else set()
     temp = Temp(movers(scene, loop.fixes))
     keep = {name: [] for name in ("time", "potential", "kinetic", "conserved", "temperature", "configurational", "constraint")}
-    seconds, failed, done = [], "", 0
+    seconds, processor, failed, done = [], [], "", 0
 
     def look(k: int, result) -> None:
         state = loop.snapshot()
@@ -267,8 +278,10 @@ def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, 
             began = time.perf_counter()
             if began > deadline and done:
                 break
+            own = time.process_time()
             result = loop.advance(mark - done)
             seconds.append(time.perf_counter() - began)
+            processor.append(time.process_time() - own)
             done = mark
             look(k, result)
             if not math.isfinite(keep["conserved"][-1]):
@@ -278,7 +291,8 @@ def _carry_out(scene, loop, steps, samples, configurational, potentials, baths, 
         failed = str(error)
         setup, builds = (setup, builds) if keep["time"] else (time.perf_counter() - began, 0)
     dof = temp.dof(loop.snapshot()) if keep["time"] else math.nan
-    return Series(loop.dt, scene.units, scene.system.n, dof, *(np.array(v) for v in keep.values()), np.array(seconds), setup, done,
+    return Series(loop.dt, scene.units, scene.system.n, dof, *(np.array(v) for v in keep.values()), np.array(seconds), np.array(processor),
+                  setup, done,
                   loop.engine.builds - builds, loop.engine.dangerous, failed, scene.system)
 
 
@@ -358,26 +372,6 @@ def make_loop(scene: Scene, fixes: list, dt: float, levels=None) -> Loop:
     return RespaLoop(*parts, step=scene.step, levels=levels)
 
 
-def warm(scene: Scene, temperature: float, seed: int = 1) -> None:
-    """Velocities of a Maxwell distribution without total momentum, scaled to that temperature exactly."""
-    system, u = scene.system, unit_styles.get(scene.units)
-    mass = system.atom_masses()
-    v = np.random.default_rng(seed).standard_normal((system.n, 3)) / np.sqrt(mass)[:, None]
-    if system.dimension == 2:
-        v[:, 2] = 0.0
-    moving = np.zeros(system.n, bool)
-    for fix in scene.fixes.values():
-        if fix.integrates:
-            moving |= scene.groups.mask(fix.group)
-    v[~moving if moving.any() else slice(0, 0)] = 0.0
-    part = v.any(axis=1)
-    if part.sum() > 1:
-        v[part] -= (mass[part, None] * v[part]).sum(axis=0) / mass[part].sum()
-    dof = max(system.dimension * (int(part.sum()) - 1), 1)
-    now = u.mvv2e * float(np.einsum("i,ij,ij->", mass, v, v)) / (dof * u.boltz)
-    system.v = v * math.sqrt(temperature / now) if now > 0.0 else v
-
-
 def span(units: str) -> float:
     """One nanosecond in time units; 1000 of them in ``units lj``."""
     return 1000.0 if units == "lj" else 1e6 * unit_styles.get(units).femtosecond
@@ -388,4 +382,4 @@ def drift_unit(units: str) -> str:
     return "kT per degree of freedom and 1000 tau" if units == "lj" else "kT per degree of freedom and ns"
 
 
-__all__ = ["Order", "Probe", "Series", "block_error", "fit_exponent", "order", "run"]
+__all__ = ["Order", "Probe", "Series", "block_error", "fit_exponent", "order", "run", "start", "warm"]

@@ -30,7 +30,10 @@ class Point:
     steps : int
         Steps that were timed.
     seconds_per_step : float
-        Median over the stretches of a warm run, seconds; `quartiles` around it.
+        Median over the stretches of a warm run, seconds; `quartiles` around it. Wall time, on a busy machine processor time (see
+        `Report.busy`).
+    wall, processor : list of float
+        First quartile, median and third quartile of the wall time of a step, and of its processor time for each thread.
     seconds_per_span : float
         Wall time of one simulated nanosecond (``units lj``: 1000 tau), seconds.
     setup_seconds, compile_seconds : float
@@ -40,7 +43,7 @@ class Point:
         lists of the run.
     energy_error, pressure_error : float
         Largest difference to the reference: energy per atom, pressure, in units of the scene; nan without a periodic box.
-    drift, drift_error, fluctuation, fluctuation_error, relative_fluctuation
+    drift, drift_error, fluctuation, fluctuation_error, relative_fluctuation, relative_fluctuation_error
         See `asemd.report.nve.Series`.
     temperature, temperature_error, configurational, configurational_error : float
         Means over the second half of the run and their standard errors, temperature units.
@@ -58,6 +61,8 @@ class Point:
         Errors that differ from the script's by less than the sampling noise.
     pareto : bool
         No other point is faster without a larger error.
+    own : bool
+        The value is the script's.
     """
 
     knob: str
@@ -69,6 +74,8 @@ class Point:
     seconds_per_step: float = math.nan
     quartiles: tuple[float, float] = (math.nan, math.nan)
     seconds_per_span: float = math.nan
+    wall: list[float] = field(default_factory=list)
+    processor: list[float] = field(default_factory=list)
     setup_seconds: float = math.nan
     compile_seconds: float = 0.0
     force_error: float = math.nan
@@ -79,6 +86,7 @@ class Point:
     fluctuation: float = math.nan
     fluctuation_error: float = math.nan
     relative_fluctuation: float = math.nan
+    relative_fluctuation_error: float = math.nan
     temperature: float = math.nan
     temperature_error: float = math.nan
     configurational: float = math.nan
@@ -91,6 +99,7 @@ class Point:
     failed: str = ""
     ties: list[str] = field(default_factory=list)
     pareto: bool = False
+    own: bool = False
 
 
 @dataclass
@@ -117,7 +126,8 @@ class Curve:
     model : bool
         Other values are another model: never recommended.
     points : list of Point
-        By size or in the order of the values; the script's own setting is among them where the knob has it.
+        By size or in the order of the values; the script's own setting (``own``) is among them where the knob has it. A knob with a
+        reference of its own has a point of its own for it.
     script_label, script_number
         The script's own value.
     exponent, exponent_error : float
@@ -172,6 +182,8 @@ class Report:
         What the budget had no time for.
     wheel : Wheel or None
     notes : list of str
+    busy : bool
+        Other work ran on the machine, so that times are processor times.
     interrupted : bool
     folder : str or None
         Where it was written.
@@ -187,7 +199,7 @@ class Report:
     seconds: float = 0.0
     compile_seconds: float = 0.0
     duration: float = math.nan
-    script: Point = field(default_factory=lambda: Point(SCRIPT, "as in the script"))
+    script: Point = field(default_factory=lambda: Point(SCRIPT, "as in the script", own=True))
     curves: list[Curve] = field(default_factory=list)
     combined: list[Point] = field(default_factory=list)
     best: Point | None = None
@@ -199,6 +211,7 @@ class Report:
     not_measured: list[str] = field(default_factory=list)
     wheel: Wheel | None = None
     notes: list[str] = field(default_factory=list)
+    busy: bool = False
     interrupted: bool = False
     folder: str | None = None
 
@@ -258,7 +271,7 @@ def _cell(value: Any) -> str:
     if isinstance(value, tuple):
         return " ".join(map(repr, value))
     if isinstance(value, list):
-        return " ".join(value)
+        return " ".join(map(str, value))
     if isinstance(value, dict):
         return "; ".join(f"{k}={v}" for k, v in value.items())
     return str(value)

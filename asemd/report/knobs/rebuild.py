@@ -27,6 +27,9 @@ class Rebuild(Knob):
         every, delay, check = value
         return [f"neigh_modify every {every} delay {delay} check {'yes' if check else 'no'}"]
 
+    def risk(self, value):
+        return "" if value[2] else "nothing looks whether atoms have moved too far for the list"
+
     def label(self, value):
         every, delay, check = value
         return f"every {every} delay {delay}" + ("" if check else " unchecked")

