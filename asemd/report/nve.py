@@ -367,9 +367,12 @@ def make_loop(scene: Scene, fixes: list, dt: float, levels=None) -> Loop:
     """A loop for a copy of a scene; it moves the copy."""
     parts = (scene.system, scene.interactions, scene.settings(), fixes, scene.groups, dt)
     if levels is None:
-        return Loop(*parts, step=scene.step)
-    from asemd.respa import RespaLoop
-    return RespaLoop(*parts, step=scene.step, levels=levels)
+        loop = Loop(*parts, step=scene.step)
+    else:
+        from asemd.respa import RespaLoop
+        loop = RespaLoop(*parts, step=scene.step, levels=levels)
+    loop.watchdog.explains = False      # what fails is told without a search for the culprit
+    return loop
 
 
 def span(units: str) -> float:
