@@ -11,6 +11,7 @@ from asemd.errors import InputError
 
 def check(context: typer.Context, script: Script = None,
           run: Annotated[bool, typer.Option("--run", help="Short runs on copies: drift, reversibility, where it blows up.")] = False,
+          budget: Annotated[float, typer.Option(help="Seconds for --run, without compilation.", min=1.0)] = 60.0,
           battery: Annotated[bool, typer.Option("--battery", help="Stiff and extreme cases with known answers; needs no script.")] = False,
           force: Annotated[bool, typer.Option("--force", help="A timestep that no integrator stands is a warning, not an error.")] = False,
           compat: Compat = None, precision: Precision = "double", threads: Threads = 1, import_: Import = None,
@@ -29,6 +30,6 @@ def check(context: typer.Context, script: Script = None,
         import_files(import_)
         case = of_script(path, switches)
         case.force = force
-        report = of_case(case, run)
+        report = of_case(case, run, **({"budget": budget} if run else {}))
     print_parts(report.parts(), report.to_dict(), as_json)
     return report.exit_status

@@ -63,7 +63,7 @@ def of_case(case, run: bool = False, **options: Any) -> Report:
                 continue        # the first run says why
     if run:
         from asemd.check import experiment
-        report.extend(experiment.run(case.scene, force=case.force, **options))
+        report.extend(experiment.run(case.scene, **{"dt": case.dt, "force": case.force, "relax": case.relaxes, **options}))
     return report
 
 

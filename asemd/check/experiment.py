@@ -37,8 +37,8 @@ APART = "the run comes apart"
 TOO_SHORT = "it does not fit into the time: give a larger budget"
 
 
-def run(scene: Scene, *, dt: float | None = None, temperature: float | None = None, force: bool = False, budget: float = 60.0,
-        seed: int = 1, progress: Callable[[float, str], None] | None = None) -> Report:
+def run(scene: Scene, *, dt: float | None = None, temperature: float | None = None, force: bool = False, relax: bool = False,
+        budget: float = 60.0, seed: int = 1, progress: Callable[[float, str], None] | None = None) -> Report:
     """All experiments.
 
     Parameters
@@ -51,6 +51,8 @@ def run(scene: Scene, *, dt: float | None = None, temperature: float | None = No
         Fresh velocities of this temperature; by default the scene's velocities, and for atoms at rest those of its thermostat.
     force : bool
         A timestep at which the run comes apart is a warning, not an error.
+    relax : bool
+        Minimise the energy of the copy first, as the script does; without it that is done only where no run could begin.
     budget : float
         Seconds, without compilation. What does not fit is left out, or has fewer steps, and the report says so.
     seed : int
@@ -68,7 +70,7 @@ def run(scene: Scene, *, dt: float | None = None, temperature: float | None = No
         warnings.simplefilter("ignore", InputWarning)
         tell(0.0, "preparing")
         try:
-            b = bench(scene, dt, temperature, seed, time.perf_counter() + budget, tell)
+            b = bench(scene, dt, temperature, seed, relax, tell)
         except AsemdError as problem:
             report.findings.append(Finding("error", "experiments", f"No run is possible: {problem}"))
             return report

@@ -30,19 +30,19 @@ class Bench:
     scene : Scene
         Prepared: velocities, pair energies shifted to zero at the cutoff, only fixes that act in a run at constant energy.
     dt : float
-    seconds_per_step : float
-    until : float
-        When everything must be over, by ``time.perf_counter``.
     tell : callable
         ``tell(fraction, what)`` shows progress.
+    until : float
+        When everything must be over, by ``time.perf_counter``.
+    seconds_per_step : float
     notes : list of str
         What was changed of the scene, in plain words.
     """
 
     scene: Scene
     dt: float
-    until: float
     tell: Callable[[float, str], None]
+    until: float = 0.0
     seconds_per_step: float = 0.0
     notes: list[str] = field(default_factory=list)
 
@@ -81,7 +81,7 @@ def _silent(message: str) -> None:
     """Warnings of runs that are meant to fail are not shown."""
 
 
-def bench(scene: Scene, dt: float | None, temperature: float | None, seed: int, until: float, tell) -> Bench:
+def bench(scene: Scene, dt: float | None, temperature: float | None, seed: int, relax: bool, tell) -> Bench:
     """Prepare a copy of a scene.
 
     Raises
@@ -93,7 +93,7 @@ def bench(scene: Scene, dt: float | None, temperature: float | None, seed: int, 
     """
     own = copied(scene)
     own.interactions.check_complete(own.system)
-    found = Bench(own, own.dt if dt is None else float(dt), until, tell)
+    found = Bench(own, own.dt if dt is None else float(dt), tell)
     if not found.dt > 0.0:
         raise InputError(f"experiments need a positive timestep, got {found.dt:g}")
     _leave_out(own, found.notes)
@@ -105,7 +105,7 @@ def bench(scene: Scene, dt: float | None, temperature: float | None, seed: int, 
         found.notes.append(f"the atoms were at rest: velocities of temperature {temperature:g} (seed {seed})")
     if temperature is not None:
         nve.warm(own, temperature, seed)
-    _relax(found)
+    _relax(found, relax)
     found.seconds_per_step = _cost(found, found.dt) or _cost(found, found.dt / FINER)
     return found
 
@@ -135,13 +135,16 @@ def _leave_out(scene: Scene, notes: list[str]) -> None:
         notes.append("no fix moves the atoms: fix nve does")
 
 
-def _relax(bench: Bench) -> None:
-    """Minimise the energy where atoms would be thrown apart at the start, whatever the timestep."""
+def _relax(bench: Bench, wanted: bool) -> None:
+    """Minimise the energy, if not wanted where atoms would be thrown apart at the start, whatever the timestep."""
     from asemd.culprit import worst_item
     scene, dt = bench.scene, bench.dt
-    item = worst_item(scene.system, scene.interactions, scene.settings(), dt)
-    if item is None or item.kick < STRONG * item.distance or not all(_bursts(bench, dt / f) for f in (16.0, FINER)):
-        return
+    why = "as the script does"
+    if not wanted:
+        item = worst_item(scene.system, scene.interactions, scene.settings(), dt)
+        if item is None or item.kick < STRONG * item.distance or not all(_bursts(bench, dt / f) for f in (16.0, FINER)):
+            return
+        why = f"for the forces are too strong for a run to begin with ({item})"
     from asemd.lammps.session import Session
     from asemd.lammps.switches import Switches
     own = copied(scene)
@@ -152,7 +155,7 @@ def _relax(bench: Bench) -> None:
     session.call("minimize", ["1e-8", "1e-8", "1000", "5000"])
     own.system.step, own.system.v = scene.step, scene.system.v
     scene.system = own.system
-    bench.notes.append(f"the forces are too strong for a run to begin with ({item}): the energy was minimised on the copy")
+    bench.notes.append(f"the energy was minimised first, {why}")
 
 
 def _bursts(bench: Bench, dt: float) -> bool:
