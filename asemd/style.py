@@ -141,6 +141,8 @@ class Style:
         bond replaces, comes back at once; ``removed`` takes it out, and the pair is no longer a special one from the next step on.
     remembers : str
         Where ``reference`` comes from: ``atoms`` (positions at the start of the first run) or ``bonds`` (length at their first force).
+    edge : bool
+        The energy of vectors has an edge in the plane of the atoms: there, where the function pushes to the positive side, no force acts.
     pair_weights : (str, str)
         Coefficients that weigh the Lennard-Jones and Coulomb part of the pair interaction, which is all the energy of the bond.
     lammps : callable, optional
@@ -157,12 +159,13 @@ class Style:
                  xfail: Mapping[str, str] = MappingProxyType({}), check: Callable | None = None, weight_14: str = "", doc: str = "",
                  centre: int = 0, lammps: Callable | None = None, rest: Callable | None = None,
                  d2: Callable | None = None, straight: Callable | None = None, breaks: str = "", remembers: str = "",
-                 chain: bool = False, pair_weights: tuple[str, str] | tuple[()] = ()):
+                 chain: bool = False, edge: bool = False, pair_weights: tuple[str, str] | tuple[()] = ()):
         self.category, self.name, self.function = category, name, function
         self.example, self.settings_example, self.domain = example, settings_example, domain
         self.equilibrium, self.rest, self.see, self.xfail = equilibrium, rest, see, dict(xfail)
         self.weight_14, self._check, self.lammps, self.d2, self.straight = weight_14, check, lammps, d2, straight
         self.breaks, self.remembers, self.pair_weights, self.chain = breaks, remembers, pair_weights, chain
+        self.edge = edge
         self.centre = centre or (1 if category == "improper" else 2)
         notes = units_of(function) if function else {}
         vocabulary = COORDINATES[category] + ("qq",)

@@ -329,6 +329,27 @@ def test_quadratic_turns_back_opposite_its_angle(number):
         assert np.linalg.norm(a.forces[:, 3]) == pytest.approx(torque, rel=1e-12)
 
 
+@pytest.mark.parametrize(("name", "words", "energy", "x"), [
+    ("cosine/squared/restricted", "10 180", restricted, [
+        [-84.40239282893808, 16.367102093153093, 40.49353985147081], [0.0, 0.0, 0.0],
+        [-0.0016352626590263796, 0.00047084931071754454, -0.00010858893446446109],
+        [-0.00623223456051981, 0.0017944780912559533, -0.000413847755875851]]),
+    ("cosine/squared/restricted", "10 120", restricted, [
+        [5739.597373775359, -6543.035881394847, 8871.552387767053], [0.04874562473506394, 0.20763401066701737, 0.3745245507742545],
+        [-2.0928385185217744, 1.338483851035869, -3.081181177618179], [3.4705547671819654, -1.598185691120287, 5.896144657120774]]),
+    ("quadratic", "1e8 180", quadratic, [
+        [0.6072476869603722, 0.052519355620196384, 1.5963113178045103], [0.9323333371689213, 0.999618378029405, 0.7859699193171736],
+        [0.5567189934608264, 1.7752069514337583, 0.2864099930889769], [0.4702081591351041, 1.1722061323835873, 0.771551638364504]]),
+], ids=["cis", "trans", "opposite"])
+def test_torsion_within_rounding_of_a_plane(name, words, energy, x):
+    """1e-10 rad from it and three atoms 1e-7 from a line: so singular there that positions must give the angle to the last digit."""
+    x = np.array(x)
+    d = [[mp.mpf(float(x[i][a])) - mp.mpf(float(x[j][a])) for a in range(3)] for i, j in PAIRS]
+    want = np.array([[float(v) for v in row] for row in atoms(forces(energy, False, point(d), [mp.mpf(w) for w in words.split()]))])
+    got = sample(name, words).run(np.ascontiguousarray(x.T))
+    assert not got.bad[0] and np.abs(got.forces.T - want).max() <= 1e-2 * np.abs(want).max()
+
+
 @pytest.mark.parametrize(("name", "words", "text"), [
     ("fourier", "0", "number of terms"),
     ("fourier", "2 1.0 1 0.0", "6 values after m = 2, got 3"), ("fourier", "1 1.0 -1 0", "multiplicity"),

@@ -270,6 +270,46 @@ def test_direction_undefined_is_finite(name, words, pairs):
             assert not a.forces.any()                   # neither side is preferred
 
 
+NEARLY_FLAT = [     # by less than the rounding of positions, also with two or all arms nearly on one line
+    [[87.77844903113595, -18.08947505185405, 38.734995291462425], [18.316100658217287, 11.243921248042152, 10.744260947732162],
+     [94.80464678719801, -21.05671593423808, 41.56378111374282], [-84.59359927343314, 57.50963285048083, 22.039730865713793]],
+    [[-0.6328243737988577, -0.822138820746607, -0.1198867737155116], [-0.37317629052138956, -0.9291035941522163, 0.8511697085075909],
+     [-0.07119749820100385, -1.0526149958063484, 1.9760467622708289], [-0.6439457637676744, -0.81760459400701, -0.1612411623545349]],
+    [[-0.8291224533725476, 2.111435402765178, 4.122435444584586], [0.2222437431071369, 0.399473497892159, 0.43125712216872714],
+     [-0.7033366223067364, 1.9064570509528618, 3.6751179481905223], [0.8865759619286655, -0.6822722230547464, -1.9010875149003428]],
+    [[0.0, 0.0, 0.0], [-0.5767775255394412, -0.11969293014053238, -1.3566996424653124],
+     [0.4127038867495104, 0.08513647335700719, 0.9788692973948562], [-1.0190781089286713, -0.21086026524396556, -2.4069585598123346]],
+    # on the other side than their rounded differences
+    [[-0.0007861438992652875, 0.0009773545836510987, 0.0004681677793679277], [0.0, 0.0, 0.0],
+     [-0.016839097367118753, 0.02093478309685654, 0.010028057126736292], [3.5741919214422038, -4.438870486562226, -2.121142625599837]],
+    [[-1.0293049097741807, -0.45006307368672466, -0.18801948379339048], [0.0, 0.0, 0.0],
+     [-1.220582904930379, -0.1533931800282736, -0.15140665072448242], [0.7220673138630187, 0.628138622660727, 0.19067698421062695]],
+]
+
+
+@pytest.mark.parametrize(("name", "words", "energy"), [
+    ("harmonic", "40 90", lambda x, K, c: K * (abs(torsion(x)) - deg(c)) ** 2), ("inversion/harmonic", "18 80", inversion)])
+@pytest.mark.parametrize("number", range(len(NEARLY_FLAT)))
+def test_the_side_of_a_plane_is_told_to_the_last_bit(name, words, energy, number):
+    """There the force jumps from one side to the other, which no condition number knows."""
+    s, x = sample(name, words), np.array(NEARLY_FLAT[number])
+    with mp.workdps(110):
+        rows, e = [[mp.mpf(float(v)) for v in row] for row in x], []
+        h = mp.mpf(10) ** -50
+        for i in range(4):
+            for a in range(3):
+                ends = [[[v + sign * h * (i == j and a == b) for b, v in enumerate(row)] for j, row in enumerate(rows)] for sign in (1, -1)]
+                e.append(float((energy(ends[1], *map(mp.mpf, words.split())) - energy(ends[0], *map(mp.mpf, words.split()))) / (2 * h)))
+    want = np.array(e).reshape(4, 3)
+    for turn in range(3):
+        got = s.run(np.roll(x, turn, axis=1).T)
+        assert not got.bad[0]
+        assert np.abs(np.roll(got.forces.T, -turn, axis=1) - want).max() <= 1e-3 * np.abs(want).max()
+        level = x.copy()                             # exactly in a plane, and in no plane of the axes
+        level[:, 2] = level[:, 1]
+        assert not s.run(np.roll(level, turn, axis=1).T).forces.any()
+
+
 @pytest.mark.parametrize("chi", [0, 180])
 def test_harmonic_in_its_plane_is_pushed_to_neither_side(chi):
     s, side = sample("harmonic", "40 35"), 1.1 if chi == 0 else -1.1

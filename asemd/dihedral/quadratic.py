@@ -17,8 +17,8 @@ def quadratic_d2(phi, K, phi0):
 @dihedral("quadratic", example="100.0 80.0", d2=quadratic_d2)
 def quadratic(phi, K: "energy", phi0: "angle"):
     d = phi - phi0
-    if d > math.pi:
+    if phi > phi0 + math.pi:         # not of d, which is rounded
         d -= 2.0 * math.pi
-    elif d < -math.pi:
+    elif phi < phi0 - math.pi:
         d += 2.0 * math.pi
     return K * d * d, 2.0 * K * d

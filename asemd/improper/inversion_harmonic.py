@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import math
 
-from asemd.kernels.geometry import cross, elevation, low
+from asemd.kernels.geometry import cross, elevation
+from asemd.kernels.volume import low, tail, volume
 from asemd.style import Style, improper
 
 
 class ImproperInversion(Style):
     def functions(self):
-        return low, cross, elevation, self.function
+        return low, tail, volume, cross, elevation, self.function
 
 
-@improper("inversion/harmonic", cls=ImproperInversion, example="18.776 12.0", equilibrium="omega0",
+@improper("inversion/harmonic", cls=ImproperInversion, example="18.776 12.0", equilibrium="omega0", edge=True,
           domain="no bond of the first atom may have length 0")
 def inversion_harmonic(ax, ay, az, bx, by, bz, cx, cy, cz, K: "energy", omega0: "angle"):
     if not (ax * ax + ay * ay + az * az > 0.0 and bx * bx + by * by + bz * bz > 0.0 and cx * cx + cy * cy + cz * cz > 0.0):
@@ -25,10 +26,11 @@ def inversion_harmonic(ax, ay, az, bx, by, bz, cx, cy, cz, K: "energy", omega0: 
     v, vcx, vcy, vcz, vax, vay, vaz, vbx, vby, vbz = elevation(cx, cy, cz, ax, ay, az, bx, by, bz)
     w, wbx, wby, wbz, wcx, wcy, wcz, wax, way, waz = elevation(bx, by, bz, cx, cy, cz, ax, ay, az)
     du, dv, dw = abs(u) - omega0, abs(v) - omega0, abs(w) - omega0
-    k = K / 3.0
-    su = 2.0 * k * du if u > 0.0 else -2.0 * k * du if u < 0.0 else 0.0      # in the plane there is no direction to push to
-    sv = 2.0 * k * dv if v > 0.0 else -2.0 * k * dv if v < 0.0 else 0.0
-    sw = 2.0 * k * dw if w > 0.0 else -2.0 * k * dw if w < 0.0 else 0.0
+    k, side = K / 3.0, u                                      # all three have the same sign
+    if abs(u) < 1e-12:
+        side = volume(ax, ay, az, bx, by, bz, cx, cy, cz)
+    push = 2.0 * k if side >= 0.0 else -2.0 * k      # in the plane, `edge`, there is no direction to push to
+    su, sv, sw = push * du, push * dv, push * dw
     return (k * (du * du + dv * dv + dw * dw), su * uax + sv * vax + sw * wax, su * uay + sv * vay + sw * way,
             su * uaz + sv * vaz + sw * waz, su * ubx + sv * vbx + sw * wbx, su * uby + sv * vby + sw * wby,
             su * ubz + sv * vbz + sw * wbz, su * ucx + sv * vcx + sw * wcx, su * ucy + sv * vcy + sw * wcy,

@@ -7,7 +7,8 @@ coefficients (from P on). Every loop but `gather` and `scatter` runs over neighb
 
 The style comes in as the address of a function of a block: `forces` is compiled once for all styles of the same coordinates.
 `asemd.kernels.bonded` pastes it together with the functions of a coordinate (`gather`, `geometry`, `gradient`, `scatter`; for items with a
-past `recall` and `part`) and writes out the constants: rows, PER_ATOM, SKEW (the cell), HISTORY; see there for the arguments.
+past `recall` and `part`, for the side of a plane `settle`) and writes out the constants: rows, PER_ATOM, SKEW (the cell), HISTORY; see
+there for the arguments.
 """
 from __future__ import annotations
 
@@ -24,7 +25,8 @@ from asemd.kernels.algebra import NUMBERS, member, narrow, number, plus, pointer
 BLOCK = 64
 VECTORS = STRESS = ATOMS = V1 = F1 = D = SLOPES = E = SHAPE = VALUE = P = 0
 PER_ATOM = SKEW = HISTORY = False
-gather = sides_of = skewed = geometry = gradient = scatter = recall = part = None
+SIDE = 0
+gather = sides_of = skewed = geometry = settle = gradient = scatter = recall = part = None
 
 
 def block_function(function):
@@ -153,6 +155,8 @@ def forces(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, 
         if SKEW:
             skewed(b, n, cell)
         geometry(b, n, sides)
+        if SIDE:
+            settle(b, n, first, x, items)
         if HISTORY:
             recall(b, n, first, lo, hi, items, types, arrays)
         call(function[energy], n, b, arrays[0])

@@ -16,7 +16,7 @@ from types import ModuleType
 import numpy as np
 from numba import config
 
-from asemd.kernels import algebra, angle, block, bond, bond_history, dihedral, dipole, image, vector_math, vectors
+from asemd.kernels import algebra, angle, block, bond, bond_history, dihedral, dipole, image, vector_math, vectors, volume
 from asemd.kernels.algebra import ROW
 from asemd.kernels.generate import Builder, plain_source
 from asemd.kernels.paste import paste
@@ -27,7 +27,8 @@ from asemd.topology import ATOMS
 ANGLE = ("theta", "r12", "r32", "r13")
 TORSION = ("phi", "r12", "r23", "r34", "theta1", "theta2")
 PAST = ("rate", "reference")        # what a bond with a past can have besides; no derivatives
-ROWS = {angle: {"SHAPE": 1, "NORMAL": 1}, dihedral: {"SHAPE": 1, "SIDE": 1}, dipole: {"SHAPE": 1, "NORMAL": 3}, vectors: {"VALUE": 1}}
+ROWS = {angle: {"SHAPE": 1, "NORMAL": 1}, dihedral: {"SHAPE": 1, "SIDE": 1, "FLAT": 1}, dipole: {"SHAPE": 1, "NORMAL": 3},
+        vectors: {"VALUE": 1}}
 INNER = "no_cpython_wrapper=True, no_cfunc_wrapper=True"       # called from the same module only
 NO_TABLE = np.zeros((1, 1))
 
@@ -58,8 +59,8 @@ def layout(style: Style) -> dict[str, int]:
     count = {bond: 1, dipole: 1, angle: 2}.get(module, ATOMS[style.category] - 1)
     widths = dict.fromkeys([f"{kind}{k + 1}" for kind in "VF" for k in range(count)], 3)
     widths |= dict.fromkeys([] if module is vectors else map(str.upper, used), 1)
-    widths |= dict.fromkeys([*slopes, "E"], 1) | ROWS.get(module, {}) | {"P": 0}
-    rows, top = dict.fromkeys([*map(str.upper, names), *map(_slope, names), "SHAPE"], 0), 0
+    widths |= dict.fromkeys([*slopes, "E"], 1) | ROWS.get(module, {}) | ({"SIDE": 1} if style.edge else {}) | {"P": 0}
+    rows, top = dict.fromkeys([*map(str.upper, names), *map(_slope, names), "SHAPE", "SIDE"], 0), 0
     for name, width in widths.items():
         rows[name], top = top, top + width
     if module is vectors:      # the coordinates are those of V1, V2, V3
@@ -152,12 +153,17 @@ def _loops(module: ModuleType, past: ModuleType, straight: bool, items: tuple) -
     b.line(f"from asemd.kernels.algebra import {', '.join(f.__name__ for f in algebra.FUNCTIONS)}")
     b.line("from asemd.kernels.fuse import madd")
     b.text(plain_source(vector_math.vector_atan2), f"{INNER}, {vector_math.OPTIONS}", cache=False)
+    if constants["SIDE"]:
+        for function in volume.FUNCTIONS:
+            b.text(plain_source(function), INNER, cache=False)
     if constants["SKEW"]:
         b.text(plain_source(image.closest_general), INNER, cache=False)
     parts = {"sides_of": image.sides_orthogonal if straight else image.sides_any, "skewed": image.block_general,
              "closest": image.from_block_orthogonal if straight else image.from_block}
     parts |= {f.__name__: f for f in (block.odd, block.coefficients, block.report, block.sums, block.shares)}
     parts |= {name: getattr(module, name) for name in ("gather", "geometry", "gradient", "scatter")}
+    if constants["SIDE"]:
+        parts |= {"settle": module.settle}
     if constants["HISTORY"]:
         parts |= {"recall": past.recall, "part": past.part}
     texts = [plain_source(f, name, constants=constants) for name, f in parts.items()]

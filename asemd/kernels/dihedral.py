@@ -1,6 +1,7 @@
 """Torsion angles for `asemd.kernels.block` (dihedrals, and impropers in phi or chi). R12, R23, R34, THETA1, THETA2 are the rows of the
 lengths and angles that the style takes besides, or 0. SIDE tells on which side of the plane of the first three atoms the last one is:
-positive, negative, 0 in it, not a number where three atoms are on a line and phi is not defined.
+positive, negative, 0 in it, not a number where three atoms are on a line and phi is not defined. FLAT is what SIDE must exceed for phi to
+keep its digits; `settle` computes it anew for the others, from the positions, whose differences are rounded.
 
 With f = x1 - x2, g = x2 - x3, h = x4 - x3, a = f x g, c = h x g the sine is (c x a) . g / |g| and the gradients are multiples of a / a^2
 and c / c^2, so that no sine is divided by. Source: Blondel and Karplus, J. Comput. Chem. 17, 1132 (1996).
@@ -11,9 +12,10 @@ import math
 
 from asemd.kernels.algebra import between, cross, dot, member, minus, number, plus, push, put, store, times, triple
 from asemd.kernels.vector_math import vector_atan2
+from asemd.kernels.volume import exact_volume, lost
 
 V1 = V2 = V3 = F1 = F2 = F3 = PHI = R12 = R23 = R34 = THETA1 = THETA2 = 0
-D = D12 = D23 = D34 = DTHETA1 = DTHETA2 = SHAPE = SIDE = 0
+D = D12 = D23 = D34 = DTHETA1 = DTHETA2 = SHAPE = SIDE = FLAT = 0
 closest = None
 
 
@@ -31,12 +33,13 @@ def geometry(b, n, sides):
         g = closest(b, V2, k, sides)
         h = closest(b, V3, k, sides)
         a, c = cross(f, g), cross(h, g)
-        ff, gg, hh = dot(f, f), dot(g, g), dot(h, h)
-        bent = dot(a, a) > 0.0 and dot(c, c) > 0.0                # else three atoms are on a line, and 90 degrees count
+        ff, gg, hh, aa, cc = dot(f, f), dot(g, g), dot(h, h), dot(a, a), dot(c, c)
+        bent = aa > 0.0 and cc > 0.0                             # else three atoms are on a line, and 90 degrees count
         sine = dot(cross(c, a), g) / math.sqrt(gg) + 0.0         # never -0.0: trans is +pi
         phi = vector_atan2(sine, dot(a, c))
         put(b, PHI, k, phi if bent else 0.5 * math.pi)
         put(b, SIDE, k, sine if bent else math.nan)
+        put(b, FLAT, k, 1.3e-26 * gg * (ff * cc + hh * aa))      # (2^-53 1000)^2
         least = ff if ff < gg else gg
         put(b, SHAPE, k, least if least < hh else hh)      # 0: two atoms at one place, the force diverges
         if R12:
@@ -46,9 +49,30 @@ def geometry(b, n, sides):
         if R34:
             put(b, R34, k, math.sqrt(hh))
         if THETA1:
-            put(b, THETA1, k, vector_atan2(math.sqrt(dot(a, a)), -dot(f, g)))
+            put(b, THETA1, k, vector_atan2(math.sqrt(aa), -dot(f, g)))
         if THETA2:
-            put(b, THETA2, k, vector_atan2(math.sqrt(dot(c, c)), dot(g, h)))
+            put(b, THETA2, k, vector_atan2(math.sqrt(cc), dot(g, h)))
+
+
+def settle(b, n, first, x, items):
+    """SIDE and PHI of the items that are flat, to the last digit."""
+    count = 0
+    for k in range(n):
+        count += number(b, SIDE, k) * number(b, SIDE, k) <= number(b, FLAT, k)
+    if count > 0:
+        for k in range(n):
+            f, g, h = triple(b, V1, k), triple(b, V2, k), triple(b, V3, k)
+            flat = number(b, SIDE, k) * number(b, SIDE, k) <= number(b, FLAT, k)
+            for d in range(3):
+                flat = flat and abs(f[d]) + abs(g[d]) + abs(h[d]) > 0.0      # else in a plane of the axes
+            if flat:
+                i, j = member(items, first + k, 0), member(items, first + k, 1)
+                l, m = member(items, first + k, 2), member(items, first + k, 3)
+                u, v, w = lost(f, x, i, j), lost(g, x, j, l), lost(h, x, m, l)
+                a, c = cross(f, g), cross(h, g)
+                side = exact_volume(f, g, h, u, v, w) * math.sqrt(dot(g, g))
+                put(b, SIDE, k, side)
+                put(b, PHI, k, math.atan2(side + 0.0, dot(a, c)))
 
 
 def gradient(b, n):

@@ -7,12 +7,7 @@ from __future__ import annotations
 
 import math
 
-
-def low(p, a, b):
-    """What the rounding of the product p = a b left out (Dekker, Numer. Math. 18, 224 (1971))."""
-    s, t = 134217729.0 * a, 134217729.0 * b
-    s, t = s - (s - a), t - (t - b)
-    return ((s * t - p) + s * (b - t) + (a - s) * t) + (a - s) * (b - t)
+from asemd.kernels.volume import low
 
 
 def cross(ax, ay, az, bx, by, bz):
