@@ -15,8 +15,10 @@ def convert(context: typer.Context,
             to: Annotated[str, typer.Option(help="lammps, python, ase or data.")] = "lammps",
             output: Annotated[str | None, typer.Option("--output", "-o", help="Folder (lammps, python) or file (ase, data); by default the "
                                                                               "folder converted or a file in it.")] = None,
+            import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
             ) -> int:
     """Write a script, as it stands before its first run, as LAMMPS script with data file, ASE script, ASE file or data file."""
+    from asemd.cli import import_files
     from asemd.lammps.convert import FORMS
     from asemd.lammps.convert import convert as write
     switches: Switches = context.obj or Switches()
@@ -24,6 +26,7 @@ def convert(context: typer.Context,
     path = script or switches.input
     if path is None:
         raise InputError("asemd convert needs a script: asemd convert in.file --to lammps")
+    import_files(import_)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", InputWarning)
         written = write(path, form, output, switches)

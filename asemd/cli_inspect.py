@@ -42,10 +42,12 @@ def print_parts(parts, data: dict, as_json: bool) -> None:
 def validate(context: typer.Context, script: Script = None,
              steps: Annotated[int, typer.Option(help="Limit on the steps of every run.", min=0)] = 20,
              tolerance: Tolerance = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
-             as_json: Json = False) -> int:
+             import_: Import = None, as_json: Json = False) -> int:
     """Compare a script's energies, forces, virials and thermo rows with real LAMMPS; exit status 1 if they disagree."""
     from asemd.testing.validate import validate as compare
     path, switches = set_up(context, script, "validate", compat, precision, threads)
+    from asemd.cli import import_files
+    import_files(import_)
     report = compare(path, steps=steps, tolerance=tolerance, precision=precision, threads=threads, switches=switches)
     print_parts(report.parts(), report.to_dict(), as_json)
     return 0 if report.ok else 1

@@ -87,7 +87,8 @@ def unknown(category: str, name: str) -> InputError:
     """The error for a style that is not there: why it is refused, or the nearest match."""
     if (category, plain_name(name)) in REFUSED:
         return InputError(f"{category}_style {name} {REFUSED[category, plain_name(name)]}")
-    return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
+    near = nearest(name, names(category)) or "; asemd styles lists them, one of your own comes with --import FILE"
+    return InputError(f"unknown {category} style {name!r}{near}")
 
 
 def class_of(category: str, name: str, base: type) -> type:

@@ -11,6 +11,9 @@ from asemd import registry
 from asemd.errors import InputError, Where
 
 
+files: list[str] = []      # those imported so far, by their absolute paths
+
+
 def import_file(path: str) -> None:
     """Execute a Python file, so that the styles it defines can be used by name.
 
@@ -54,3 +57,5 @@ def import_file(path: str) -> None:
         registry.known[key] = taken or own
         if taken and getattr(taken.function, "__module__", "") != title:
             raise InputError(f"--import {path}: asemd has a {key[0]} style {key[1]} already: give yours another name")
+    if str(file.resolve()) not in files:
+        files.append(str(file.resolve()))

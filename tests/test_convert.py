@@ -156,3 +156,18 @@ def test_mistakes(here, capsys, words, message):
     Path("in.empty").write_text("units lj\n")
     assert main(["convert", *words]) == 1
     assert message in capsys.readouterr().err
+
+
+def test_style_of_ones_own(tmp_path, monkeypatch):
+    """``--import`` of convert: the Python script that is written imports the file too."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "own.py").write_text("from asemd.style import bond\n\n\n@bond('own/square', example='3 1')\n"
+                                     "def square(r, K: 'energy/distance^2', r0: 'distance'):\n"
+                                     "    return K * (r - r0) ** 2, 2 * K * (r - r0)\n")
+    (tmp_path / "in.own").write_text("atom_style bond\nregion b block 0 5 0 5 0 5\ncreate_box 1 b bond/types 1 extra/bond/per/atom 1\n"
+                                     "mass 1 1\ncreate_atoms 1 single 1 1 1\ncreate_atoms 1 single 3 1 1\nbond_style own/square\n"
+                                     "bond_coeff 1 3 1\ncreate_bonds single/bond 1 1 2\nfix 1 all nve\nrun 2\n")
+    for words in (["-m", "asemd", "convert", "in.own", "--to", "python", "--import", "own.py"], ["converted/own.py"]):
+        done = subprocess.run([sys.executable, *words], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    assert "potential energy 3.0" in done.stdout

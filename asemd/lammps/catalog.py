@@ -111,8 +111,10 @@ def unknown(category: str, name: str) -> InputError:
         if name in COMMANDS:
             return InputError(f"command {name} of LAMMPS is not supported yet: remove it, or run this script with LAMMPS")
         return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
+    said = "min_style" if category == "minimize" else f"{category} style"
     if (category, plain_name(name)) not in registry.REFUSED and is_of_lammps(category, name):
-        return InputError(f"{category} style {name} of LAMMPS is not supported yet")
+        return InputError(f"{said} {name} of LAMMPS is not supported yet")
     if category in FORCE_FIELD:
         return registry.unknown(category, name)
-    return InputError(f"unknown {category} style {name!r}{nearest(name, names(category))}")
+    there = f"; there are {' '.join(names(category))}" if category == "minimize" else ""
+    return InputError(f"unknown {said} {name!r}{nearest(name, names(category))}{there}")

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd import user_styles
 from asemd.errors import InputError, InputWarning
 from asemd.lammps import export
 from asemd.lammps.data_write import write_data
@@ -141,7 +142,9 @@ def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
     u, integrates = unit_styles.factor("time", scene.units), any(f.integrates for f in scene.fixes.values())
     groups = {f.group for f in scene.fixes.values()} - {"all"} if integrates else set()
     lines = [f'"""{scene.system.n} atoms under ASE, written by asemd."""', "import os", "", *(["import numpy as np", ""] if groups else []),
-             "import asemd", *(["from asemd.fix import find"] if integrates else []), "",
+             "import asemd", *(["from asemd.fix import find"] if integrates else []),
+             *(["from asemd.user_styles import import_file"] if user_styles.files else []), "",
+             *(f"import_file({path!r})" for path in user_styles.files),
              "os.chdir(os.path.dirname(os.path.abspath(__file__)))", f'atoms = asemd.read("in.{name}_atoms")',
              'print("potential energy", atoms.get_potential_energy())']
     if not integrates:

@@ -108,6 +108,12 @@ def check(commands: list[Command]) -> tuple[list[InputError], list[InputError]]:
     return errors, warnings
 
 
+def labels(commands: Iterable[Command]) -> list[str]:
+    """The labels that a ``jump`` may go to."""
+    lines = (lex.strip_comment(command.text).split() for command in commands)
+    return [words[1] for words in lines if len(words) == 2 and words[0] == "label"]
+
+
 def before(commands: Iterable[Command], names: Sequence[str]) -> Iterator[Command]:
     """The commands before the first one with one of these names."""
     for command in commands:

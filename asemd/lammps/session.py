@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from asemd.errors import AsemdError, InputError, InputWarning, SimulationError, Where
+from asemd.errors import AsemdError, InputError, InputWarning, SimulationError, Where, nearest
 from asemd.lammps import catalog, lex, script
 from asemd.lammps.log import Log, to_stdout
+from asemd.lammps.loops import Loops
 from asemd.lammps.origin import Origin
 from asemd.lammps.providers import Providers
 from asemd.lammps.python_functions import PythonFunctions
@@ -87,6 +88,7 @@ class Session:
         self.record: Any = None            # an asemd.lammps.record.Record, which the driver fills
         self.label: str | None = None      # text is skipped up to this label
         self.exhausted = False             # `next` ran out: the next `jump` is skipped
+        self.loops = Loops()
         self._depth = 0                    # scripts within scripts
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
@@ -153,6 +155,7 @@ class Session:
         text = lex.substitute(text, self.variables.value, self.variables.evaluate, self.log.echo)
         words = lex.split(text)
         if words:
+            self.loops.note(text)
             self.call(words[0], words[1:])
 
     def call(self, name: str, args: Sequence[str]) -> None:
@@ -195,21 +198,30 @@ class Session:
             self._depth -= 1
 
     def _run(self, commands: list[Command], path: str) -> None:
-        i = 0
+        i, origin = 0, None
         while i < len(commands):
+            command = commands[i]
             try:
-                self.execute(commands[i])
+                self.execute(command)
             except Jump as jump:
+                try:
+                    warning = self.loops.jump(path, i)
+                except InputError as e:
+                    raise e.at(command.where) from None
+                if warning:
+                    self.warn(warning, command.where)
                 if jump.file not in ("SELF", path):
                     try:
                         commands, path = script.read(jump.file), jump.file
                     except InputError as e:
-                        raise e.at(commands[i].where) from None
-                i, self.label = -1, jump.label
+                        raise e.at(command.where) from None
+                i, self.label, origin = -1, jump.label, command
             i += 1
         if self.label is not None:
             missing, self.label = self.label, None
-            raise InputError(f"label {missing} was not found after jump" + (f" in {path}" if path else ""))
+            there = script.labels(commands)
+            found = nearest(missing, there) or (f"; there are {' '.join(there)}" if there else "; there is none")
+            raise InputError(f"jump: no label {missing}{f' in {path}' if path else ''}{found}", origin and origin.where)
 
     def substitute(self, text: str) -> str:
         """Replace variables in text whose quotes are gone (print, if)."""
