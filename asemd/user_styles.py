@@ -10,7 +10,6 @@ from pathlib import Path
 from asemd import registry
 from asemd.errors import InputError, Where
 
-
 files: list[str] = []      # those imported so far, by their absolute paths
 
 

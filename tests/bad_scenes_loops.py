@@ -8,9 +8,11 @@ line("label in a file that is missing it", "jump x.inc end", "no label end in x.
 line("loop without next", "label a\nprint x\njump SELF a", "loop without end;next")
 line("loop of a whole file", "jump x.inc", "loop without end", at=("x.inc", "jump SELF"), files={"x.inc": "print x\njump SELF\n"})
 line("loop of two files", "jump x.inc", "loop without end", at=(), files={"x.inc": "jump y.inc\n", "y.inc": "jump x.inc\n"})
-line("loop that an if never leaves", "variable n equal 1\nlabel a\nif '$n > 2' then 'jump SELF b'\njump SELF a\nlabel b", "loop without end",
-     at=("in.scene", "jump SELF a"))
-line("loop with a counter", "variable n equal 0\nlabel a\nvariable n equal $n+1\nif '$n < 1500' then 'jump SELF a'", "", expect="fine", at=())
-line("loop of runs without next", "variable n loop 3\nlabel a\nrun 1\nif '$(step) > 9' then 'jump SELF b'\njump SELF a\nlabel b", "", expect="fine", at=())
+line("loop that an if never leaves", "variable n equal 1\nlabel a\nif '$n > 2' then 'jump SELF b'\njump SELF a\nlabel b",
+     "loop without end", at=("in.scene", "jump SELF a"))
+line("loop with a counter", "variable n equal 0\nlabel a\nvariable n equal $n+1\nif '$n < 1500' then 'jump SELF a'", "",
+     expect="fine", at=())
+line("loop of runs without next", "variable n loop 3\nlabel a\nrun 1\nif '$(step) > 9' then 'jump SELF b'\njump SELF a\nlabel b", "",
+     expect="fine", at=())
 line("minimiser that is not there", "min_style foo", "unknown min_style 'foo';there are cg")
 line("style of one's own without its file", "bond_style mine", "unknown bond style 'mine';--import")
