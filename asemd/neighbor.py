@@ -34,16 +34,22 @@ def kernels(ortho: bool, mark: bool = False):
     return b.build()
 
 
-def _pairs_in_need() -> np.ndarray:
-    """For the bits of the atoms of a cluster that reach a candidate (256,): number of the first pair of atoms in need plus the last's."""
-    keys = np.zeros(256, np.int64)
+def _counters() -> np.ndarray:
+    """For the bits of the atoms of a cluster that reach a candidate: what counts it, (3, 256).
+
+    Candidates are sorted by the number of the first pair of atoms in need plus the last's. The counters are fields of 16 bits, those of
+    sums 0 to 3 in one number and the others in a second: ones to add to the two, and where the field stands.
+    """
+    table = np.zeros((3, 256), np.uint64)
     for bits in range(1, 256):
         pairs = [p for p in range(4) if (bits >> 2 * p) & 3]
-        keys[bits] = pairs[0] + pairs[-1]
-    return keys
+        number, field = divmod(pairs[0] + pairs[-1], 4)
+        table[number, bits] = 1 << 16 * field
+        table[2, bits] = 16 * field
+    return table
 
 
-_KEYS = _pairs_in_need()
+_COUNTERS = _counters()
 
 
 class BinCell:
@@ -169,7 +175,7 @@ class ClusterList:
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
                                      c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.width, ns, self.row_length[t], _KEYS, self.hide[t])
+                                     self.work_codes[t], self.width, ns, self.row_length[t], _COUNTERS, self.hide[t])
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
@@ -180,6 +186,9 @@ class ClusterList:
             elif -2 in results:
                 self.candidates *= 2
                 self._room()
+            elif -4 in results:
+                raise InputError(f"more than 65,000 atoms within cutoff plus skin, {self.reach:g}, of a group of {CLUSTER} neighbours: "
+                                 "is the cutoff in the units of the scene?")
             elif -3 in results:
                 self.excluded = np.zeros((self.threads, 2 * self.excluded.shape[1]), np.int32)
             else:

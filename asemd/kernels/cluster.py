@@ -143,14 +143,15 @@ def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2)
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, own, span, unshifted, work, codes, width, empty, longest, keys, hide):
-    """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are.
+          first, entries, own, span, unshifted, work, codes, width, empty, longest, sorting, hide):
+    """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are,
+    -4 if a cluster has more neighbours than can be counted.
 
     `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (3, w)`, `codes (w,)`: candidates of one cluster.
     A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
-    ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, which `keys (256,)` holds for the bits of
-    the atoms that reach it; pair p then needs the sums p to p + 3. The cluster itself stands in the middle, at ``own[c]``. Rows end with
-    copies of the slot `empty`, so that they fill vectors of `width`.
+    ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, which is counted as `sorting (3, 256)`
+    says for the bits of the atoms that reach it; pair p then needs the sums p to p + 3. The cluster itself stands in the middle, at
+    ``own[c]``. Rows end with copies of the slot `empty`, so that they fill vectors of `width`.
     `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row. With MARK each entry gets
     in `hide` the bits of the atoms of the cluster that are beyond reach.
     """
@@ -163,7 +164,9 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     rb = int(reach / wb) + 1
     capacity = codes.shape[0]
     longest[0] = 0
-    tally = np.zeros(9, np.int64)
+    tally = np.zeros(8, np.int64)
+    most = 3 * (2 * ra + 1) * (2 * rb + 1) + 1
+    run_start, run_count, run_code = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
     index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
     index_b, image_b, gap_b = np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1)
     for ci in range(c0, c1):
@@ -189,6 +192,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                 lo2 = min(lo2, s2)
                 hi2 = max(hi2, s2)
         nt = 0
+        runs = 0        # stretches of candidates are found first and copied then, lest a wrong guess of one's length wait for its root
         all_in = True
         na = near_columns(ca, nx, ra, lo0, hi0, widths[0], reach, periodic[0], index_a, image_a, gap_a)
         nb = near_columns(cb, ny, rb, lo1, hi1, widths[1], reach, periodic[1], index_b, image_b, gap_b)
@@ -220,27 +224,32 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                     start = (ci + 1) * CLUSTER if code <= 13 else ci * CLUSTER
                     k0 = max(cell_start[c2, a0 - sc * nz], start)
                     k1 = cell_start[c2, a1 - sc * nz + 1]
-                    count = k1 - k0
-                    if count <= 0:
-                        continue
-                    if nt + count + CLUSTER > capacity:
-                        return -2
-                    if code != 13:
-                        all_in = False
-                    px = shifts[code, 0]
-                    py = shifts[code, 1]
-                    pz = shifts[code, 2]
-                    high = np.int64(code << 26)
-                    for q in range(0, count, 8):             # whole vectors; what is copied beyond the end is overwritten
-                        for k in range(8):
-                            tx[np.uint64(nt + q + k)] = x[0, np.uint64(k0 + q + k)] + px
-                        for k in range(8):
-                            ty[np.uint64(nt + q + k)] = x[1, np.uint64(k0 + q + k)] + py
-                        for k in range(8):
-                            tz[np.uint64(nt + q + k)] = x[2, np.uint64(k0 + q + k)] + pz
-                        for k in range(8):
-                            codes[np.uint64(nt + q + k)] = np.int64(k0 + q + k) | high
-                    nt += count
+                    run_start[runs] = k0
+                    run_count[runs] = k1 - k0
+                    run_code[runs] = code
+                    runs += k1 > k0
+        for run in range(runs):
+            k0 = run_start[run]
+            count = run_count[run]
+            code = run_code[run]
+            if nt + count + CLUSTER > capacity:
+                return -2
+            if code != 13:
+                all_in = False
+            px = shifts[code, 0]
+            py = shifts[code, 1]
+            pz = shifts[code, 2]
+            high = np.int64(code << 26)
+            for q in range(0, count, 8):             # whole vectors; what is copied beyond the end is overwritten
+                for k in range(8):
+                    tx[np.uint64(nt + q + k)] = x[0, np.uint64(k0 + q + k)] + px
+                for k in range(8):
+                    ty[np.uint64(nt + q + k)] = x[1, np.uint64(k0 + q + k)] + py
+                for k in range(8):
+                    tz[np.uint64(nt + q + k)] = x[2, np.uint64(k0 + q + k)] + pz
+                for k in range(8):
+                    codes[np.uint64(nt + q + k)] = np.int64(k0 + q + k) | high
+            nt += count
         unshifted[ci] = all_in
         for k in range(CLUSTER):     # the cluster itself, for its places in `hide`
             tx[nt + k] = x[0, ci * CLUSTER + k]
@@ -284,13 +293,19 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         for t in range(nt):
             codes[np.uint64(kept)] = codes[t]
             kept += (codes[t] >> 32) != 0
-        # counting sort by first + last pair in need
-        for k in range(8):
-            tally[k] = 0
+        if kept > 0xFFFF - CLUSTER:
+            return -4
+        # counting sort by first + last pair in need; the counters are fields of two numbers, so that none waits for memory
+        below = above = np.uint64(0)
         for t in range(kept):
-            tally[keys[codes[t] >> 32] + 1] += 1
-        for k in range(7):
-            tally[k + 1] += tally[k]
+            w = np.uint64(codes[np.uint64(t)] >> 32)
+            below += sorting[0, w]
+            above += sorting[1, w]
+        before = 0
+        for k in range(8):
+            here = np.int64(((below if k < 4 else above) >> np.uint64(16 * (k % 4))) & np.uint64(0xFFFF))
+            tally[k] = before
+            before += here
         mine = (tally[3] // width) * width      # the cluster's own place; what it displaces goes behind it
         for pair in range(4):
             span[ci, 2 * pair] = min((tally[pair] // width) * width, mine)
@@ -301,14 +316,22 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             entries[start + mine + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
             if MARK:
                 hide[start + mine + k] = np.uint8(255 - (codes[nt + k] >> 32))
+        below = above = np.uint64(0)
+        for k in range(4):
+            below |= np.uint64(tally[k]) << np.uint64(16 * k)
+            above |= np.uint64(tally[k + 4]) << np.uint64(16 * k)
         for t in range(kept):
-            key = keys[codes[t] >> 32]
-            q = tally[key]
-            tally[key] = q + 1
-            place = start + q + (CLUSTER if q >= mine else 0)
-            entries[place] = np.int32(codes[t] & 0xFFFFFFFF)
+            e = codes[np.uint64(t)]
+            w = np.uint64(e >> 32)
+            one = sorting[0, w]
+            side = below if one != 0 else above
+            q = np.int64((side >> sorting[2, w]) & np.uint64(0xFFFF))
+            below += one
+            above += sorting[1, w]
+            place = np.uint64(start + q + (CLUSTER if q >= mine else 0))
+            entries[place] = np.int32(e & 0xFFFFFFFF)
             if MARK:
-                hide[place] = np.uint8(255 - (codes[t] >> 32))
+                hide[place] = np.uint8(255 - (e >> 32))
         n = start + kept + CLUSTER
         while (n - start) % width != 0:
             entries[n] = np.int32(empty) | np.int32(13 << 26)
