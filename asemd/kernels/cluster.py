@@ -165,7 +165,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     capacity = codes.shape[0]
     longest[0] = 0
     tally = np.zeros(8, np.int64)
-    most = 3 * (2 * ra + 1) * (2 * rb + 1) + 1
+    most = 3 * min(2 * ra + 1, 3 * nx) * min(2 * rb + 1, 3 * ny) + 1
     run_start, run_count, run_code = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
     index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
     index_b, image_b, gap_b = np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1)
