@@ -54,13 +54,15 @@ def validate(context: typer.Context, script: Script = None,
 
 
 def plan(context: typer.Context, script: Script = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
-         import_: Import = None, as_json: Json = False) -> int:
-    """Print what a script's scene needs and what is left out, and why; no step is run."""
+         import_: Import = None,
+         calibrate: Annotated[bool, typer.Option(help="Measure the speed of this machine once, for the expected steps per second.")] = True,
+         as_json: Json = False) -> int:
+    """Print what a script's scene needs, what it will cost, what is left out, and why; no step of it is run."""
     from asemd.lammps.plan import of_script
     path, switches = set_up(context, script, "plan", compat, precision, threads)
     from asemd.cli import import_files
     import_files(import_)
-    found = of_script(path, switches)
+    found = of_script(path, switches, calibrate)
     print_parts(found.parts(), found.to_dict(), as_json)
     return 0
 

@@ -32,7 +32,7 @@ def big(cells: int) -> str:
 
 def test_cluster_scene(folder, capsys):
     (folder / "in.x").write_text(big(6) + "thermo 5\ndump d all atom 3 dump.x\nrun 10\n")
-    assert cli.main(["plan", "in.x"]) == 0
+    assert cli.main(["plan", "in.x", "--no-calibrate"]) == 0
     assert "cluster kernel" in capsys.readouterr().out
     plan = asemd.plan("in.x")
     near, pair = items(plan, "Neighbour list"), items(plan, "Forces")["pair lj/cut"]
@@ -81,7 +81,7 @@ def test_atoms(folder):
 
 def test_no_forces(folder, capsys):
     (folder / "in.x").write_text("region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\n")
-    assert cli.main(["plan", "in.x", "--json"]) == 0
+    assert cli.main(["plan", "in.x", "--json", "--no-calibrate"]) == 0
     left = {i["name"] for i in json.loads(capsys.readouterr().out)["left_out"]}
     assert "neighbour list" in left and "energy and virial between outputs" in left
     (folder / "in.y").write_text("units lj\n")

@@ -1,7 +1,6 @@
 """What a scene needs, what is left out, and why; nothing is compiled and no step is run."""
 from __future__ import annotations
 
-import math
 import os
 import sys
 from dataclasses import asdict, dataclass, field
@@ -9,21 +8,28 @@ from typing import Any
 
 import numpy as np
 
+from asemd import units as unit_styles
 from asemd.engine import Engine
 from asemd.errors import InputError
+from asemd.lammps.plan_memory import holdings, pairs_around
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 from asemd.text_table import Table
 
-OPTIONAL = ("ase", "scipy", "matplotlib", "MDAnalysis", "spglib")
+# packages that a run may import -> what needs them
+OPTIONAL = {"scipy": "numba looks for it; dump image", "ase": "asemd.read, delete_atoms overlap, triclinic cells",
+            "sympy": "styles of one's own given as a formula", "matplotlib": "colours of dump image and movie by name",
+            "MDAnalysis": "dump dcd and xtc, and reading such files", "vl_convert": "static plots of pages"}
+NEEDED = {"numpy": "arrays", "numba": "compiled kernels", "llvmlite": "numba", "rich": "the progress bar", "typer": "the command line"}
 
 
 @dataclass
 class Item:
-    """One thing that a scene needs or does without: what it is, how it is done, and why."""
+    """One thing that a scene needs or does without: what it is, how it is done, why, and what would have switched it on."""
 
     name: str
     how: str
     why: str = ""
+    switch: str = ""
 
 
 @dataclass
@@ -34,14 +40,20 @@ class Plan:
     ----------
     source : str
     sections : dict
-        Title -> list of `Item`: System, Neighbour list, Forces, Fixes, Output.
+        Title -> list of `Item`: System, Neighbour list, Forces, Fixes, Output, Memory, Modules, Speed.
     left_out : list of Item
-        What does not exist in this run, and why.
+        What does not exist in this run, why, and what would have switched it on.
+    bytes : float
+        Expected size of the arrays that grow with the scene.
+    steps_per_second : float or None
+        Expected; None without a calibration of this machine.
     """
 
     source: str
     sections: dict[str, list[Item]] = field(default_factory=dict)
     left_out: list[Item] = field(default_factory=list)
+    bytes: float = 0.0
+    steps_per_second: float | None = None
 
     def parts(self) -> list[Table | str]:
         """Tables, in order."""
@@ -49,7 +61,7 @@ class Plan:
         for title, items in self.sections.items():
             if items:
                 out.append(Table(title, ("", "how", "why"), [(i.name, i.how, i.why) for i in items]))
-        return [*out, Table("Left out", ("", "why"), [(i.name, i.why) for i in self.left_out])]
+        return [*out, Table("Left out", ("", "why", "switched on by"), [(i.name, i.why, i.switch) for i in self.left_out])]
 
     def __str__(self) -> str:
         return "\n\n".join(map(str, self.parts()))
@@ -59,13 +71,16 @@ class Plan:
         return asdict(self)
 
 
-def plan(source) -> Plan:
+def plan(source, calibrate: bool = False) -> Plan:
     """The plan of a scene.
 
     Parameters
     ----------
     source : path, asemd.scene.Scene or ase.Atoms
         A script is executed up to its first run; atoms need `asemd.ForceField` as calculator.
+    calibrate : bool
+        Measure the speed of this machine if that was not done before (about ten seconds, in a process of its own). Without it, or
+        for atoms, the expected speed is told only where it is known.
 
     Raises
     ------
@@ -74,9 +89,9 @@ def plan(source) -> Plan:
     """
     from asemd.scene import Scene
     if isinstance(source, (str, os.PathLike)):
-        return of_script(os.fspath(source))
+        return of_script(os.fspath(source), calibrate=calibrate)
     if isinstance(source, Scene):
-        return of_scene(source)
+        return of_scene(source, calibrate=calibrate)
     from asemd.calculator import ForceField
     calc = getattr(source, "calc", None)
     if not isinstance(calc, ForceField):
@@ -86,11 +101,12 @@ def plan(source) -> Plan:
     engine = Engine(system, calc.interactions, calc.settings)
     out = _of_engine(repr(calc), engine)
     out.sections["Output"] = [Item("energy, forces, virial", "at every evaluation", "ASE may ask for any of them")]
-    out.left_out.append(Item("energies and virials per atom", "", "computed only when get_potential_energies or get_stresses asks"))
+    out.left_out.append(Item("energies and virials per atom", "", "nobody has asked", "get_potential_energies or get_stresses"))
+    _memory(out, engine)
     return out
 
 
-def of_script(path: str, switches=None) -> Plan:
+def of_script(path: str, switches=None, calibrate: bool = False) -> Plan:
     """The plan of a script's scene at its first run."""
     from asemd.lammps.session import Session, Stop
     session = Session(switches=switches, passive=True)
@@ -98,10 +114,10 @@ def of_script(path: str, switches=None) -> Plan:
         session.file(path)
     except Stop:
         session.label = None
-    return of_scene(session.scene, path, session.variables.references)
+    return of_scene(session.scene, path, session.variables.references, calibrate)
 
 
-def of_scene(scene, source: str = "scene", references=lambda word: {word}) -> Plan:
+def of_scene(scene, source: str = "scene", references=lambda word: {word}, calibrate: bool = False) -> Plan:
     """The plan of a scene; `references` tells which names a formula uses."""
     system = scene.need_system("plan")
     scene.interactions.check_complete(system)
@@ -110,6 +126,7 @@ def of_scene(scene, source: str = "scene", references=lambda word: {word}) -> Pl
     out.sections["Fixes"] = _fixes(scene)
     out.sections["Output"], more = _output(scene, references)
     out.left_out += more
+    _costs(out, engine, scene, calibrate)
     return out
 
 
@@ -142,9 +159,7 @@ def _list(e: Engine) -> list[Item]:
         how += ", expanded into plain pairs"
     if e.sparse:
         how += ", turned into rows of single atoms"
-    density = s.n / max(s.box.volume, 1e-300)
-    reach = 4.0 / 3.0 * math.pi * e.reach**3
-    around = 0.5 * density * (reach if s.dimension == 3 else math.pi * e.reach**2 * s.box.lengths[2])
+    around = pairs_around(e)
     often = f"every {settings.every} steps" if settings.every > 1 else "every step"
     late = f", from step {settings.delay} of a list on" if settings.delay > 1 else ""
     check = (f"when an atom has moved half the skin, looked at {often}{late}"
@@ -212,30 +227,34 @@ def _specials(e: Engine) -> list[Item]:
 def _absent(e: Engine) -> list[Item]:
     out, inter, s = [], e.interactions, e.system
     if e.mode == "none":
-        out.append(Item("neighbour list", "", e.why))
+        out.append(Item("neighbour list", "", e.why, "pair_style"))
     elif not any(t.style.charged for t in e.pair_terms):
-        out.append(Item("Coulomb part", "", "no pair style in use has one" + (", the charges act on nothing" if s.has_charge else "")))
-    out.append(Item("k-space", "", "no style has a long-range part"))
+        why = "no pair style in use has one" + (", the charges act on nothing" if s.has_charge else "")
+        out.append(Item("Coulomb part", "", why, "a pair_style with coul in its name"))
+    out.append(Item("k-space", "", "no style has a long-range part", "kspace_style"))
     for category, n in s.topology.counts().items():
         if not any(isinstance(t, BondedTerm) and t.category == category for t in e.terms):
             plural, style = f"{category}s", inter.style_name(category)
             why = f"{category}_style {style}: {n} {plural} without forces" if n else f"there are no {plural}"
-            out.append(Item(f"{category} forces", "", why))
+            out.append(Item(f"{category} forces", "", why, f"{category}_style" if n else f"{plural} in the data file or by create_bonds"))
     if e.mode != "none" and e.exclusions.partners is None:
-        out.append(Item("exclusion of bonded pairs", "", "no bonds" if s.topology.is_empty else "all special_bonds factors are 1"))
+        bare = s.topology.is_empty
+        out.append(Item("exclusion of bonded pairs", "", "no bonds" if bare else "all special_bonds factors are 1",
+                        "bonds" if bare else "special_bonds with other factors"))
     if e.mode != "none" and not inter.tail:
-        out.append(Item("tail correction", "", "pair_modify tail no"))
+        out.append(Item("tail correction", "", "pair_modify tail no", "pair_modify tail yes"))
     if e.ortho:
-        out.append(Item("tilted image shifts", "", "the box is axis-aligned"))
+        out.append(Item("tilted image shifts", "", "the box is axis-aligned", "a triclinic box"))
     for axis, periodic in zip("xyz", e.periodic):
         if not periodic:
             flat = s.dimension == 2 and axis == "z"
-            out.append(Item(f"images along {axis}", "", "two dimensions" if flat else f"{axis} is not periodic"))
+            out.append(Item(f"images along {axis}", "", "two dimensions" if flat else f"{axis} is not periodic",
+                            "dimension 3" if flat else f"boundary with p along {axis}"))
+    if e.mode == "cluster" and not e.settings.outdated and not e.sparse:
+        out.append(Item("marks of pairs out of reach", "", "lists are never outdated",
+                        "neigh_modify with check no, or every or delay above 1"))
     if e.threads == 1:
-        out.append(Item("force buffers of threads", "", "one thread"))
-    unused = [m for m in OPTIONAL if m not in sys.modules]
-    if unused:
-        out.append(Item("imports", "", f"not needed so far: {' '.join(unused)}"))
+        out.append(Item("force buffers of threads", "", "one thread", "--threads"))
     return out
 
 
@@ -273,11 +292,57 @@ def _output(scene, references) -> tuple[list[Item], list[Item]]:
     per_atom = {"energies", "virials"}
     asking = [f"dump {id}" for id, d in scene.dumps.items() if d.needs & per_atom] + [
         f"compute {id}" for id, c in computes.items() if c.needs & per_atom]
-    absent = [Item("energy and virial between outputs", "", "nobody looks at them: the force-only kernel runs")]
+    absent = [Item("energy and virial between outputs", "", "nobody looks at them: the force-only kernel runs", "thermo 1")]
     if row & per_atom or asking:
         out.append(Item("per-atom kernels", "on the steps on which they are shown, and on the last one", ", ".join(asking) or "thermo row"))
     else:
-        absent.append(Item("energies and virials per atom", "", "no compute or dump needs them"))
+        absent.append(Item("energies and virials per atom", "", "no compute or dump needs them", "compute pe/atom or stress/atom"))
     if not scene.dumps:
-        absent.append(Item("dumps", "", "none is defined"))
+        absent.append(Item("dumps", "", "none is defined", "dump"))
     return out, absent
+
+
+# ------------------------------------------------------------------------------------------------------------- what it costs ---
+
+def _memory(out: Plan, e: Engine, per_atom: bool = False, costs=None) -> None:
+    held = holdings(e, per_atom)
+    out.bytes = sum(h.bytes for h in held)
+    items = [Item(h.name, _bytes(h.bytes), f"{h.what}; {h.why}" if h.what else h.why) for h in held]
+    items.append(Item("together", _bytes(out.bytes), f"{out.bytes / max(e.system.n, 1):.0f} bytes an atom"))
+    if costs is not None:
+        items.append(Item("program", _bytes(costs.program), "interpreter, modules, compiled kernels; measured on this machine"))
+    out.sections["Memory"] = items
+    loaded = [m for m in (*NEEDED, *OPTIONAL) if m in sys.modules]
+    out.sections["Modules"] = [Item(m, "imported", NEEDED.get(m) or OPTIONAL[m]) for m in loaded]
+    out.left_out += [Item(f"module {m}", "", "not needed so far", why) for m, why in OPTIONAL.items() if m not in loaded]
+
+
+def _bytes(n: float) -> str:
+    return f"{n / 2**20:.3g} MB" if n >= 2**20 else f"{n / 2**10:.3g} kB"
+
+
+def _costs(out: Plan, e: Engine, scene, calibrate: bool) -> None:
+    """Memory, modules and expected speed."""
+    from asemd.lammps import calibration, plan_speed
+    costs = (calibration.calibrate if calibrate else calibration.known)(e.threads, e.settings.precision)
+    per_atom = any(x.needs & {"energies", "virials"} for x in (*scene.computes.values(), *scene.dumps.values()))
+    _memory(out, e, per_atom, costs)
+    if costs is None:
+        why = "this machine has not been measured: asemd plan on the command line does it once"
+        out.sections["Speed"] = [Item("steps per second", "not known", why)]
+        return
+    every = scene.thermo.every if isinstance(scene.thermo.every, int) else 0
+    rows = (1.0 / every if every else 0.0) + sum(1.0 / d.every for d in scene.dumps.values() if isinstance(d.every, int) and d.every)
+    python = sum(not compiled for f in scene.fixes.values() for compiled in f.hooks().values())
+    speed = plan_speed.expected(e, costs, scene.dt, any(f.integrates for f in scene.fixes.values()), rows, python)
+    out.steps_per_second = speed.steps_per_second
+    day = 86400.0 * scene.dt * out.steps_per_second
+    u = unit_styles.get(scene.units)
+    per_day = f"{day:.3g} tau a day" if scene.units == "lj" else f"{day / u.femtosecond / 1e6:.3g} ns a day"
+    items = [Item("steps per second", f"about {out.steps_per_second:.3g}",
+                  f"{per_day}; from a calibration of this machine, right within a factor of 2 or so")]
+    total = sum(speed.parts.values())
+    items += [Item(name, f"{100.0 * t / total:.0f} %", "") for name, t in speed.parts.items() if t > 0.005 * total]
+    if e.mode != "none" and speed.builds < 1e3:
+        items.append(Item("list builds", f"about every {speed.builds:.0f} steps", "from the fastest atom, half the skin and the timestep"))
+    out.sections["Speed"] = items
