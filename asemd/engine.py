@@ -12,6 +12,7 @@ from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
 from asemd.exclusions import Exclusions
 from asemd.kernels.state import aligned, cell_arrays, empty_state
+from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, kernels
 from asemd.result import Result, Settings, Snapshot
@@ -75,7 +76,7 @@ class Engine:
         self.farthest = np.zeros(self.threads)      # largest of `moved`, for each thread to read
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
-        width = 16 if s.precision == "mixed" else 8
+        width = lanes(s.precision == "mixed")
         marked = s.outdated or self.sparse
         self.list = ClusterList(self.threads, self.reach, width, marked) if self.mode == "cluster" else PlainList(self.reach)
         self.state = None

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from asemd.kernels.gather import gather8, give8, scatter8, take8
-from asemd.kernels.target import njit
+from asemd.kernels.target import lanes, njit
 
 MASK, ROW = 0x3FFFFFF, 40
 
@@ -80,3 +80,9 @@ def test_scatter_adds_every_place_of_an_atom(rng, real):
         expected[j, :3] += b[[8 + k, 8 + k + ROW, 8 + k + 2 * ROW]].astype(float)
     scatter(b, table, (slots | 13 << 26).astype(np.int32))
     assert (table == expected).all()
+
+
+@pytest.mark.parametrize("features, expected", [("+avx512f,-prefer-256-bit", (8, 16)), ("+avx2,-avx512f", (8, 8)), (None, (8, 8))])
+def test_rows_are_padded_to_the_vectors_of_the_processor(monkeypatch, features, expected):
+    monkeypatch.setattr("numba.config.CPU_FEATURES", features)
+    assert (lanes(False), lanes(True)) == expected

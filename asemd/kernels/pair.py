@@ -9,6 +9,7 @@ import numpy as np
 
 from asemd.kernels import bond_history, pair_cluster, pair_factor, pair_list, pair_sums
 from asemd.kernels.generate import Builder, text_of
+from asemd.kernels.target import lanes
 from asemd.pairstyle import PairStyle
 
 ROWS = (608, 1120, 2144, 4192, 8288, 16480, 32864)
@@ -105,7 +106,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
-    for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=16 if single else 8, NROWS=len(varying), ENERGY=energy,
+    for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=len(varying), ENERGY=energy,
                             CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
                             OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
