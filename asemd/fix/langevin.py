@@ -6,6 +6,13 @@ with :math:`\tau_i` the damping time multiplied by the ratio of the atom's type 
 and step depends on seed, step and atom only, not on threads. ``zero yes`` takes the mean of the noise away from each atom of the group.
 ``tally yes`` adds up the energy that friction and noise take from the atoms: the scalar of this fix (thermo keywords ecouple, econserve).
 
+That holds for small steps. For harmonic forces of frequency :math:`\omega` the positions are too warm by the factor
+:math:`1 / (1 - \omega^2 \Delta t^2 / (4 - 2 \Delta t / \tau))`, and the velocities grow without bound from
+:math:`\Delta t / 2 \tau + (\omega \Delta t / 2)^2 = 1` on. With ``gjf vhalf`` or ``gjf vfull`` the steps are those of
+`asemd.fix.gronbech_jensen`: positions have the right distribution at any :math:`\Delta t / \tau`. The velocities seen are then those of half
+steps, right too for harmonic forces, or those at the positions, colder by :math:`(\omega \Delta t / 2)^2`. This fix comes before fix nve
+then. Another way to the same end: fix baoab.
+
 Source: T. Schneider, E. Stoll, Phys. Rev. B 17, 1302 (1978); B. Duenweg, W. Paul, Int. J. Mod. Phys. C 2, 817 (1991), for uniform noise;
 LAMMPS manual, fix langevin. The noise equals LAMMPS's in distribution, the friction in every digit. Units: temperature, time.
 """
@@ -16,6 +23,7 @@ import math
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.fix import gronbech_jensen as gj
 from asemd.fix import hook
 from asemd.fix.formula import write
 from asemd.fix.thermostat import Thermostat
@@ -24,7 +32,9 @@ from asemd.kernels.threads import reduce_sum
 from asemd.words import number, take, whole, yes_no
 
 KEYWORDS = ("angmom", "gjf", "omega", "scale", "tally", "zero")
-TYPES = 14      # ratios start here in the parameters, by atom type
+GJF_WORDS = {"yes": "vfull", "on": "vfull", "off": "no", "false": "no"}        # yes: the form of old versions
+GJF_HOOKS = ("initial_integrate", "post_force", "end_of_step")
+TYPES = 16      # ratios start here in the parameters, by atom type
 
 
 class Langevin(Thermostat):
@@ -45,26 +55,33 @@ class Langevin(Thermostat):
         Atom type -> ratio that multiplies the damping time.
     tally, zero : bool
         Add up the energy; remove the mean of the noise.
+    gjf : str
+        ``vhalf`` or ``vfull``: the discretisation of Gronbech-Jensen and Farago, with these velocities; ``no``: the plain one.
 
     Raises
     ------
     InputError
-        A value out of its range, or at the start of a run a type that does not exist.
+        A value out of its range, or at the start of a run a type that does not exist or a fix that does not go with ``gjf``.
     """
 
     style = "langevin"
     levels = "outermost"
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1, scale: dict[int, float] | None = None,
-                 tally: bool = False, zero: bool = False):
+                 tally: bool = False, zero: bool = False, gjf: str = "no"):
         super().__init__(group, temperature, damping)
         if seed <= 0:
             raise InputError(f"fix langevin: seed must be a positive whole number, got {seed}")
         for kind, ratio in (scale or {}).items():
             if ratio <= 0.0:
                 raise InputError(f"fix langevin: the scale ratio of type {kind} must be positive, got {ratio:g}")
-        self.seed, self.scale, self.tally, self.zero = seed, dict(scale or {}), tally, zero
+        if gjf not in (*gj.VELOCITIES, "no"):
+            raise InputError(f"fix langevin: gjf must be no, vhalf or vfull, got {gjf}{nearest(gjf, gj.VELOCITIES)}")
+        self.seed, self.scale, self.tally, self.zero, self.gjf = seed, dict(scale or {}), tally, zero, gjf
         self.p, self.a = np.zeros(TYPES), np.zeros((1, 4))
+        if gjf != "no":
+            self.levels = ""
+            self.initial_integrate, self.post_force, self.end_of_step = (getattr(gj.Hooks, n) for n in GJF_HOOKS)
         if callable(self.start):
             self.pre_force = self._follow_variable
 
@@ -85,16 +102,17 @@ class Langevin(Thermostat):
                 scale[whole(values[0], what)] = number(values[1], what)
             elif keyword in ("tally", "zero"):
                 flags[keyword] = yes_no(values[0], what)
+            elif keyword == "gjf":
+                flags["gjf"] = GJF_WORDS.get(values[0], values[0])
             elif values[0] not in ("no", "off", "false"):
-                why = "only the standard discretisation is there" if keyword == "gjf" else "particles here do not rotate"
-                raise InputError(f"fix langevin: {keyword} {values[0]} is not supported; {why}")
+                raise InputError(f"fix langevin: {keyword} {values[0]} is not supported; particles here do not rotate")
         return cls(group, ramp, damping, seed, scale, **flags)
 
     def to_lammps(self) -> list[str]:
         words = [write(self.start), repr(self.stop), repr(self.damping), str(self.seed)]
         for kind, ratio in self.scale.items():
             words += ["scale", str(kind), repr(ratio)]
-        return words + ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero
+        return words + ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero + ["gjf", self.gjf] * (self.gjf != "no")
 
     def parameters(self, loop) -> np.ndarray:
         ntypes, u = loop.system.counts["ntypes"], loop.units
@@ -105,16 +123,24 @@ class Langevin(Thermostat):
         constant = not callable(self.start)
         ramp = (self.start, self.stop) if constant else (0.0, 0.0)
         friction, noise = 1.0 / (self.damping * u.ftm2v), 24.0 * u.boltz / (self.damping * u.mvv2e) / u.ftm2v**2
+        if self.gjf != "no":
+            gj.check_order(self, loop.fixes)
+            friction, noise = 1.0 / self.damping, u.boltz / u.mvv2e
         self.p = np.array([loop.group_bit(self.group), self.seed, self.tally, self.zero, not constant, *ramp, friction, noise,
                            max(np.count_nonzero(loop.groups[self.group]), 1), bool(self.scale), *self.p[11:13], loop.dt,
-                           *ratios], dtype=float)
+                           u.mvv2e, self.gjf == "vhalf", *ratios], dtype=float)
         return self.p
 
     def atom_arrays(self, loop) -> np.ndarray | None:
         """Columns: the added force (for the tally), the square root of the target temperature (for a variable)."""
-        if not (self.tally or callable(self.start)):
+        if self.gjf != "no":
+            if self.a.shape != (loop.system.n, gj.COLUMNS):
+                self.a = np.full((loop.system.n, gj.COLUMNS), gj.NONE)
+            self.a[:, 9] = 0.0
+        elif self.tally or callable(self.start):
+            self.a = np.zeros((loop.system.n, 4))
+        else:
             return None
-        self.a = np.zeros((loop.system.n, 4))
         if callable(self.start):
             self._follow_variable(loop)
         return self.a
@@ -123,7 +149,7 @@ class Langevin(Thermostat):
         self.p[9] = max(np.count_nonzero(loop.groups[self.group]), 1)
 
     def _follow_variable(self, loop) -> None:
-        self.a[:, 3] = np.sqrt(self.target(loop))
+        self.a[:, -1] = np.sqrt(self.target(loop))
 
     @hook
     def post_force(th, s, p, a):
@@ -142,7 +168,7 @@ class Langevin(Thermostat):
             if tally or variable or scaled or zero:
                 for i in range(th.lo, th.hi):
                     if s.mask[i] & bit != 0:
-                        ratio = p[14 + s.type[i]]
+                        ratio = p[16 + s.type[i]]
                         size = a[s.row[i], 3] if variable else root
                         drag = friction * s.mass[i] / ratio * s.v[d, i]
                         kick = noise * math.sqrt(s.mass[i] / ratio) * size * (uniform(seed, step, s.row[i], d) - 0.5)
@@ -184,10 +210,20 @@ class Langevin(Thermostat):
 
     def hooks(self) -> dict[str, bool]:
         hooks = super().hooks()
-        if not self.tally:
+        if not self.tally and self.gjf != "vhalf":
             del hooks["end_of_step"]
         return hooks
 
     def scalar(self) -> float:
         """Energy given to the heat bath since the start of the run, energy units; 0 without ``tally yes``."""
         return -float(self.p[11] - 0.5 * self.p[12] * self.p[13])
+
+    def state(self) -> dict:
+        """Of ``gjf vhalf`` the velocities at the positions, which are not those that the atoms have after a run."""
+        return {"velocities": self.a[:, 3:9].copy()} if self.gjf == "vhalf" and self.a.shape[1] == gj.COLUMNS else {}
+
+    def restore(self, state: dict) -> None:
+        """Velocities that are not those of the atoms any more are not used."""
+        if "velocities" in state:
+            self.a = np.full((len(state["velocities"]), gj.COLUMNS), gj.NONE)
+            self.a[:, 3:9] = state["velocities"]
