@@ -109,11 +109,16 @@ class Watchdog:
         bond = _longest_bond(e.system)
         self.reach = max(e.cutoff, bond) if e.pair_terms else FREE * max(bond, loop.settings.skin)
         self._limit = min(self.reach, self.width) ** 2
-        self.first = self._built = loop.step
-        self._atoms = e.system.n
-        self.frames.clear()
-        self._energies, self._since, self._warned = None, loop.step, False
         self._free = _conserving(loop)
+        self.frames.clear()
+        self.again()
+
+    def again(self) -> None:
+        """A run goes on, perhaps with other velocities."""
+        loop = self.loop
+        self.first = self._built = self._since = loop.step
+        self._atoms = loop.system.n
+        self._energies, self._warned = None, False
         self._next = self._next_energy = 0.0
         self._look_at_energy(loop.result)
         self._keep()

@@ -52,7 +52,7 @@ def test_onset_of_a_harmonic_dimer(k):
     assert ("missed pairs", "no pair interactions") in report.left_out
 
 
-@pytest.mark.parametrize(("part", "severity"), [(0.15, "ok"), (0.6, "warning"), (1.03, "error")])
+@pytest.mark.parametrize(("part", "severity"), [(0.15, "ok"), (0.6, "note"), (0.9, "warning"), (1.03, "error")])
 def test_a_timestep_near_the_onset(part, severity):
     report = check(DIMER.format(k=50.0, dt=part * 0.2))
     found, = report.of("onset of instability")
@@ -186,3 +186,23 @@ def test_atoms():
     omega = math.sqrt(2 * 10.0 / (39.948 / 2))
     report = asemd.check(atoms, run=True, dt=0.1 / omega, budget=5.0)
     assert report.of("onset of instability")[0].limit * omega == pytest.approx(2.0, rel=0.01)
+
+
+def test_walls_that_move_and_forces_that_work():
+    """What pushes the atoms is held still or left out, so that energy is conserved and the order can be seen."""
+    text = MELT.format(n=4, dt=0.004) + """region top block INF INF 5 INF INF INF
+group top region top
+velocity top set 1.0 0 0
+fix 2 top setforce 0 NULL NULL
+variable push equal 3*sin(step)
+fix 3 all addforce v_push 0 0
+"""
+    report = check(text)
+    note, = report.of("experiments")
+    assert "fix 3 (addforce) is off" in note.message and "held still where fix 2 (setforce)" in note.message
+    assert report.of("order of the integrator")[0].value == pytest.approx(2.0, abs=0.2) and report.ok
+
+
+def test_constant_forces_stay():
+    report = check(MELT.format(n=4, dt=0.004) + "fix 2 all addforce 0.5 0 0\n")
+    assert not report.of("experiments") and report.of("order of the integrator")[0].value == pytest.approx(2.0, abs=0.2)

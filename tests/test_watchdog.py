@@ -17,6 +17,7 @@ from asemd.errors import SimulationError
 from asemd.fix.nve import NVE
 from asemd.forcefield import Interactions
 from asemd.lammps import Lammps
+from asemd.lammps.dump_read import frames
 from asemd.lammps.session import Session
 from asemd.lammps.switches import Switches
 from asemd.loop import Loop
@@ -112,6 +113,13 @@ def test_the_last_good_state_goes_on(tmp_path):
     np.testing.assert_array_equal(system.image, good.image)
     fresh.call("run", ["10"])
     assert not list(tmp_path.glob("*.part*"))
+
+
+def test_dumps_are_whole(tmp_path):
+    """What was written before the run failed can be read, frame by frame."""
+    error, session = failure(MELT.format(n=4, dt=0.03) + f"dump 1 all custom 1 {tmp_path}/d id x y z\nrun 2000\n", tmp_path)
+    steps = [frame.step for frame in frames(f"{tmp_path}/d", "native")]
+    assert steps == list(range(len(steps))) and steps[-1] >= error.verdict.step - 1 and error.verdict.good.step in steps
 
 
 def test_a_timestep_far_too_long_in_a_melt(tmp_path):

@@ -27,11 +27,14 @@ from asemd.text_table import Table
 GROWTH = 10.0           # of the kinetic energy: the run has come apart
 PRECISE = 1.005         # ratio of the timesteps between which the onset is known in the end
 LONGEST = 2.0**8        # of the timestep: where the search for the onset ends
-NEAR = 0.5              # of the onset: a timestep above is a warning
+CLOSE, NEAR = 0.5, 0.75         # of the onset: a timestep above is worth a note, a warning
 ORDER = 0.3             # how far from 2 the order may be
 TINY = 1e-6             # energies that fluctuate less, relative to the kinetic energy, are as good as constant
 LOST = 1e-9             # energy of missed pairs, relative to the energy, double precision
 SINGLE = 1e4            # digits that mixed precision has less, as a factor
+SEARCH = 0.5            # of the time for the onset
+SMALL = 1e-3            # kT per atom: a smaller error of the energy by missed pairs is a note, as is a path that misses its beginning by
+                        # this part of its length
 STEPS = 400             # of one run
 APART = "the run comes apart"
 TOO_SHORT = "it does not fit into the time: give a larger budget"
@@ -93,7 +96,8 @@ def run(scene: Scene, *, dt: float | None = None, temperature: float | None = No
 def onset(b: Bench, report: Report, force: bool, _) -> float | None:
     """Onset of instability: the timestep at which the run comes apart, by bisection."""
     name = "onset of instability"
-    steps = b.steps(STEPS, 40, 0.4 / 16)
+    until = time.perf_counter() + SEARCH * b.left
+    steps = b.steps(STEPS, 24, SEARCH / 16)
     if not steps:
         report.left_out.append((name, TOO_SHORT))
         return None
@@ -116,7 +120,7 @@ def onset(b: Bench, report: Report, force: bool, _) -> float | None:
         message = f"No timestep up to {low:.3g} makes the run come apart within {steps} steps."
         report.findings.append(Finding("ok", name, message, value=low))
         return None
-    while high / low > PRECISE and b.left > 0.0:
+    while high / low > PRECISE and time.perf_counter() < until:
         middle = math.sqrt(low * high)
         if comes_apart(b, middle, steps, GROWTH):
             high = middle
@@ -126,7 +130,7 @@ def onset(b: Bench, report: Report, force: bool, _) -> float | None:
     limit, ratio = math.sqrt(low * high), b.dt / math.sqrt(low * high)
     top = static_limit(b)
     static = f" The fastest vibration of the start alone allows {top:.4g} (2/omega)." if top else ""
-    severity = ("warning" if force else "error") if b.dt >= low else "warning" if ratio > NEAR else "ok"
+    severity = ("warning" if force else "error") if b.dt >= low else "warning" if ratio > NEAR else "note" if ratio > CLOSE else "ok"
     message = f"Runs of {steps} steps come apart from a timestep of {limit:.4g} on; {b.dt:.4g} is {100 * ratio:.3g} % of that.{static}"
     advice = f"timestep {0.3 * limit:.2g} or less" if severity != "ok" else ""
     report.findings.append(Finding(severity, name, message, value=b.dt, limit=limit, advice=advice))
@@ -233,7 +237,7 @@ def _rms(d: np.ndarray) -> float:
 def time_reversal(b: Bench, report: Report, force: bool, limit: float | None) -> None:
     """Time reversal: there and back again, against the growth of roundings."""
     name = "time reversal"
-    dt = b.dt if limit is None else min(b.dt, NEAR * limit)
+    dt = b.dt if limit is None else min(b.dt, CLOSE * limit)
     steps = b.steps(STEPS // 2, 20, 0.4 / 8)
     if not steps:
         report.left_out.append((name, TOO_SHORT))
@@ -255,7 +259,8 @@ def time_reversal(b: Bench, report: Report, force: bool, limit: float | None) ->
         return
     advice = "neigh_modify every 1 delay 0 check yes, or a larger skin"
     message = f"{found}; with a list that is rebuilt in every step they are {best:.2g}: the path depends on when the list was built."
-    report.findings.append(Finding("warning", name, message, value=own, limit=allowed, advice=advice))
+    severity = "warning" if own > SMALL * way else "note"
+    report.findings.append(Finding(severity, name, message, value=own, limit=allowed, advice=advice))
 
 
 # ------------------------------------------------------------------------------------------------------------------------ missed pairs ---
@@ -297,9 +302,11 @@ def missed_pairs(b: Bench, report: Report, force: bool, limit: float | None) -> 
         report.findings.append(Finding("ok", name, message, value=0.0, limit=LOST))
         return
     message = (f"In {steps} steps the list missed pairs at {missed} of {looks} looks: the energy is wrong by up to {worst:.3g} "
-               f"({worst / kt:.2g} kT), atoms moved by {far:.2g} between builds, the skin allows {settings.skin / 2:g}.")
+               f"({worst / kt / loop.system.n:.2g} kT per atom), atoms moved by {far:.2g} between builds, "
+               f"the skin allows {settings.skin / 2:g}.")
     advice = f"neighbor {2.2 * far:.2g} bin, or neigh_modify every 1 delay 0 check yes"
-    report.findings.append(Finding("warning", name, message, value=worst, limit=LOST, advice=advice))
+    severity = "warning" if worst > SMALL * kt * loop.system.n else "note"
+    report.findings.append(Finding(severity, name, message, value=worst, limit=LOST, advice=advice))
 
 
 def _complete(engine: Engine, system) -> float:

@@ -17,6 +17,7 @@ from asemd.scene import Scene
 STRONG = 0.1            # of its length: an interaction that moves an atom further in one step must be relaxed first
 ROOM = 293.0            # temperature of atoms at rest without a thermostat, K
 FINER = 256.0           # how much shorter a timestep is that even steep forces stand
+CONSTRAINING = ("enforce2d",)       # fixes that set forces to zero where nothing moves
 BURST = 64              # steps
 PIECE = 10              # steps between looks
 
@@ -34,7 +35,8 @@ class Bench:
         ``tell(fraction, what)`` shows progress.
     until : float
         When everything must be over, by ``time.perf_counter``.
-    seconds_per_step : float
+    seconds_per_step, seconds_to_start : float
+        Of a step with its part of looks at the energy, and of a run before its first step.
     notes : list of str
         What was changed of the scene, in plain words.
     """
@@ -44,6 +46,7 @@ class Bench:
     tell: Callable[[float, str], None]
     until: float = 0.0
     seconds_per_step: float = 0.0
+    seconds_to_start: float = 0.0
     notes: list[str] = field(default_factory=list)
 
     @property
@@ -52,8 +55,8 @@ class Bench:
         return self.until - time.perf_counter()
 
     def steps(self, wanted: int, fewest: int, share: float) -> int:
-        """How many steps fit into a share of the time that is left; 0 if not even the fewest do."""
-        fit = int(share * self.left / max(self.seconds_per_step, 1e-9))
+        """How many steps of one run fit into a share of the time that is left; 0 if not even the fewest do."""
+        fit = int((share * self.left - self.seconds_to_start) / max(self.seconds_per_step, 1e-9))
         return min(wanted, fit) if fit >= fewest else 0
 
     @property
@@ -105,34 +108,64 @@ def bench(scene: Scene, dt: float | None, temperature: float | None, seed: int, 
         found.notes.append(f"the atoms were at rest: velocities of temperature {temperature:g} (seed {seed})")
     if temperature is not None:
         nve.warm(own, temperature, seed)
+    _hold(own)
     _relax(found, relax)
-    found.seconds_per_step = _cost(found, found.dt) or _cost(found, found.dt / FINER)
+    if not _measure(found, found.dt):
+        _measure(found, found.dt / FINER)
     return found
 
 
-def _cost(bench: Bench, dt: float) -> float:
-    """Seconds per step, compilation left out; 0 if the run fails."""
-    loop = bench.loop(dt)
+def _measure(bench: Bench, dt: float) -> bool:
+    """Time a short run, compilation left out; False if it fails."""
     try:
+        bench.loop(dt).setup(0, 10**9)
+        began = time.perf_counter()
+        loop = bench.loop(dt)
         loop.setup(loop.step, loop.step + 10**9)
+        bench.seconds_to_start = time.perf_counter() - began
         loop.advance(2)
         began, done = time.perf_counter(), 0
-        while time.perf_counter() - began < 0.05 and done < 200:
-            loop.advance(5)
-            done += 5
+        while time.perf_counter() - began < 0.1 and done < 200:
+            loop.advance(PIECE)
+            bench.kinetic(loop)
+            done += PIECE
     except SimulationError:
-        return 0.0
-    return (time.perf_counter() - began) / done
+        return False
+    bench.seconds_per_step = (time.perf_counter() - began) / done
+    return True
 
 
 def _leave_out(scene: Scene, notes: list[str]) -> None:
     """Only fixes that act at constant energy stay; `notes` tells which ones do not."""
-    gone = [f for f in scene.fixes.values() if f.ecouple or (f.integrates and f.style != "nve")]
+    gone = [f for f in scene.fixes.values() if f.ecouple or (f.integrates and f.style != "nve") or _works(f)]
+    for fix in gone:
+        if fix.minimizes:
+            del scene.fixes[fix.id]
     if gone:
         names = ", ".join(f"{f.id} ({f.style})" for f in gone)
         notes.append(f"constant energy: {'fix' if len(gone) == 1 else 'fixes'} {names} {'is' if len(gone) == 1 else 'are'} off")
+    led = [f for f in scene.fixes.values() if f.style == "setforce"]
+    if led:
+        notes.append(f"atoms are held still where fix {', '.join(f.id for f in led)} (setforce) sets their force")
     if not any(f.integrates for f in scene.fixes.values()):
         notes.append("no fix moves the atoms: fix nve does")
+
+
+def _works(fix) -> bool:
+    """Whether a fix does work on the atoms that no energy accounts for."""
+    if not fix.minimizes or fix.integrates or fix.style in CONSTRAINING or not {"post_force", "pre_force"} & set(fix.hooks()):
+        return False
+    changes = any(callable(f) for f in getattr(fix, "force", ())) or getattr(fix, "region", None) is not None
+    return changes or (fix.style != "setforce" and not fix.modify_option("energy", "yes", None))
+
+
+def _hold(scene: Scene) -> None:
+    """Atoms whose force is set do not move in that direction, so that nothing works on the others."""
+    for fix in scene.fixes.values():
+        if fix.style == "setforce":
+            held = [f is not None for f in fix.force]
+            scene.system.v[np.ix_(scene.groups.mask(fix.group), held)] = 0.0
+            fix.force = [0.0 if h else None for h in held]
 
 
 def _relax(bench: Bench, wanted: bool) -> None:

@@ -173,7 +173,7 @@ class Driver:
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         else:
             loop.sync_in()      # commands between the runs may have changed velocities
-            loop.watchdog.begin()
+            loop.watchdog.again()
         loop.begin, loop.end, loop.dt = plan.first, plan.last, scene.dt
         engine = loop.engine
         counted = engine if fresh else session.moment.progress      # without a new setup the counters go on
