@@ -69,7 +69,9 @@ def show(parts: Sequence[Table | str]) -> None:
     if sys.stdout.isatty():
         from rich.console import Console
         console = Console(highlight=False, markup=False)
-        for part in parts:
+        for k, part in enumerate(parts):
+            if k and isinstance(part, str) and isinstance(parts[k - 1], str):
+                console.print()
             drawn = isinstance(part, Table) and (part.width <= console.width or not part.has_numbers)
             console.print(part.rich() if drawn else str(part), soft_wrap=not drawn and isinstance(part, Table))
     else:

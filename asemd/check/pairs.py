@@ -16,16 +16,16 @@ TYPES = 60          # of more types than this only pairs of the same type are lo
 def energy_between(case, i: int, j: int) -> Callable[[float], float]:
     """The pair energy of types `i` and `j` without their charges: a function of the distance, ``inf`` where it does not exist."""
     pieces = []
-    for term in case.engine.pair_terms:
-        row = constant = 0
+    for term in tabled(case):
+        row = constant = array = 0
         for part in term.style.parts:
-            table, numbers = term.tables.rows, term.tables.constants
+            table, numbers, arrays = term.tables.rows, term.tables.constants, term.tables.arrays
             cut2, offset = float(table[row, i, j]), float(table[row + 1, i, j])
             values = [float(table[row + 2 + k, i, j]) for k in range(len(part.rows))]
-            values += [float(c) for c in numbers[constant:constant + len(part.constants)]]
-            if cut2 > 0.0 and not part.charged and not part.arrays:
+            values += [float(c) for c in numbers[constant:constant + len(part.constants)]] + list(arrays[array:array + len(part.arrays)])
+            if cut2 > 0.0 and not part.charged:
                 pieces.append((part.function, part.coordinate == "r2", cut2, offset, values))
-            row, constant = row + 2 + len(part.rows), constant + len(part.constants)
+            row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
     def energy(r: float) -> float:
         total = 0.0
@@ -33,10 +33,15 @@ def energy_between(case, i: int, j: int) -> Callable[[float], float]:
             if r * r < cut2:
                 try:
                     total += function(r * r if squared else r, *values)[0] - offset
-                except (ArithmeticError, ValueError):
+                except (ArithmeticError, ValueError, IndexError):
                     return math.inf
         return math.inf if math.isnan(total) else total
     return energy
+
+
+def tabled(case) -> list:
+    """The terms of pair styles that are functions of the distance of two atoms."""
+    return [t for t in case.engine.pair_terms if getattr(t, "tables", None) is not None and t.style.parts]
 
 
 def type_pairs(case) -> list[tuple[int, int]]:
@@ -57,7 +62,7 @@ def wall(case, energies) -> dict[tuple[int, int], tuple[float, ...]]:
     """
     out, known = {}, {}
     for i, j in type_pairs(case):
-        key = tuple(t.tables.rows[:, i, j].tobytes() for t in case.engine.pair_terms)
+        key = tuple(t.tables.rows[:, i, j].tobytes() for t in tabled(case))
         if key not in known:
             known[key] = _wall(energy_between(case, i, j), _cut(case, i, j), energies)
         out[i, j] = known[key]
@@ -65,7 +70,7 @@ def wall(case, energies) -> dict[tuple[int, int], tuple[float, ...]]:
 
 
 def _cut(case, i: int, j: int) -> float:
-    return max((math.sqrt(float(t.tables.rows[t.cut_rows, i, j].max())) for t in case.engine.pair_terms), default=0.0)
+    return max((math.sqrt(float(t.tables.rows[t.cut_rows, i, j].max())) for t in tabled(case)), default=0.0)
 
 
 def _wall(energy: Callable[[float], float], cut: float, energies) -> tuple[float, ...]:

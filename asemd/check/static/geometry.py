@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.integrate import trapezoid
 
 from asemd.check.case import Case
 from asemd.check.static import DoesNotApply, static
@@ -12,11 +13,13 @@ from asemd.finding import Finding
 RATIO = 2.0             # of the median length of a type to its rest length
 SMALL = 3.2             # degrees: rest angles below this are rare, and as radians they would cover the half circle
 OFF = 50.0              # degrees between the median angle and the rest angle
+POINTS = 60
+STRAINED = 10.0         # kT of an item: less is no mistake, but a soft one
 
 
 @static("rest lengths")
 def lengths(case: Case) -> list[Finding]:
-    name, found, looked = "rest lengths", [], False
+    name, found, looked, kt = "rest lengths", [], False, case.units.boltz * case.temperature
     for items in case.items:
         r = items.column("r")
         if items.category != "bond" or r is None:
@@ -29,7 +32,7 @@ def lengths(case: Case) -> list[Finding]:
             looked = True
             middle = float(np.median(r[mine]))
             ratio = middle / rest
-            if not 1.0 / RATIO < ratio < RATIO:
+            if not 1.0 / RATIO < ratio < RATIO and _cost(items, mine, "r", rest, middle) > STRAINED * kt:
                 text = (f"Bonds of type {kind} ({items.style.name}) are {middle:.4g} long (median of {len(mine)}), their rest length is "
                         f"{rest:.4g}")
                 ids = case.ids(items.atoms[mine[int(np.argmax(np.abs(r[mine] - rest)))]])
@@ -38,6 +41,15 @@ def lengths(case: Case) -> list[Finding]:
     if not looked:
         raise DoesNotApply("no bonds with a rest length")
     return found or [Finding("ok", name, "Bonds are about as long as their rest lengths.", limit=f"factor {RATIO:g}")]
+
+
+def _cost(items, mine: np.ndarray, name: str, rest: float, now: float) -> float:
+    """Energy from the rest value to `now`, the other coordinates being those of an item in the middle; inf outside the domain."""
+    q = np.repeat(items.q[mine[len(mine) // 2]][None], POINTS, axis=0)
+    column = items.style.coordinates.index(name)
+    q[:, column] = np.linspace(rest, now, POINTS)
+    slope = items.slopes(q, np.full(POINTS, items.types[mine[0]]))[:, column]
+    return float(trapezoid(slope, q[:, column])) if np.isfinite(slope).all() else math.inf
 
 
 def _lengths_advice(ratio: float) -> str:
@@ -49,7 +61,7 @@ def _lengths_advice(ratio: float) -> str:
 
 @static("rest angles")
 def angles(case: Case) -> list[Finding]:
-    name, found, looked = "rest angles", [], False
+    name, found, looked, kt = "rest angles", [], False, case.units.boltz * case.temperature
     for items in case.items:
         theta = items.column("theta")
         if items.category != "angle" or theta is None:
@@ -66,7 +78,7 @@ def angles(case: Case) -> list[Finding]:
                         f"{math.degrees(rest):.4g} degrees, and the angles of the structure are near {middle:.4g}.")
                 found.append(Finding("warning", name, text, case.ids(items.atoms[mine[0]]), rest, SMALL,
                                      f"angles are in degrees in scripts: {math.degrees(rest):.5g}?"))
-            elif abs(middle - rest) > OFF and not case.relaxes:
+            elif abs(middle - rest) > OFF and case.settled and _cost(items, mine, "theta", *np.radians([rest, middle])) > STRAINED * kt:
                 text = (f"Angles of type {kind} ({items.style.name}) are near {middle:.4g} degrees (median of {len(mine)}), their rest "
                         f"angle is {rest:g}.")
                 found.append(Finding("warning", name, text, case.ids(items.atoms[mine[0]]), middle, rest,

@@ -19,6 +19,7 @@ CHEMICAL = (0.65, 1.7, 30.0)                        # length from, to, and mass 
 FORCE = (100.0 * KCAL, 7000.0 * KCAL)               # eV/Angstrom^2, second derivatives of covalent bonds: torn H2 to triple bonds
 SIZE = (0.8, 30.0)                                  # Angstrom, diameter of the largest atom
 DEPTH = 6.0 * KCAL                                  # eV: van der Waals wells are not deeper; those of metals are
+METAL = 1.0                                         # eV: nor are those of metals deeper than this
 CUTOFF = (2.0, 100.0)                               # Angstrom
 HOT, COLD = 20_000.0, 1.5                           # K
 HOT_LJ = 50.0
@@ -96,7 +97,7 @@ def _depths(case: Case) -> list[Finding]:
         other = "kcal/mol" if case.units.name == "metal" else "K, or kJ/mol"
         text = f"epsilon of type {kind} is {deepest:.3g} eV = {deepest / KCAL:.3g} kcal/mol = {deepest / KB:.4g} K"
         return [_warn(f"{text}: far deeper than van der Waals attraction.", deepest / energy, DEPTH / energy,
-                      f"a number in {other}? (metals may have this)")]
+                      f"a number in {other}? (metals may have this)", severity="note" if deepest < METAL else "warning")]
     if 0.0 < deepest < 1e-6:
         return [_warn(f"The deepest well (type {kind}) is {deepest:.2g} eV: nothing is attracted at any temperature.", deepest / energy,
                       1e-6 / energy, "a factor of 23 comes from eV and kcal/mol, 1000 from kJ and J", severity="note")]

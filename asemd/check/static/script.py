@@ -5,7 +5,8 @@ from asemd.check.case import Case
 from asemd.check.static import DoesNotApply, static
 from asemd.finding import Finding
 
-SERIOUS = ("extent > half", "integrated more than once", "is negative", "have no energy")     # the others are for your information
+# the others are for your information
+SERIOUS = ("extent > half", "integrated more than once", "is negative", "have no energy", "should be used with")
 
 
 @static("script")

@@ -11,11 +11,14 @@ from asemd.check import spectrum
 from asemd.check.case import Case
 from asemd.check.static import DoesNotApply, static
 from asemd.finding import Finding
+from asemd.lammps import catalog
 
 RECOMMENDED, COARSE, FINE = 20.0, 10.0, 500.0     # steps per period
-RARE = 4.0              # steps per period of the fastest motion of all as it is now, which may be a rare collision
+RARE = 3.5              # steps per period of the fastest motion of all as it is now, which may be a rare collision
 RESONANCE = 3.0         # outer steps of r-RESPA per period
 SHOWN = 3
+TIME = {"real": " fs", "metal": " ps", "electron": " fs", "lj": " tau"}
+USUAL = {"real": "1.0 (fs)", "metal": "0.001 (ps)", "electron": "0.001 (fs)"}
 
 
 @static("time step")
@@ -23,29 +26,36 @@ def timestep(case: Case) -> list[Finding]:
     name = "time step"
     if not case.motions:
         raise DoesNotApply("nothing vibrates")
-    m = case.motions[0]
-    period, advice = f"period {m.period:.4g}", _advice(case, m)
-    others = [f"{o.label} {o.period:.4g}" + (f" (atoms {' '.join(map(str, o.atoms))})" if o.atoms else "") for o in case.motions[:SHOWN]]
-    text = f"The fastest motions and their periods: {'; '.join(others)}."
+    m, unit = case.motions[0], TIME.get(case.units.name, "")
+    text = f"The fastest motion is {m.label} with a period of {m.period:.4g}{unit}{_who(m)}"
+    rest = "; ".join(f"{o.label} {o.period:.4g}{_who(o)}" for o in case.motions[1:SHOWN])
+    rest = f" Then come {rest}." if rest else ""
     if not math.isfinite(m.dt):
-        return [Finding("ok", name, text, m.atoms, period, m.period / RECOMMENDED, advice)]
-    steps = m.period / m.dt
-    text += f" A step of {m.dt:g} is period / {steps:.3g}"
-    level = "" if case.respa is None else f" (the inner step of r-RESPA; the outer one is {case.dt:g})"
-    value, limit = m.dt, m.period / RECOMMENDED
+        return [Finding("ok", name, f"{text}.{rest}", m.atoms, f"period {m.period:.4g}", m.period / RECOMMENDED, _advice(case, m))]
+    if case.respa is not None:
+        text += f"; it has the step {m.dt:g} of its r-RESPA level"
+    verdict, rank, limit = _verdict(m.period / m.dt, m.period)
+    return [Finding("warning" if rank == "error" and case.force else rank, name, f"{text}; a step of {m.dt:g} is {verdict}.{rest}", m.atoms,
+                    m.dt, limit, _advice(case, m) if rank != "ok" else "")]
+
+
+def _verdict(steps: float, period: float) -> tuple[str, str, float]:
+    """What so many steps in a period mean: in words, the severity, the limit."""
+    here = f"period / {steps:.3g}"
     if steps < math.pi:
-        return [Finding("warning" if case.force else "error", name, f"{text}{level}: beyond period / pi = {m.period / math.pi:.4g} no run "
-                        "with velocity Verlet is stable.", m.atoms, value, m.period / math.pi, advice)]
+        return (f"{here}: beyond period / pi = {period / math.pi:.4g} no run with velocity Verlet is stable", "error", period / math.pi)
     if steps < COARSE:
-        return [Finding("warning", name, f"{text}{level}: the motion is off by {_error(steps):.1f} % in its frequency, and energy drifts "
-                        "as soon as it gets stiffer.", m.atoms, value, m.period / COARSE, advice)]
+        return (f"{here}: its frequency is off by {_error(steps):.1f} %, and energy drifts as soon as the motion gets stiffer", "warning",
+                period / COARSE)
     if steps < RECOMMENDED:
-        return [Finding("note", name, f"{text}{level}: it runs, with frequencies off by {_error(steps):.1f} %.", m.atoms, value, limit,
-                        advice)]
+        return f"{here}: it runs, with frequencies off by {_error(steps):.1f} %", "note", period / RECOMMENDED
     if steps > FINE:
-        return [Finding("note", name, f"{text}{level}: far more steps than the motion needs.", m.atoms, value, limit,
-                        f"if that is not meant, a timestep up to {limit:.2g} is accurate{_usual(case)}")]
-    return [Finding("ok", name, f"{text}.", m.atoms, value, limit)]
+        return f"{here}: far more steps than the motion needs", "note", period / RECOMMENDED
+    return here, "ok", period / RECOMMENDED
+
+
+def _who(m) -> str:
+    return f" (stiffest: atoms {' '.join(map(str, m.atoms))})" if m.atoms else ""
 
 
 @static("fastest vibration")
@@ -64,8 +74,10 @@ def fastest(case: Case) -> list[Finding]:
     dt = min((m.dt for m in case.motions), default=case.dt if case.dt is not None else math.nan)
     if not math.isfinite(dt):
         return [Finding("ok", name, f"{text}.", ids, f"period {period:.4g}", period / RECOMMENDED)]
-    steps = period / dt
-    limit = period / math.pi
+    steps, limit = period / dt, period / math.pi
+    if not case.motions and math.pi <= steps:        # forces of many atoms at once: nothing else tells how stiff they are
+        verdict, rank, limit = _verdict(steps, period)
+        return [Finding(rank, name, f"{text}; a step of {dt:g} is {verdict}.", ids, dt, limit)]
     advice = f"use a timestep below {period / COARSE:.2g}" + ("" if not case.relaxes else ", or look again after the minimisation")
     if steps < math.pi:
         severity = "note" if case.gentle else "warning" if case.force else "error"
@@ -98,16 +110,15 @@ def _error(steps: float) -> float:
     return 100.0 * (math.asin(half) / half - 1.0)
 
 
-def _usual(case: Case) -> str:
-    usual = {"real": "1.0 (fs)", "metal": "0.001 (ps)", "electron": "0.001 (fs)"}.get(case.units.name)
-    return f"; usual in units {case.units.name}: {usual}" if usual else ""
-
-
 def _advice(case: Case, m) -> str:
     best = m.period / RECOMMENDED
-    factor = f" (now {m.dt:g})" if math.isfinite(m.dt) else ""
-    out = f"a timestep of {best:.2g}{factor} is accurate: period / 20"
-    if math.isfinite(m.dt) and m.period < COARSE * m.dt and m.atoms and case.respa is None:
-        out += ("; or give the stiff bonded forces shorter steps with run_style respa"
-                if len(case.motions) > 1 and m.period < 0.7 * case.motions[-1].period else "")
+    if not math.isfinite(m.dt) or m.period > FINE * m.dt:
+        usual = USUAL.get(case.units.name)
+        return f"a timestep up to {best:.2g} is accurate" + (f"; usual in units {case.units.name}: {usual}" if usual else "")
+    out = f"a timestep of {best:.2g} is accurate (period / 20)"
+    if m.period < COARSE * m.dt and m.atoms:
+        if m.label.startswith("bond") and catalog.exists("fix", "shake"):
+            out += "; fix shake holds stiff bonds"
+        if case.respa is None and m.period < 0.7 * case.motions[-1].period:
+            out += "; run_style respa gives bonded forces shorter steps"
     return out
