@@ -259,3 +259,64 @@ def test_mistakes_in_the_script_are_all_told(folder):
         check(edit(LJ, ("pair_coeff 1 1 1.0 1.0", "")))
     with pytest.raises(InputError, match="box"):
         check("units lj\n")
+
+
+def test_the_page_names_every_check(folder):
+    from asemd.check.static import CHECKS, DoesNotApply, all_checks
+    page = (ROOT / "docs" / "check.md").read_text()
+    for name in all_checks():
+        assert name in page, name
+    block = page[page.index("from asemd.check.static import DoesNotApply"):]
+    exec(block[:block.index("```")])
+    try:
+        assert check(LJ).of("momentum")[0].severity == "ok"
+        with pytest.raises(DoesNotApply):
+            CHECKS["momentum"](type("Case", (), {"masses": np.ones(1), "system": type("S", (), {"v": np.zeros((1, 3))})}))
+    finally:
+        del CHECKS["momentum"]
+
+
+def test_tabulated_pairs_collide_like_others(folder):
+    r = np.linspace(0.7, 2.5, 1000)
+    rows = "\n".join(f"{k} {a:.9f} {4 * (a**-12 - a**-6):.12g} {24 * (2 * a**-13 - a**-7):.12g}" for k, a in enumerate(r, 1))
+    (folder / "p.txt").write_text(f"LJ\nN 1000 R 0.7 2.5\n\n{rows}\n")
+    table = check(edit(LJ, ("lj/cut 2.5", "table linear 4000"), ("1 1 1.0 1.0", "1 1 p.txt LJ 2.5")))
+    assert not table.at_least("note")
+    assert table.of("time step")[0].limit == pytest.approx(check(LJ).of("time step")[0].limit, rel=0.03)
+
+
+def test_argon_in_metal_units(folder):
+    text = edit(LJ, ("units lj", "units metal"), ("fcc 0.8442", "fcc 5.4"), ("mass 1 1.0", "mass 1 39.948"), ("create 1.44", "create 90.0"),
+                ("1 1 1.0 1.0", "1 1 0.0104 3.4"), ("lj/cut 2.5", "lj/cut 8.5"), ("timestep 0.005", "timestep 0.005"))
+    assert not check(text).at_least("note")
+    assert check(edit(text, ("0.0104", "0.24"))).of("units")[0].severity == "note"     # kcal/mol, or a metal
+    assert "1000 times the density" in check(edit(text, ("fcc 5.4", "fcc 0.54"))).of("units")[0].advice
+
+
+def test_respa_has_the_step_of_its_level(folder):
+    text = edit(BUTANE, ("nvt temp 300.0 300.0 100.0", "nve"), ("timestep 1.0", "timestep 4.0"))
+    assert check(text).of("time step")[0].severity == "warning"
+    inner = check(edit(text, ("timestep 4.0", "timestep 4.0\nrun_style respa 2 4 bond 1 angle 1 dihedral 1 pair 2")))
+    assert not inner.of("time step")[0].rank and inner.of("time step")[0].value == pytest.approx(1.0) and not inner.of("r-RESPA")[0].rank
+
+
+def test_frozen_and_held_bonds_do_not_vibrate(folder, monkeypatch):
+    text = edit(CHAIN, ("timestep 0.006", "timestep 0.05"), ("fix 1 all nve", "group none empty\nfix 1 none nve"))
+    assert check(text).of("time step")[0].atoms == ()        # what is left are collisions
+    from asemd.fix.nve import NVE
+    held = edit(CHAIN, ("timestep 0.006", "timestep 0.03"))
+    assert "bond type 1" in check(held).of("time step")[0].message
+    monkeypatch.setattr(NVE, "constrained_items", lambda self, system, category, atoms: np.full(len(atoms), category == "bond"), raising=False)
+    assert "bond type 1" not in check(held).of("time step")[0].message
+
+
+def test_scenes_with_mistakes_end_in_one_message(folder):
+    """Whatever is wrong with a scene, a check ends with a report or with an error that asemd raises on purpose."""
+    import test_bad_input
+    from asemd.errors import AsemdError
+    for case in [c for c in test_bad_input.CASES if c.expect != "error" or "timestep" in c.name or "skin" in c.name][::2]:
+        test_bad_input.write(case, folder)
+        try:
+            assert asemd.check("in.scene").findings
+        except AsemdError as e:
+            assert case.expect == "error", (case.name, e)

@@ -64,15 +64,15 @@ def _number(value) -> bool:
 
 def level_dt(case, category: str) -> float:
     """The timestep with which forces of a category act."""
-    if case.dt is None:
+    if not case.dt:
         return math.nan
     if case.respa is None:
-        return case.dt
+        return abs(case.dt)
     levels = case.respa
     at = levels.level.get(category)
     if at is None and category == "pair":
         at = levels.level.get("inner", min(levels.hybrid, default=levels.n))
-    return levels.steps(case.dt)[(at or levels.n) - 1]
+    return levels.steps(abs(case.dt))[(at or levels.n) - 1]
 
 
 def motions(case) -> list[Motion]:

@@ -112,7 +112,7 @@ def close_pairs(case, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     e = case.engine
     if e.mode == "none":
         return np.zeros((0, 2), int), np.zeros(0), np.zeros(0, int)
-    if e.state is None:
+    if not e.builds:
         e.load()
     s = e.state
     reach = min(reach, e.reach)

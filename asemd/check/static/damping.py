@@ -22,7 +22,7 @@ def damping(case: Case) -> list[Finding]:
     times = [(fix, word, float(value)) for fix in case.fixes.values() for word, value in relaxation_times(fix)]
     if not times:
         raise DoesNotApply("no thermostat or barostat")
-    if case.dt is None:
+    if not case.dt:
         raise DoesNotApply("no timestep")
     return [_judge(case, fix, word, time) for fix, word, time in times]
 
@@ -38,7 +38,7 @@ def relaxation_times(fix) -> list[tuple[str, float]]:
 def _judge(case: Case, fix, word: str, time: float) -> Finding:
     frictional = word == "temperature" and any(s in fix.style for s in FRICTIONAL)
     least, low, most = PRESSURE if word == "pressure" else FRICTION if frictional else TEMPERATURE
-    steps, name = time / case.dt, "damping"
+    steps, name = time / abs(case.dt), "damping"
     usual = 1000.0 if word == "pressure" else 100.0
     text = f"Fix {fix.id} ({fix.style}) couples the {word} with a damping time of {time:g}, {steps:.3g} steps"
     advice = f"usual are {usual:g} steps: {usual * case.dt:g}"

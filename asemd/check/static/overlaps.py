@@ -65,9 +65,9 @@ def first_step(case: Case) -> list[Finding]:
     if case.result is None:
         severity = "note" if case.relaxes else "error"
         return [Finding(severity, name, f"There are no forces: {case.failure}.", advice="nothing can run before this is mended")]
-    if case.dt is None:
+    if not case.dt:
         raise DoesNotApply("no timestep")
-    system, dt = case.system, min((m.dt for m in case.motions), default=case.dt)
+    system, dt = case.system, min((m.dt for m in case.motions), default=abs(case.dt))
     f = case.forces
     way = np.where(case.moving, np.linalg.norm(f, axis=1) * case.units.ftm2v / case.masses * dt * dt, 0.0)
     spacing = (system.box.volume / max(system.n, 1)) ** (1.0 / 3.0)

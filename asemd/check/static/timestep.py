@@ -71,7 +71,7 @@ def fastest(case: Case) -> list[Finding]:
     ids = case.ids([i for i in order if found.weight[i] > 0.05])
     who = f" of atoms {' '.join(map(str, ids))}" if ids else ", in which many atoms take part,"
     text = f"Of the whole system as it is now the fastest vibration{who} has the period {period:.4g} ({found.how})"
-    dt = min((m.dt for m in case.motions), default=case.dt if case.dt is not None else math.nan)
+    dt = min((m.dt for m in case.motions), default=abs(case.dt) if case.dt else math.nan)
     if not math.isfinite(dt):
         return [Finding("ok", name, f"{text}.", ids, f"period {period:.4g}", period / RECOMMENDED)]
     steps, limit = period / dt, period / math.pi
@@ -91,7 +91,7 @@ def fastest(case: Case) -> list[Finding]:
 @static("r-RESPA")
 def resonance(case: Case) -> list[Finding]:
     name = "r-RESPA"
-    if case.respa is None or case.dt is None:
+    if case.respa is None or not case.dt:
         raise DoesNotApply("run_style verlet")
     if not case.motions:
         raise DoesNotApply("nothing vibrates")
