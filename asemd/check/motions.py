@@ -109,7 +109,7 @@ def _collisions(case) -> list[Motion]:
     meet = _meeting(case, walls)
     for (i, j), r in walls.items():
         if (i, j) in meet:
-            stiff = pairs.curvature(pairs.energy_between(case, i, j), r)
+            stiff = pairs.curvature(pairs.interaction(case, i, j), r)
             omega2 = stiff * (1.0 / lightest[i] + 1.0 / lightest[j]) * u.ftm2v
             if omega2 > 0.0 and math.isfinite(omega2):
                 omega = math.sqrt(omega2)

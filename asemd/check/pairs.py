@@ -9,14 +9,25 @@ import numpy as np
 from asemd.errors import AsemdError, SimulationError
 
 SHRINK = 0.985      # steps inwards when a wall of energy is looked for
+APART = 5e-3        # of a distance
 INNERMOST = 1e-3    # of the cutoff
 TYPES = 60          # of more types than this only pairs of the same type are looked at
 
 
-def energy_between(case, i: int, j: int) -> Callable[[float], float]:
-    """The pair energy of types `i` and `j` without their charges: a function of the distance, ``inf`` where it does not exist."""
+def interaction(case, i: int, j: int, kind: int = 0) -> Callable[[float], tuple[float, float]]:
+    """The pair energy of types `i` and `j` without their charges, and its slope: functions of the distance, ``inf`` where there is none.
+
+    Parameters
+    ----------
+    kind : int
+        1, 2, 3: with the weights of 1-2, 1-3, 1-4 pairs.
+    """
     pieces = []
+    rules = case.engine.exclusions
     for term in tabled(case):
+        weight = float(term.weights(rules.weight_lj, rules.weight_coul)[0][kind])
+        if weight == 0.0 or term.molecules == ("other" if kind else "same"):
+            continue
         row = constant = array = 0
         for part in term.style.parts:
             table, numbers, arrays = term.tables.rows, term.tables.constants, term.tables.arrays
@@ -24,19 +35,21 @@ def energy_between(case, i: int, j: int) -> Callable[[float], float]:
             values = [float(table[row + 2 + k, i, j]) for k in range(len(part.rows))]
             values += [float(c) for c in numbers[constant:constant + len(part.constants)]] + list(arrays[array:array + len(part.arrays)])
             if cut2 > 0.0 and not part.charged:
-                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values))
+                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values, weight))
             row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
-    def energy(r: float) -> float:
-        total = 0.0
-        for function, squared, cut2, offset, values in pieces:
+    def of(r: float) -> tuple[float, float]:
+        total = slope = 0.0
+        for function, squared, cut2, offset, values, weight in pieces:
             if r * r < cut2:
                 try:
-                    total += function(r * r if squared else r, *values)[0] - offset
+                    e, d = function(r * r if squared else r, *values)
                 except (ArithmeticError, ValueError, IndexError):
-                    return math.inf
-        return math.inf if math.isnan(total) else total
-    return energy
+                    return math.inf, math.inf
+                total += weight * (e - offset)
+                slope += weight * d * (2.0 * r if squared else 1.0)
+        return (total, slope) if math.isfinite(total) else (math.inf, math.inf)
+    return of
 
 
 def tabled(case) -> list:
@@ -52,7 +65,7 @@ def type_pairs(case) -> list[tuple[int, int]]:
     return [(i, j) for k, i in enumerate(used) for j in used[k:]]
 
 
-def wall(case, energies) -> dict[tuple[int, int], tuple[float, ...]]:
+def wall(case, energies, kind: int = 0) -> dict[tuple[int, int], tuple[float, ...]]:
     """For each pair of types the largest distances at which the pair energy, coming from the cutoff, reaches these `energies`.
 
     Returns
@@ -64,7 +77,7 @@ def wall(case, energies) -> dict[tuple[int, int], tuple[float, ...]]:
     for i, j in type_pairs(case):
         key = tuple(t.tables.rows[:, i, j].tobytes() for t in tabled(case))
         if key not in known:
-            known[key] = _wall(energy_between(case, i, j), _cut(case, i, j), energies)
+            known[key] = _wall(interaction(case, i, j, kind), _cut(case, i, j), energies)
         out[i, j] = known[key]
     return out
 
@@ -73,27 +86,27 @@ def _cut(case, i: int, j: int) -> float:
     return max((math.sqrt(float(t.tables.rows[t.cut_rows, i, j].max())) for t in tabled(case)), default=0.0)
 
 
-def _wall(energy: Callable[[float], float], cut: float, energies) -> tuple[float, ...]:
+def _wall(of: Callable[[float], tuple[float, float]], cut: float, energies) -> tuple[float, ...]:
     found = []
     r = cut * (1.0 - 1e-9)
     for wanted in sorted(energies):
         outer = r
-        while r > INNERMOST * cut and energy(r) < wanted:
+        while r > INNERMOST * cut and of(r)[0] < wanted:
             outer, r = r, SHRINK * r
         if not r > INNERMOST * cut:
             return (*found, *[0.0] * (len(energies) - len(found)))
         inner = r
         for _ in range(30):
             middle = 0.5 * (inner + outer)
-            inner, outer = (inner, middle) if energy(middle) < wanted else (middle, outer)
+            inner, outer = (inner, middle) if of(middle)[0] < wanted else (middle, outer)
         found.append(0.5 * (inner + outer))
     return tuple(found)
 
 
-def curvature(energy: Callable[[float], float], r: float) -> float:
-    """Second derivative of a pair energy."""
-    h = 1e-4 * r
-    return (energy(r + h) - 2.0 * energy(r) + energy(r - h)) / (h * h)
+def curvature(of: Callable[[float], tuple[float, float]], r: float) -> float:
+    """Second derivative of a pair energy, from slopes so far apart that they see nothing of the cells of a table."""
+    h = APART * r
+    return (of(r + h)[1] - of(r - h)[1]) / (2.0 * h)
 
 
 def close_pairs(case, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -102,7 +115,7 @@ def close_pairs(case, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     Returns
     -------
     pairs (m, 2), distances (m,), kinds (m,)
-        Kind 0: ordinary pairs; 1, 2, 3: special pairs with a weight.
+        Kind 0: ordinary pairs; 1, 2, 3: 1-2, 1-3, 1-4 pairs with another weight than those.
 
     Raises
     ------

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd import coordinates
 from asemd.errors import AsemdError, InputError, SimulationError
 
-EXACT = 1500            # atoms up to which second derivatives are exact
+EXACT, PAIRS = 1500, 200_000        # atoms and pairs up to which second derivatives are exact
 STEP = 1e-5             # of differences: the root mean square displacement of the atoms that move, relative to the mean distance
 TOLERANCE = 1e-2        # of the square of the frequency
 VECTORS = 12            # Lanczos vectors
@@ -45,8 +46,10 @@ def top(case) -> Top | None:
     if n < 2 or case.result is None:
         return None
     scale = np.repeat(np.sqrt(case.units.ftm2v / case.masses), 3)
+    scale[~np.repeat(case.moving, 3)] = 0.0
     product, how = _product(case)
-    operator = LinearOperator((3 * n, 3 * n), matvec=lambda v: scale * product(scale * v.ravel()), dtype=float)
+    free = _projection(case, scale)
+    operator = LinearOperator((3 * n, 3 * n), matvec=lambda v: free(scale * product(scale * free(v.ravel()))), dtype=float)
     start = np.random.default_rng(1).normal(size=3 * n)
     try:
         if 3 * n <= 2 * VECTORS:
@@ -62,9 +65,36 @@ def top(case) -> Top | None:
     return Top(float(np.sqrt(values[-1])), (vectors[:, -1].reshape(n, 3) ** 2).sum(axis=1), how)
 
 
+def _projection(case, scale: np.ndarray):
+    """The function that takes motion along held bonds and angles out of a mass-weighted vector."""
+    from scipy import sparse
+    from scipy.sparse.linalg import factorized
+    rows, columns, numbers, count = [], [], [], 0
+    for items in case.items:
+        held = np.flatnonzero(~case.vibrates(items.category, items.atoms) & case.moving[items.atoms].any(axis=1))
+        if items.style.coordinates[0] not in ("r", "theta") or not len(held):
+            continue
+        atoms, pairs = items.atoms[held], coordinates.pairs_of(items.style)
+        x = case.system.x[atoms]
+        v = np.stack([case.system.box.minimum_image(x[:, a] - x[:, b])[0] for a, b in pairs], axis=1)
+        g = coordinates.gradients(items.style, v)[:, 0]
+        for (a, b), part in zip(pairs, g.transpose(1, 0, 2)):
+            for atom, sign in ((a, 1.0), (b, -1.0)):
+                rows.append(np.repeat(np.arange(count, count + len(held)), 3))
+                columns.append((3 * atoms[:, atom, None].astype(np.int64) + np.arange(3)).ravel())
+                numbers.append(sign * part.ravel())
+        count += len(held)
+    if not count:
+        return lambda v: v
+    b = sparse.coo_matrix((np.concatenate(numbers), (np.concatenate(rows), np.concatenate(columns))), shape=(count, len(scale))).tocsr()
+    b = b @ sparse.diags(scale)
+    solve = factorized((b @ b.T + 1e-12 * sparse.eye(count)).tocsc())
+    return lambda v: v - b.T @ solve(b @ v)
+
+
 def _product(case):
     """The function that multiplies the second derivatives with a vector, and what it is called."""
-    if case.system.n <= EXACT:
+    if case.system.n <= EXACT and case.engine.pairs <= PAIRS:
         from asemd.hessian import hessian_of
         try:
             matrix = hessian_of(case.engine.system, case.interactions, case.settings, numerical=True)

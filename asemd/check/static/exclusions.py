@@ -21,17 +21,16 @@ def exclusions(case: Case) -> list[Finding]:
     kt = case.units.boltz * case.temperature
     special, kinds = case.interactions.special_pairs(system)
     replaced = {tuple(sorted(map(int, p))) for p in replaced_pairs(system, case.interactions)}
+    if any(use.settings.get("overlay/pair") for use in case.interactions.uses["bond"]):
+        raise DoesNotApply("bonds lie over the pair force on purpose")
     found, weights = [], e.exclusions.weight_lj
-    rules = len(e.exclusions.rules) > 0
     for kind, high in HIGH.items():
-        if weights[kind] == 0.0 or (rules and kind < 3):
-            continue
-        mine = special[kinds == kind]
+        mine = _listed(case, special[kinds == kind])
         if replaced and kind == 1:
             mine = np.array([p for p in mine if tuple(sorted(map(int, p))) not in replaced]).reshape(-1, 2)
         if not len(mine):
             continue
-        walls = pairs.wall(case, (high * kt / weights[kind],))
+        walls = pairs.wall(case, (high * kt,), kind)
         n = system.counts["ntypes"] + 1
         limit = np.zeros((n, n))
         for (i, j), (r,) in walls.items():
@@ -42,11 +41,24 @@ def exclusions(case: Case) -> list[Finding]:
         if len(bad) and 2 * len(bad) > int((near > 0.0).sum()):
             worst = bad[int(np.argmin(r[bad] / near[bad]))]
             i, j = case.ids(mine[worst])
-            energy = weights[kind] * pairs.energy_between(case, *map(int, system.type[mine[worst]]))(r[worst])
+            energy = pairs.interaction(case, *map(int, system.type[mine[worst]]), kind)(r[worst])[0]
             text = (f"{len(bad)} of {len(mine)} {WORDS[kind]} pairs sit high in their pair energy, such as {i}-{j} at distance "
                     f"{r[worst]:.4g} with {energy / kt:.3g} kT: the factor of special_bonds for them is {weights[kind]:g}.")
             found.append(Finding("warning", name, text, (i, j), float(r[worst]), float(near[worst]), _advice(case, kind)))
     return found or [Finding("ok", name, "No bonded atoms are high in their pair energy.")]
+
+
+def _listed(case: Case, among: np.ndarray) -> np.ndarray:
+    """The pairs of rows that ``neigh_modify exclude`` leaves in the list."""
+    i, j = among[:, 0], among[:, 1]
+    keep = np.ones(len(among), bool)
+    for kind, *masks in case.settings.exclude:
+        if kind == "group":
+            a, b = masks
+            keep &= ~((a[i] & b[j]) | (a[j] & b[i]))
+        elif kind == "molecule/intra":
+            keep &= ~(masks[0][i] & masks[0][j] & (case.system.molecule[i] == case.system.molecule[j]))
+    return among[keep]
 
 
 def _advice(case: Case, kind: int) -> str:

@@ -35,8 +35,7 @@ def overlaps(case: Case) -> list[Finding]:
     for (i, j), (near, inside) in walls.items():
         limit[:, i, j] = limit[:, j, i] = near, inside
     found, r, kinds = pairs.close_pairs(case, max(float(limit[0].max()), SAME * e.cutoff) * 1.0001)
-    weight = e.exclusions.weight_lj[kinds]
-    found, r = found[weight > 0.5], r[weight > 0.5]
+    found, r = found[kinds == 0], r[kinds == 0]        # bonded atoms are looked at by the check of exclusions
     a, b = case.system.type[found[:, 0]], case.system.type[found[:, 1]]
     close = np.flatnonzero((r < limit[0, a, b]) | (r < SAME * e.cutoff))
     if not len(close):
@@ -45,7 +44,7 @@ def overlaps(case: Case) -> list[Finding]:
         ratio = r[close] / limit[0, a[close], b[close]]
     worst = close[int(np.argmin(np.nan_to_num(ratio, nan=0.0)))]
     i, j = sorted(case.ids(found[worst]))
-    energy = pairs.energy_between(case, int(a[worst]), int(b[worst]))(float(r[worst])) if r[worst] > 0.0 else math.inf
+    energy = pairs.interaction(case, int(a[worst]), int(b[worst]))(float(r[worst]))[0] if r[worst] > 0.0 else math.inf
     deep = bool((r[close] < limit[1, a[close], b[close]]).any()) or r[worst] < SAME * e.cutoff
     severity = "note" if case.gentle else "error" if deep else "warning"
     closest = float(limit[0, a[worst], b[worst]])
