@@ -97,11 +97,12 @@ class Engine:
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
         chosen = not all(t.is_plain for t in self.pair_terms)
-        self.expanded = self.mode == "cluster" and (table or chosen or bool(len(self.exclusions.rules)))
+        self.expanded = self.mode == "cluster" and (chosen or bool(len(self.exclusions.rules)))
         volume = abs(float(np.linalg.det(self.vectors)))
-        self.sparse = self.mode == "cluster" and not self.expanded and 2.1 * self.reach**3 * n < SPARSE * volume
+        few = 2.1 * self.reach**3 * n < SPARSE * volume
+        self.sparse = self.mode == "cluster" and not self.expanded and (few or table)
         if self.sparse:
-            self.why = f"fewer than {SPARSE} neighbours per atom: rows of single atoms"
+            self.why = "tables: rows of single atoms" if table else f"fewer than {SPARSE} neighbours per atom: rows of single atoms"
 
     def _make_terms(self) -> list:
         terms: list = []

@@ -165,7 +165,7 @@ class PairTerm:
 
 
 class PairRowsTerm:
-    """A pair style over rows of single atoms: where an atom has so few neighbours that packing clusters does not pay."""
+    """A pair style over rows of single atoms: where an atom has so few neighbours that packing clusters does not pay, and for tables."""
 
     category = "pair"
     piece = ""
@@ -185,10 +185,12 @@ class PairRowsTerm:
         s, c = engine.state, engine.list
         start, neighbors = engine.rows
         return (s.x, engine.buffers[tid], s.q, s.type, start[tid], neighbors[tid], c.shifts, CLUSTER * int(c.bounds[tid]),
-                CLUSTER * int(c.bounds[tid + 1]), self.p, self.tables.rows, engine.qqr2e, engine.acc[tid, self.index])
+                CLUSTER * int(c.bounds[tid + 1]), self.p, self.tables.rows, self.tables.arrays, engine.qqr2e,
+                engine.acc[tid, self.index], engine.bad[tid, self.index])
 
     def describe(self, engine, item, value):
-        return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
+        j, i = divmod(int(item), 1 << 26)
+        return not_finite(engine, self.style, i, j, value)
 
 
 class PairListTerm:
@@ -249,11 +251,15 @@ class PairListTerm:
                 *([self.factor] if self.by_atom else []))
 
     def describe(self, engine, item, value):
-        s = engine.state
-        ids = sorted(int(engine.system.id[s.row[a[item]]]) for a in (self.i, self.j))
-        why = "the atoms coincide" if value == 0 else self.style.domain or "outside the style's domain"
-        return SimulationError(f"pair style {self.style.name}: energy or force between atoms {ids[0]} and {ids[1]} "
-                               f"at distance {value:.6g} is not finite: {why}")
+        return not_finite(engine, self.style, self.i[item], self.j[item], value)
+
+
+def not_finite(engine, style, i: int, j: int, distance: float) -> SimulationError:
+    """The error of two slots whose pair energy or force is not finite."""
+    first, second = sorted(int(engine.system.id[engine.state.row[slot]]) for slot in (i, j))
+    why = "the atoms coincide" if distance == 0 else style.domain or "outside the style's domain"
+    return SimulationError(f"pair style {style.name}: energy or force between atoms {first} and {second} at distance {distance:.6g} "
+                           f"is not finite: {why}")
 
 
 def bonded_terms(system, interactions, pair_terms, units) -> list:

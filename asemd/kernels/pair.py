@@ -198,26 +198,28 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
 
 @cache
 def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = ""):
-    """The kernel over rows of single atoms, for sparse systems; `uniform` and `piece` as in `cluster_kernel`."""
+    """The kernel over rows of single atoms, for sparse systems and tables; `uniform` and `piece` as in `cluster_kernel`."""
     b = Builder(f"pair {style.name}: rows of atoms")
     b.line("real = np.float64")
-    for name, value in dict(ENERGY=energy, CHARGED=style.charged).items():
+    for name, value in dict(ENERGY=energy, CHARGED=style.charged, CHECK=any(part.arrays for part in style.parts)).items():
         b.constant(name, value)
     names = _paste_style(b, style.parts, False, False)
     where = [f"p[{sum(uniform[:k])}]" if u else f"rows[{k}, ti, tj]" for k, u in enumerate(uniform)]
-    cuts, row, constant = [], 0, sum(uniform)
-    lines = ["def pair_of(r2, qq, p, rows, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
+    cuts, row, constant, array = [], 0, sum(uniform), 0
+    lines = ["def pair_of(r2, qq, p, rows, arrays, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
     if any(p.coordinate == "r" for p in style.parts):
         lines.append("    r = math.sqrt(r2)")
     for k, (part, name) in enumerate(zip(style.parts, names)):
         args = [part.coordinate] + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
         args += [f"p[{constant + i}]" for i in range(len(part.constants))]
+        args += [f"arrays[{array + i}]" for i in range(len(part.arrays))]
         slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"-d{k} / r"
         lines += [f"    if r2 < {where[row]}:", f"        e{k}, d{k} = {name}({', '.join(args)})", f"        fp += {slope}",
                   f"        {'ec' if part.charged else 'ev'} += e{k} - {where[row + 1]}"]
         cuts.append(where[row])
         row += 2 + len(part.rows)
         constant += len(part.constants)
+        array += len(part.arrays)
     if piece:
         lines += [*_share(piece, "p", constant), "    fp *= share"]
     b.text("\n".join([*lines, "    return fp, ev, ec"]))

@@ -3,7 +3,7 @@
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
 partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
 
-Constants of the generated module: ENERGY, PER_ATOM, CHARGED. Made from the style: `pair_energy_one(r2, qq, lj, coul, rows, constants,
+Constants of the generated module: ENERGY, PER_ATOM, CHARGED, CHECK. Made from the style: `pair_energy_one(r2, qq, lj, coul, rows, constants,
 arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients from tuple or
 table, as `uniform` says).
 """
@@ -13,7 +13,7 @@ import numpy as np
 
 from asemd.kernels.pair_sums import add, eight
 
-ENERGY = PER_ATOM = CHARGED = False
+ENERGY = PER_ATOM = CHARGED = CHECK = False
 pair_energy_one = furthest = pair_of = None
 
 
@@ -66,8 +66,11 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
                 atom_virial[5, s] += 0.5 * dy * gz
 
 
-def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2e, acc):
-    """Slots lo..hi-1 against the atoms of their rows (entries: slot + shift code << 26), one pair at a time: sparse systems."""
+def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, arrays, qqr2e, acc, bad):
+    """Slots lo..hi-1 against the atoms of their rows (entries: slot + shift code << 26), one pair at a time: sparse systems, tables.
+
+    `bad (4,)` if CHECK: 1, the slots of the first pair whose energy or force is not finite as i + j << 26, its distance.
+    """
     for i in range(lo, hi):
         xi = x[0, i]
         yi = x[1, i]
@@ -89,7 +92,14 @@ def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, qqr2
             r2 = dx * dx + dy * dy + dz * dz
             if r2 < furthest(p, rows, ti, type_of[j]):
                 qq = qi * q[j] if CHARGED else 0.0
-                fp, ev, ec = pair_of(r2, qq, p, rows, ti, type_of[j])
+                fp, ev, ec = pair_of(r2, qq, p, rows, arrays, ti, type_of[j])
+                if CHECK:
+                    if not abs(fp) < np.inf or (ENERGY and not abs(ev + ec) < np.inf):
+                        if bad[0] == 0.0:
+                            bad[0] = 1.0
+                            bad[1] = i + np.int64(j) * 2.0**26
+                            bad[2] = np.sqrt(r2)
+                        continue
                 gx = dx * fp
                 gy = dy * fp
                 gz = dz * fp

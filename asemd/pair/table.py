@@ -34,7 +34,7 @@ def table(r2, index, inner2, scale, last, pieces: "array"):
     b = t - k
     e = pieces[i, k, 0] + b * (pieces[i, k, 1] + b * (pieces[i, k, 2] + b * pieces[i, k, 3]))
     f = pieces[i, k, 4] + b * (pieces[i, k, 5] + b * (pieces[i, k, 6] + b * pieces[i, k, 7]))
-    return (e if r2 >= inner2 else math.nan), -0.5 * f
+    return (e, -0.5 * f) if r2 >= inner2 else (math.nan, math.nan)
 
 
 def table_bitmap(r2, index, inner2, scale, first, pieces: "array"):
@@ -43,7 +43,9 @@ def table_bitmap(r2, index, inner2, scale, first, pieces: "array"):
     t = (2.0 * mantissa - 1.0 + exponent) * scale - first
     k = min(max(int(t), 0), pieces.shape[1] - 1)
     b = t - k
-    return (pieces[i, k, 0] + b * pieces[i, k, 1] if r2 >= inner2 else math.nan), -0.5 * (pieces[i, k, 2] + b * pieces[i, k, 3])
+    e = pieces[i, k, 0] + b * pieces[i, k, 1]
+    f = pieces[i, k, 2] + b * pieces[i, k, 3]
+    return (e, -0.5 * f) if r2 >= inner2 else (math.nan, math.nan)
 
 
 class FileTable:
