@@ -11,7 +11,7 @@ SIGMA = 2.0             # standard errors within which two values are the same
 FORCE = 1e-5            # relative force error that no run notices beside that of its timestep
 DRIFT = 0.05            # kT per degree of freedom and ns (1000 tau), below which a drift does not matter
 FLUCTUATION = 0.1       # of the conserved quantity, relative to that of the kinetic energy
-FASTER = 1.03           # what is gained must be more than this
+FASTER = 1.03           # what is gained must be more than this, for some knobs more than their `worth`
 NOISE = {"drift": "drift_error", "relative_fluctuation": "relative_fluctuation_error", "temperature": "temperature_error",
          "configurational": "configurational_error", "temperature_offset": "offset_error"}
 
@@ -33,6 +33,8 @@ def objections(point: Point, script: Point, force: float = FORCE) -> list[str]:
     if point.failed:
         return [f"the run failed: {point.failed}"]
     out = []
+    if math.isfinite(script.relative_fluctuation) and not math.isfinite(point.relative_fluctuation):
+        out.append("its run was cut short by the budget")
     if point.force_error > max(force, 1.05 * _finite(script.force_error)):
         out.append(f"force error {point.force_error:.2g}")
     if point.dangerous > script.dangerous:
@@ -48,6 +50,11 @@ def objections(point: Point, script: Point, force: float = FORCE) -> list[str]:
     if point.constraint_error > 1.05 * script.constraint_error + 1e-12:
         out.append(f"constraint error {point.constraint_error:.2g}")
     return out
+
+
+def worth(point: Point, knobs: Mapping[str, Knob]) -> float:
+    """What its knobs must gain to be worth the trouble."""
+    return max((knobs[name].worth for name in point.settings), default=FASTER)
 
 
 def gain(point: Point, script: Point) -> float:
@@ -85,7 +92,7 @@ def candidates(curves: Sequence[Curve], script: Point, knobs: Mapping[str, Knob]
     """Points worth trying together: the two fastest faultless values of each knob, the largest gains first."""
     out = []
     for curve in curves:
-        good = [p for p in curve.points if not p.own and not faults(p, script, knobs, force) and gain(p, script) > FASTER]
+        good = [p for p in curve.points if not p.own and not faults(p, script, knobs, force) and gain(p, script) > worth(p, knobs)]
         out += sorted(good, key=lambda p: p.seconds_per_span)[:2]
     return sorted(out, key=lambda p: p.seconds_per_span)
 
@@ -112,7 +119,7 @@ def faults(point: Point, script: Point, knobs: Mapping[str, Knob], force: float 
 
 def choose(points: Sequence[Point], script: Point, knobs: Mapping[str, Knob], force: float = FORCE) -> Point | None:
     """The fastest point that is as good as the script's settings, None if the script's own are."""
-    good = [p for p in points if not p.own and not faults(p, script, knobs, force) and gain(p, script) > FASTER]
+    good = [p for p in points if not p.own and not faults(p, script, knobs, force) and gain(p, script) > worth(p, knobs)]
     return min(good, key=lambda p: p.seconds_per_span) if good else None
 
 
@@ -123,7 +130,11 @@ def sentence(best: Point | None, script: Point, knobs: Mapping[str, Knob], times
     if best is None:
         return "Keep the script's settings: nothing that was tried is faster at the same error."
     words = ", ".join(knobs[name].phrase(value) for name, value in sorted(best.settings.items(), key=lambda kv: knobs[kv[0]].order))
-    return f"{words[0].upper()}{words[1:]}: {times:.1f}x faster than the script's settings at the same error."
+    out = f"{words[0].upper()}{words[1:]}: {times:.1f}x faster than the script's settings at the same error"
+    if best.relative_fluctuation > 1.05 * script.relative_fluctuation and "relative_fluctuation" not in best.ties:
+        out += (f"; the conserved quantity fluctuates by {best.relative_fluctuation:.2g} of the kinetic energy's fluctuation, it was "
+                f"{script.relative_fluctuation:.2g}")
+    return f"{out}."
 
 
 def _known(x: float) -> float:

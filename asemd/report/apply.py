@@ -7,7 +7,7 @@ from pathlib import Path
 from asemd.errors import InputError
 from asemd.lammps.convert import to_lammps
 from asemd.report.copies import Reader, copied
-from asemd.report.knob import all_knobs, execute
+from asemd.report.knob import all_knobs, clear_tables, execute, writes
 from asemd.report.result import Report
 from asemd.scene import Scene
 
@@ -66,18 +66,11 @@ def added(report: Report, scene: Scene, path: Path) -> list[str]:
     changed, folder = copied(scene), path.parent / f"{path.name}.tables"
     for name in sorted(report.best.settings, key=lambda n: knobs[n].order):
         commands = knobs[name].commands(changed, report.best.settings[name], str(folder))
-        if any(_writes(c) for c in commands):
+        if any(map(writes, commands)):
             folder.mkdir(parents=True, exist_ok=True)
-            for old in folder.glob("*.table"):
-                if any(str(old) in c for c in commands):
-                    old.unlink()
+            clear_tables(commands)
         execute(changed, commands)
-        out += [c for c in commands if not _writes(c)]
+        out += [c for c in commands if not writes(c)]
     if report.best.dt != report.script.dt:
         out.append(f"# a step is now {report.best.dt:g} time units, it was {report.script.dt:g}: numbers of steps may be reduced")
     return out
-
-
-def _writes(command: str) -> bool:
-    """Whether a command only writes a table file."""
-    return command.split()[0].endswith("_write")

@@ -18,7 +18,7 @@ from asemd.report.clock import Clock
 from asemd.report.copies import copied
 from asemd.report.knob import Knob
 from asemd.report.knobs.thermostat import baths
-from asemd.report.result import Point
+from asemd.report.result import SCRIPT, Point
 from asemd.report.statistics import block_error
 from asemd.scene import Scene
 
@@ -161,7 +161,7 @@ class Bench:
         self.choose_clock(point)
         point.builds_per_step = s.builds / max(s.steps, 1)
         point.drift, point.drift_error = s.drift, s.drift_error
-        if s.time[-1] >= COMPLETE * duration:       # a shorter run is no comparison
+        if point.knob == SCRIPT or s.time[-1] >= COMPLETE * duration:       # a shorter run is no comparison
             point.fluctuation, point.fluctuation_error = s.fluctuation, s.fluctuation_error
             point.relative_fluctuation = s.relative_fluctuation
             point.relative_fluctuation_error = s.fluctuation_error * s.relative_fluctuation / s.fluctuation if s.fluctuation > 0.0 else 0.0

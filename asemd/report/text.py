@@ -24,13 +24,13 @@ def value(x: float, digits: int = 3) -> str:
 
 
 def with_error(x: float, error: float) -> str:
-    """``1.23 +- 0.04``, digits as the error allows."""
+    """``1.23 ± 0.04``, digits as the error allows."""
     if not math.isfinite(x):
         return "-"
     if not math.isfinite(error) or error <= 0.0:
         return f"{x:.4g}"
     places = max(0, 1 - math.floor(math.log10(error)))
-    return f"{x:.{places}f} +- {error:.{places}f}" if places < 7 else f"{x:.2g} +- {error:.1g}"
+    return f"{x:.{places}f} ± {error:.{places}f}" if places < 7 else f"{x:.2g} ± {error:.1g}"
 
 
 def whole(x: float) -> str:
@@ -99,7 +99,7 @@ def explanations(report: Report) -> list[str]:
 def order_line(report: Report) -> str:
     """The order of the integrator, if it was measured."""
     for curve in report.curves:
-        if curve.name == "timestep" and math.isfinite(curve.exponent):
+        if curve.name == "timestep" and math.isfinite(curve.exponent_error):
             power = with_error(curve.exponent, curve.exponent_error)
             return f"Order: the conserved quantity fluctuates with the timestep to the power {power} (velocity Verlet: 2)."
     return ""

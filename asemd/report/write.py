@@ -8,8 +8,6 @@ from asemd.report import advice, plots, text
 from asemd.report.result import Report
 from asemd.text_table import Table
 
-FLOORS = ("drift", "temperature")       # errors around zero, so that all below the tie band ties
-
 
 def write(report: Report, folder: str | Path, system=None) -> Path:
     """Write everything into a folder, which is made if it is not there.
@@ -92,7 +90,7 @@ def page(report: Report, system=None):
     for picture in drawn:
         series = [Drawn(line.name + " (another model)" * line.model, *_sorted(line)) for line in picture.lines]
         here = (*picture.script, "script") if picture.script else None
-        floor = picture.tie[1] if picture.tie and picture.name in FLOORS else None
+        floor = picture.tie[1] if picture.tie and picture.name in plots.FLOORS else None
         out.loglog(picture.title, series, picture.xlabel, picture.ylabel, front=True, floor=floor, here=here)
     out.section("Knob by knob")
     for part in text.parts(report, brief=False):

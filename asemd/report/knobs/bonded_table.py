@@ -44,25 +44,18 @@ class BondTable(Knob):
     def current(self, scene):
         return None
 
-    def path(self, folder: str) -> str:
-        return os.path.join(folder, f"{self.kind}.table")
-
     def commands(self, scene, value, folder):
         style, n = value
-        path, kind = self.path(folder), self.kind
-        types = sorted(scene.interactions.uses[kind][0].coeff)
-        write = [f"{kind}_write {t} {FILE * n} {self.range(scene, t)}{path} {kind.upper()}_{t}" for t in types]
-        return [*write, f"{kind}_style table {style} {n}", *(f"{kind}_coeff {t} {path} {kind.upper()}_{t}" for t in types)]
+        kind = self.kind
+        # a file for each type: a reader goes through the whole file for each of its sections
+        paths = {t: os.path.join(folder, f"{kind}{t}.table") for t in sorted(scene.interactions.uses[kind][0].coeff)}
+        write = [f"{kind}_write {t} {FILE * n} {self.range(scene, t)}{path} TABLE" for t, path in paths.items()]
+        return [*write, f"{kind}_style table {style} {n}", *(f"{kind}_coeff {t} {path} TABLE" for t, path in paths.items())]
 
     def range(self, scene, t: int) -> str:
         """Words of ``bond_write`` for lengths that bonds can have."""
         lo, hi = bond_range(scene, t)
         return f"{lo:.10g} {hi:.10g} "
-
-    def apply(self, scene, value, folder):
-        if os.path.exists(self.path(folder)):
-            os.remove(self.path(folder))
-        super().apply(scene, value, folder)
 
     def label(self, value):
         return "exact" if value is None else f"{value[0]} {value[1]}"

@@ -36,7 +36,11 @@ class Integrator(Knob):
         if value == 1:
             inner = scene.respa.steps(scene.dt)[0] if scene.respa is not None else scene.dt
             return ["run_style verlet", f"timestep {nice(inner)!r}"]
-        return [f"run_style respa 2 {value} {' '.join(f'{kind} 1' for kind in BONDED)} pair 2", f"timestep {nice(value * scene.dt)!r}"]
+        # a dihedral style that weighs 1-4 pairs must be on the level of the pair forces, and impropers not below dihedrals
+        slow = any(use.style.weight_14 and any(c.get(use.style.weight_14) for c in use.coeff.values())
+                   for use in scene.interactions.uses["dihedral"])
+        levels = " ".join(f"{kind} {2 if slow and kind in BONDED[2:] else 1}" for kind in BONDED)
+        return [f"run_style respa 2 {value} {levels} pair 2", f"timestep {nice(value * scene.dt)!r}"]
 
     def label(self, value):
         return "verlet" if value == 1 else f"respa 1:{value}" if value else "respa of the script"

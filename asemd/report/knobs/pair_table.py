@@ -55,8 +55,7 @@ class PairTable(Knob):
 
     def commands(self, scene, value, folder):
         style, n = value
-        system, path = scene.system, os.path.join(folder, "pair.table")
-        ntypes = system.counts["ntypes"]
+        ntypes = scene.system.counts["ntypes"]
         terms = scene.interactions.pair_terms(ntypes, unit_styles.get(scene.units))
         kt = thermal_energy(scene)
         write, use = [], [f"pair_style table {style} {n}"]
@@ -68,16 +67,10 @@ class PairTable(Knob):
                 else:
                     inner = innermost(terms, i, j, cut, kt)
                 outer = cut * (1.0 - 1e-9)      # at the cutoff itself the energy is zero
-                name = f"PAIR_{i}_{j}"
-                write.append(f"pair_write {i} {j} {FILE * n} rsq {inner:.10g} {outer:.12g} {path} {name}")
-                use.append(f"pair_coeff {i} {j} {path} {name}")
+                path = os.path.join(folder, f"pair{i}-{j}.table")
+                write.append(f"pair_write {i} {j} {FILE * n} rsq {inner:.10g} {outer:.12g} {path} TABLE")
+                use.append(f"pair_coeff {i} {j} {path} TABLE")
         return [*write, *use]
-
-    def apply(self, scene, value, folder):
-        path = os.path.join(folder, "pair.table")
-        if os.path.exists(path):
-            os.remove(path)
-        super().apply(scene, value, folder)
 
     def label(self, value):
         return "exact" if value is None else f"{value[0]} {value[1]}"
