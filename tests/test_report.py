@@ -69,8 +69,9 @@ def test_numbers_make_sense(found):
     assert report.script.force_error < 1e-13 and report.script.seconds_per_step > 0.0
     for p in report.curve("precision").points:      # on a slow machine the budget leaves some points out
         assert p.failed or (1e-8 < p.force_error < 1e-5 if p.label == "mixed" else p.force_error < 1e-13)
-    exponent = report.curve("timestep").exponent
-    assert math.isnan(exponent) or exponent == pytest.approx(2.0, abs=0.35)
+    timestep = report.curve("timestep")
+    if timestep.exponent_error < 0.05 and min(p.steps for p in timestep.points) > 100:
+        assert timestep.exponent == pytest.approx(2.0, abs=0.35)
     for p in report.points:
         if not p.failed:
             assert p.seconds_per_span == pytest.approx(p.seconds_per_step * 1000.0 / p.dt)

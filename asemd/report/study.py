@@ -17,6 +17,7 @@ from asemd.scene import Scene
 
 # parts of the budget: settling, knobs together and (of it) by turns, what comes last (LAMMPS, plots)
 SETTLE, TOGETHER, RACE, REST = 0.1, 0.2, 0.05, 0.1
+ENOUGH = 50             # steps that show by how much a conserved quantity fluctuates
 CAUTION = 0.8           # of the time there is that is given away beforehand
 LEAST_STEPS, FEWEST, MOST = 30, 150, 100_000     # steps of a run with the timestep of the script: ever, if possible, at most
 SETTLING = 3000                                 # steps at most
@@ -279,7 +280,7 @@ class Study:
         for curve in report.curves:
             curve.points.sort(key=lambda p, curve=curve: curve.script_number if p.own else p.number)
             if curve.name == "timestep":
-                good = [p for p in curve.points if not p.failed and 0.0 < p.relative_fluctuation < advice.FLUCTUATION]
+                good = [p for p in curve.points if not p.failed and p.steps >= ENOUGH and 0.0 < p.relative_fluctuation < advice.FLUCTUATION]
                 curve.exponent, curve.exponent_error = fit_exponent([p.dt for p in good], [p.fluctuation for p in good])
         report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain)
         for name, value in (report.best.settings if report.best else {}).items():
