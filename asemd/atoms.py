@@ -9,30 +9,61 @@ import numpy as np
 from ase.data import atomic_masses_iupac2016, chemical_symbols
 from ase.data import atomic_numbers as number_of
 
+from asemd import atoms_info
+from asemd.atoms_info import holds
 from asemd.box import Box
 from asemd.topology import Topology
 
 CLOSE = 0.1        # how far a mass may be from that of its element, in amu
 COMMON_UP_TO = 92  # elements beyond uranium are not guessed from masses
 
+__all__ = ["Atoms", "elements", "holds"]
+
 
 class Atoms(ase.Atoms):
     """`ase.Atoms` with a `topology`.
+
+    `info` holds the topology, atom types and molecules too (entries that begin with ``asemd_``), so that ASE's extxyz files and
+    trajectories keep them: ``asemd.Atoms(ase.io.read("x.traj"))`` has its bonds again, and a `ForceField` finds them in plain
+    `ase.Atoms` as well.
 
     Parameters
     ----------
     *args, **kwargs
         As for `ase.Atoms`.
     topology : Topology, optional
-        Bonded items by atom index; by default those of the atoms that are copied, or none.
+        Bonded items by atom index; by default those of the atoms that are copied or that their `info` holds, or none.
+
+    Raises
+    ------
+    InputError
+        The bonds in `info` belong to other atoms: plain `ase.Atoms` were sliced after they were read.
     """
 
     def __init__(self, *args, topology: Topology | None = None, **kwargs):
         source = args[0] if args else kwargs.get("symbols")
         if topology is None:
             topology = getattr(source, "topology", None)
+        self.topology = Topology()
         super().__init__(*args, **kwargs)
+        if topology is None and len(self):
+            topology, arrays = atoms_info.found(self._info, self.numbers)
+            for name, array in arrays.items():
+                if name not in self.arrays:
+                    self.set_array(name, array)
         self.topology = Topology() if topology is None else topology.copy()
+
+    @property
+    def info(self) -> dict:
+        """ASE's dictionary for anything, the topology among it."""
+        atoms_info.drop(self._info)
+        if hasattr(self, "arrays"):
+            self._info.update(atoms_info.entries(self.topology, self.arrays))
+        return self._info
+
+    @info.setter
+    def info(self, value: dict) -> None:
+        self._info = value
 
     def copy(self) -> Atoms:
         """A copy without calculator."""

@@ -11,6 +11,7 @@ import numpy as np
 from ase.calculators.calculator import Calculator, PropertyNotImplementedError, all_changes
 
 from asemd import units as unit_styles
+from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.forcefield import Interactions
@@ -169,6 +170,10 @@ class ForceField(Calculator):
     def _topology_of(self, atoms) -> Topology:
         """The bonds of these atoms: their own, else the ones given to the calculator."""
         own = getattr(atoms, "topology", None)
+        bonded = [] if self.topology is not None else [category for category in BONDED if self.arguments.get(category)]
+        if own is not None and own.is_empty and bonded and len(atoms) > 1:
+            warnings.warn(f"the force field has {' and '.join(bonded)} styles, but these atoms have no bonds: they need "
+                          "asemd.Atoms(atoms, topology=...)", InputWarning, stacklevel=2)
         if own is not None and (self.topology is None or self.like is not None or not own.is_empty):
             for kind, items, _ in own:
                 if len(items) and not 0 <= int(items.min()) <= int(items.max()) < len(atoms):
@@ -176,7 +181,6 @@ class ForceField(Calculator):
                     raise InputError(f"the {kind}s name atom {wrong}, but the atoms are 0 to {len(atoms) - 1}")
             return own
         if self.topology is None:
-            bonded = [category for category in BONDED if self.arguments.get(category)]
             if bonded:
                 raise InputError(f"the force field has {' and '.join(bonded)} styles, but these atoms do not know their bonds: use "
                                  "asemd.Atoms(atoms, topology=...), or give the topology to the ForceField")
@@ -194,6 +198,8 @@ class ForceField(Calculator):
 
     def _system(self, atoms) -> System:
         """The atoms in the units of the force field."""
+        if getattr(atoms, "topology", None) is None and self.topology is None and holds(atoms.info):     # read from a file
+            atoms = Atoms(atoms)
         types = None
         strange = np.flatnonzero(~np.isfinite(atoms.positions).all(axis=1))
         if strange.size:

@@ -35,7 +35,7 @@ class Topology:
     Raises
     ------
     ValueError
-        Arrays of the wrong shape.
+        Arrays of the wrong shape, numbers that are not whole, an atom twice in one item.
     """
 
     bonds: np.ndarray = ()
@@ -51,12 +51,18 @@ class Topology:
     def __post_init__(self):
         for kind, width in ATOMS.items():
             atoms, types = getattr(self, kind + "s"), getattr(self, kind + "_types")
-            atoms = np.array(atoms, np.int32)
+            atoms = _whole(atoms, f"{kind}s must be rows of {width} atom numbers")
             if atoms.size == 0:
                 atoms = atoms.reshape(0, width)
             if atoms.ndim != 2 or atoms.shape[1] != width:
                 raise ValueError(f"{kind}s must have the shape (m, {width}), got {atoms.shape}")
-            types = np.ones(len(atoms), np.int32) if types is None else np.array(np.broadcast_to(types, len(atoms)), np.int32)
+            twice = np.flatnonzero(np.any([atoms[:, a] == atoms[:, b] for a in range(width) for b in range(a)], axis=0))
+            if len(twice):
+                raise ValueError(f"{kind} {twice[0]} names an atom twice: {' '.join(map(str, atoms[twice[0]]))} (atoms count from 0)")
+            types = _whole(1 if types is None else types, f"{kind}_types must be whole numbers")
+            if types.ndim > 1 or types.size not in (1, len(atoms)) or types.size != len(atoms) and types.ndim:
+                raise ValueError(f"{kind}_types must be one number, or one for each of the {len(atoms)} {kind}s, got {types.size}")
+            types = np.array(np.broadcast_to(types, len(atoms)), np.int32)
             setattr(self, kind + "s", atoms)
             setattr(self, kind + "_types", types)
         if isinstance(self.frozen, dict):
@@ -226,6 +232,19 @@ class Topology:
         key, index = np.unique(np.concatenate(keys), return_index=True)     # the first occurrence is the nearest
         kind = np.repeat(np.array([1, 2, 3], np.int8), [len(k) for k in keys])[index]
         return np.column_stack(np.divmod(key, max(n, 1))).astype(np.int32), kind
+
+
+def _whole(values, what: str) -> np.ndarray:
+    """Numbers as int32; raises `ValueError` for others."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{what}, got rows of different lengths") from None
+    flat = array.ravel()
+    wrong = flat[(flat != np.rint(flat)) | (np.abs(flat) >= 2**31)] if array.dtype.kind in "iuf" else flat
+    if len(wrong):
+        raise ValueError(f"{what}, got {wrong.tolist()[0]!r}")
+    return array.astype(np.int32)
 
 
 def _sorted(keys: np.ndarray) -> np.ndarray:

@@ -166,7 +166,8 @@ def _written(path: Path, lines: list[str]) -> Path:
 
 
 def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
-    """Write atoms with energy and forces in a format of ASE, by the ending of the file's name; bonds and force field stay behind.
+    """Write atoms with energy and forces in a format of ASE, by the ending of the file's name; the force field stays behind,
+    bonds too in formats that do not keep ``atoms.info``.
 
     Raises
     ------
