@@ -48,10 +48,11 @@ def test_trajectory_of_a_script(tmp_path, monkeypatch):
     """Atoms of a LAMMPS script keep types, bonds and what counts as bonded; the force field of the script fits them again."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.x").write_text(
-        "units metal\natom_style full\nregion b block 0 9 0 9 0 9\ncreate_box 2 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4\n"
-        "mass * 12\ncreate_atoms 1 single 1 1 1\ncreate_atoms 2 single 2 1 1\ncreate_atoms 2 single 2 2 1\ncreate_atoms 2 single 3 3 1\nbond_style harmonic\n"
-        "bond_coeff 1 3 1.1\npair_style lj/cut 4\npair_coeff 1 1 0.1 1\npair_coeff 2 2 0.2 1\ncreate_bonds single/bond 1 1 2\n"
-        "create_bonds single/bond 1 2 3\ndelete_bonds all bond 1\n")
+        "units metal\natom_style full\nregion b block 0 9 0 9 0 9\n"
+        "create_box 2 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4\nmass * 12\n"
+        "create_atoms 1 single 1 1 1\ncreate_atoms 2 single 2 1 1\ncreate_atoms 2 single 2 2 1\ncreate_atoms 2 single 3 3 1\n"
+        "bond_style harmonic\nbond_coeff 1 3 1.1\npair_style lj/cut 4\npair_coeff 1 1 0.1 1\npair_coeff 2 2 0.2 1\n"
+        "create_bonds single/bond 1 1 2\ncreate_bonds single/bond 1 2 3\ndelete_bonds all bond 1\n")
     atoms = asemd.read("in.x")
     energy = atoms.get_potential_energy()
     with Trajectory("x.traj", "w", atoms) as trajectory:
