@@ -228,13 +228,13 @@ def table_file(path, n: int = 600, low: float = 0.4, high: float = 1.5):
 
 
 @pytest.mark.parametrize("special", [(1, 1, 1), (0.1, 0.25, 0.5)])
-def test_tables_and_exclusions_expand_the_cluster_list(special, tmp_path):
+def test_tables_run_over_rows_of_atoms(special, tmp_path):
     path = table_file(tmp_path / "lj.table")
     every = {(i, j): f"{path} LJ 1.5" for i in (1, 2, 3) for j in range(i, 4)}
     interactions = Interactions.build(pair={"table spline 600": every}, special_bonds={"lj": special})
     system = chains(64, 9, SNUG, np.random.default_rng(4))
     engines = [engine_of(system.copy(), mode, interactions) for mode in ("cluster", "plain")]
-    assert engines[0].mode == "cluster" and engines[0].expanded
+    assert engines[0].mode == "cluster" and engines[0].sparse
     a, b = (e.per_atom(e.compute()) for e in engines)
     assert a.potential == pytest.approx(b.potential, rel=1e-12)
     assert np.allclose(a.forces, b.forces, rtol=0, atol=1e-12 * np.abs(b.forces).max())
