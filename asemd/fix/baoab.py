@@ -11,9 +11,9 @@ frequency :math:`\omega` the positions have exactly the temperature :math:`T_0` 
 other forces the error of averages over positions is of fourth order in the step at high friction. The scalar of this fix (thermo keywords
 ecouple, econserve) is the energy given to the heat bath in the steps O, so that econserve shows the error of the other ones.
 
-Source: B. Leimkuhler, C. Matthews, Appl. Math. Res. Express 2013, 34 (2013); J. Chem. Phys. 138, 174102 (2013). Arguments: Tstart Tstop damp
-seed, as in fix langevin; Tstart may be a variable. Units: temperature, time. For a script that LAMMPS has to run: fix langevin with the
-keyword gjf, and fix nve.
+Source: B. Leimkuhler, C. Matthews, Appl. Math. Res. Express 2013, 34 (2013); J. Chem. Phys. 138, 174102 (2013). Arguments: Tstart Tstop
+damp seed, as in fix langevin; Tstart may be a variable. Units: temperature, time. For a script that LAMMPS has to run: fix langevin with
+the keyword gjf, and fix nve.
 """
 from __future__ import annotations
 

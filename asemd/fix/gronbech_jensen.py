@@ -1,4 +1,4 @@
-r"""Hooks of ``fix langevin ... gjf``: the discretisation of Gronbech-Jensen and Farago, whose positions have the right distribution at any step.
+r"""Hooks of ``fix langevin ... gjf``, the discretisation of Gronbech-Jensen and Farago: positions have the right distribution.
 
 With :math:`c = \Delta t / 2 \tau`, :math:`b = 1 / (1 + c)` and one Gaussian impulse :math:`\beta` of variance
 :math:`2 k_B T \Delta t / (m \tau)` for each component and step:

@@ -9,9 +9,9 @@ and step depends on seed, step and atom only, not on threads. ``zero yes`` takes
 That holds for small steps. For harmonic forces of frequency :math:`\omega` the positions are too warm by the factor
 :math:`1 / (1 - \omega^2 \Delta t^2 / (4 - 2 \Delta t / \tau))`, and the velocities grow without bound from
 :math:`\Delta t / 2 \tau + (\omega \Delta t / 2)^2 = 1` on. With ``gjf vhalf`` or ``gjf vfull`` the steps are those of
-`asemd.fix.gronbech_jensen`: positions have the right distribution at any :math:`\Delta t / \tau`. The velocities seen are then those of half
-steps, right too for harmonic forces, or those at the positions, colder by :math:`(\omega \Delta t / 2)^2`. This fix comes before fix nve
-then. Another way to the same end: fix baoab.
+`asemd.fix.gronbech_jensen`: positions have the right distribution at any :math:`\Delta t / \tau`. The velocities seen are then those of
+half steps, right too for harmonic forces, or those at the positions, colder by :math:`(\omega \Delta t / 2)^2`. This fix comes before fix
+nve then. Another way to the same end: fix baoab.
 
 Source: T. Schneider, E. Stoll, Phys. Rev. B 17, 1302 (1978); B. Duenweg, W. Paul, Int. J. Mod. Phys. C 2, 817 (1991), for uniform noise;
 LAMMPS manual, fix langevin. The noise equals LAMMPS's in distribution, the friction in every digit. Units: temperature, time.

@@ -10,7 +10,7 @@ import numpy as np
 from asemd import units as unit_styles
 from asemd import user_styles
 from asemd.errors import InputError, InputWarning
-from asemd.lammps import export
+from asemd.lammps import catalog, export
 from asemd.lammps.data_write import write_data
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
@@ -90,6 +90,8 @@ def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more
         lines = export.commands(system, scene.interactions, scene.settings(), folder / f"data.{name}")
         first = next(k for k, line in enumerate(lines) if line.startswith("read_data "))
         lines[first] = f"read_data data.{name}"
+        if more is None or more:
+            _of_lammps(scene)
         if scene.newton != (True, True):
             lines.insert(1, "newton " + " ".join("on" if on else "off" for on in scene.newton))
         path = folder / f"in.{name}"
@@ -107,6 +109,14 @@ def _scene_lines(scene: Scene) -> list[str]:
         if name != "all":
             out.append(f"group {name} id {export.id_ranges(ids[mask])}" if mask.any() else f"group {name} empty")
     return [*out, *([f"reset_timestep {scene.step}"] if scene.step else [])]
+
+
+def _of_lammps(scene: Scene) -> None:
+    """Refuse fixes that LAMMPS does not have."""
+    for fix in scene.fixes.values():
+        if not catalog.is_of_lammps("fix", fix.style):
+            raise InputError(f"to_lammps: fix {fix.id} (style {fix.style}) is asemd's own, LAMMPS does not have it: take another fix for a "
+                             "script that LAMMPS has to run")
 
 
 def _fixes(scene: Scene) -> list[str]:

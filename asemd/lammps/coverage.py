@@ -33,7 +33,7 @@ PARTIAL = {
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("dump", "local"): "no local values of fixes",
     ("fix", "external"): "no energies or virials by atom, no virial",
-    ("fix", "langevin"): "no gjf, omega, angmom",
+    ("fix", "langevin"): "no omega, angmom",
 }
 # names that are read but do nothing useful yet
 REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify", **registry.REFUSED}
