@@ -118,6 +118,19 @@ def test_broken_twins_are_found(folder, name):
     assert atoms is None or worst.atoms[:len(atoms)] == atoms
 
 
+def test_integrators_that_stand_any_friction(folder):
+    text = edit(CHAIN, ("fix 1 all nve\n", ""), ("langevin 1.0 1.0 10.0", "baoab 1.0 1.0 0.002"))
+    assert check(text).of("damping")[0].severity == "note"
+    text = edit(CHAIN, ("1.0 10.0 904297", "1.0 0.02 904297 gjf vhalf"))
+    assert check(text).of("damping")[0].severity == "ok"
+
+
+def test_scaling_of_velocities_has_no_damping_time(folder):
+    text = edit(BUTANE, ("nvt temp 300.0 300.0 100.0", "nve"), ("run 10", "fix 2 all temp/rescale 1 300 300 1.0 1.0\nrun 10"))
+    assert not check(text).of("damping")
+    assert check(edit(text, ("temp/rescale 1 300 300 1.0 1.0", "temp/berendsen 300 300 5.0"))).of("damping")[0].severity == "warning"
+
+
 def test_exclusions_by_neigh_modify_are_seen(folder):
     text = edit(HARMONIC, ("lj/coul 0 0", "lj/coul 1 1"))
     assert check(text).of("exclusions")[0].severity == "warning"
