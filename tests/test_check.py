@@ -274,6 +274,14 @@ def test_fixes_bring_checks_of_their_own(folder, monkeypatch):
     assert check(LJ).of("fix nve")[0].message == "is lonely"
 
 
+def test_one_atom_and_none(folder):
+    one = edit(LJ, ("create_atoms 1 box", "create_atoms 1 single 1 1 1"), ("velocity all create 1.44 87287 loop geom", ""))
+    report = check(one)
+    assert report.worst == "ok" and not report.of("time step")
+    report = check(edit(one, ("create_atoms 1 single 1 1 1", "")))
+    assert [f.message for f in report] == ["There are no atoms."] and report.ok
+
+
 def test_mistakes_in_the_script_are_all_told(folder):
     with pytest.raises(InputError, match="pair_coeff"):
         check(edit(LJ, ("pair_coeff 1 1 1.0 1.0", "")))

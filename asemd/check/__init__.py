@@ -50,6 +50,9 @@ def of_case(case, run: bool = False, **options: Any) -> Report:
     """The report of a `asemd.check.case.Case`."""
     from asemd.check.static import DoesNotApply, all_checks
     report = Report(case.source)
+    if not case.system.n:
+        report.extend([Finding("note", "atoms in the box", "There are no atoms.")])
+        return report
     for name, function in all_checks().items():
         try:
             report.extend(function(case))

@@ -80,6 +80,13 @@ class Case:
         """(n,) masses; 1 where there is none."""
         return np.nan_to_num(np.asarray(self.system.atom_masses(), float), nan=1.0)
 
+    @cached_property
+    def spacing(self) -> float:
+        """Mean distance of neighbours, or the median length of the shortest kind of bond if that is less."""
+        box, n = self.system.box, max(self.system.n, 1)
+        mean = (box.volume / n) ** (1.0 / 3.0) if self.system.dimension == 3 else (box.volume / box.lengths[2] / n) ** 0.5
+        return min([mean, *(float(np.median(items.column("r"))) for items in self.items if items.column("r") is not None)])
+
     @property
     def settled(self) -> bool:
         """Whether the run begins with these positions."""

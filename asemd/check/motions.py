@@ -107,8 +107,9 @@ def _collisions(case) -> list[Motion]:
     lightest = {int(t): float(case.masses[system.type == t].min()) for t in np.unique(system.type)} if case.engine.pair_terms else {}
     walls = {key: r for key, (r,) in pairs.wall(case, (kt,)).items() if r > 0.0} if lightest else {}
     meet = _meeting(case, walls)
+    alone = {int(t) for t, n in zip(*np.unique(system.type, return_counts=True)) if n == 1}
     for (i, j), r in walls.items():
-        if (i, j) in meet:
+        if (i, j) in meet and not (i == j and i in alone):
             stiff = pairs.curvature(pairs.interaction(case, i, j), r)
             omega2 = stiff * (1.0 / lightest[i] + 1.0 / lightest[j]) * u.ftm2v
             if omega2 > 0.0 and math.isfinite(omega2):

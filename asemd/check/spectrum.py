@@ -15,7 +15,7 @@ from asemd import coordinates
 from asemd.errors import AsemdError, InputError, SimulationError
 
 EXACT, PAIRS = 1500, 200_000        # atoms and pairs up to which second derivatives are exact
-STEP = 1e-5             # of differences: the root mean square displacement of the atoms that move, relative to the mean distance
+STEP = 1e-5             # of differences: the largest displacement, relative to the distance of neighbours
 TOLERANCE = 1e-2        # of the square of the frequency
 VECTORS = 12            # Lanczos vectors
 
@@ -110,8 +110,7 @@ class _Differences:
     def __init__(self, case):
         self.engine = case.engine
         self.x = self.engine.system.x.copy()
-        volume = max(case.system.box.volume, 1e-300)
-        self.step = STEP * (volume / case.system.n) ** (1.0 / 3.0)
+        self.step = STEP * case.spacing
         self.forces = np.empty_like(self.x)
 
     def __call__(self, v: np.ndarray) -> np.ndarray:

@@ -66,12 +66,10 @@ def first_step(case: Case) -> list[Finding]:
         return [Finding(severity, name, f"There are no forces: {case.failure}.", advice="nothing can run before this is mended")]
     if not case.dt:
         raise DoesNotApply("no timestep")
-    system, dt = case.system, min((m.dt for m in case.motions), default=abs(case.dt))
+    dt = min((m.dt for m in case.motions), default=abs(case.dt))
     f = case.forces
     way = np.where(case.moving, np.linalg.norm(f, axis=1) * case.units.ftm2v / case.masses * dt * dt, 0.0)
-    spacing = (system.box.volume / max(system.n, 1)) ** (1.0 / 3.0)
-    lengths = [float(np.median(items.column("r"))) for items in case.items if items.column("r") is not None and len(items.q)]
-    limit = JUMP * min([spacing, *lengths])
+    limit = JUMP * case.spacing
     worst = int(np.argmax(way))
     value = float(way[worst])
     ids = case.ids(np.argsort(-way)[:5])
