@@ -135,6 +135,10 @@ class Box:
     @property
     def inverse(self) -> np.ndarray:
         """(3, 3): ``(x - origin) @ inverse`` are fractional coordinates."""
+        if self.is_lammps_frame:        # by the terms of `fractional`
+            (lx, ly, lz), (xy, xz, yz) = np.diag(self.cell), self.tilt
+            return np.array([[1.0 / lx, 0.0, 0.0], [-xy / (lx * ly), 1.0 / ly, 0.0],
+                             [(yz * xy - ly * xz) / (lx * ly * lz), -yz / (ly * lz), 1.0 / lz]])
         return np.linalg.inv(self.cell)
 
     @property
@@ -203,7 +207,8 @@ class Box:
             far = np.abs(self.fractional(x)[:, self.periodic]).max(axis=1)
             if far.max() > FARTHEST:
                 raise SimulationError(f"atom row {int(np.argmax(far))} is {far.max():.3g} boxes away, too far to be wrapped")
-        (self._wrap_aligned if self.aligned else self._wrap_general)(x, image)
+        wrapper = self._wrap_aligned if self.aligned else self._wrap_tilted if self.is_lammps_frame else self._wrap_general
+        wrapper(x, image)
 
     def _wrap_aligned(self, x, image):
         for k in np.flatnonzero(self.periodic):
@@ -222,6 +227,18 @@ class Box:
             new = np.where((new < lo) | (new >= hi), lo, new)
             x[out, k] = new
             image[out, k] += n.astype(image.dtype)
+
+    def _wrap_tilted(self, x, image):
+        """In fractional coordinates, as LAMMPS does it: what is next to the upper face by rounding comes to lie on the lower one."""
+        s = self.fractional(x)
+        n = np.where(self.periodic, np.floor(s), 0.0)
+        rows = np.flatnonzero(n.any(axis=1))
+        s, n = s[rows] - n[rows], n[rows]
+        upper = self.periodic & (s >= 1.0)
+        s, n = np.where(upper, s - 1.0, s), n + upper
+        (lx, ly, lz), (xy, xz, yz), lo = np.diag(self.cell), self.tilt, self.origin
+        x[rows] = np.column_stack([lx * s[:, 0] + xy * s[:, 1] + xz * s[:, 2] + lo[0], ly * s[:, 1] + yz * s[:, 2] + lo[1], lz * s[:, 2] + lo[2]])
+        image[rows] += n.astype(image.dtype)
 
     def _wrap_general(self, x, image):
         periodic = self.periodic

@@ -126,7 +126,7 @@ class Engine:
             self.periodic[2] = False
         off = self.vectors - np.diag(np.diag(self.vectors))
         self.ortho = not np.count_nonzero(off) and bool((np.diag(self.vectors) > 0).all())
-        self.inverse = np.ascontiguousarray(np.linalg.inv(self.vectors))
+        self.inverse = np.ascontiguousarray(box.inverse)
         self.cell = cell_arrays(self.vectors, self.periodic)
         self.shifts27 = IMAGES @ self.cell.reduced
         self.periodic27 = (IMAGES[:, ~self.periodic] == 0).all(axis=1)

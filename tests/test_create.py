@@ -120,6 +120,16 @@ CASES = {
         create_atoms 2 random 50 991 s
         region o sphere 2 2 2 1.5 side out
         create_atoms 1 random 10 5 o""",
+    "random on faces": """
+        units lj
+        region b block 0 6 -1 5 2 8
+        create_box 2 b
+        region high block 6 6 0 4 3 5
+        region low block 0 2 -1 -1 3 5
+        region point block 3 3 3 3 8 8
+        create_atoms 1 random 4 991 high
+        create_atoms 2 random 5 991 low
+        create_atoms 2 random 6 12 point overlap 0.1 maxtry 3""",
     "random triclinic": TRICLINIC + "create_atoms 2 random 60 991 NULL",
     "random flat": FLAT + "create_atoms 1 random 7 33 NULL",
     "displace random": FCC + "displace_atoms all random 0.1 0.2 0.3 4711",

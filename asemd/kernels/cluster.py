@@ -44,6 +44,8 @@ def wrap(x, image, row, ns, origin, vectors, inverse, periodic):
                 s = ((x[0, i] - origin[0]) * inverse[0, a] + (x[1, i] - origin[1]) * inverse[1, a]
                      + (x[2, i] - origin[2]) * inverse[2, a])
                 n = math.floor(s)
+                if n != 0.0 and s - n >= 1.0:       # rounding below the lower face
+                    n += 1
                 if n != 0.0:
                     for d in range(3):
                         x[d, i] -= n * vectors[a, d]

@@ -90,7 +90,8 @@ class Change:
         if name == "set":
             self.saved = box
         elif name == "remap":
-            self.x = _to_box(self.saved.fractional(self.x), box)
+            self.x = _to_box(_in_box(self.x, self.saved), box)
+            self.saved = box
         elif name in AXES:
             self._length(name, words)
         elif name in TILTS:
@@ -162,6 +163,11 @@ def _scale(lo: np.ndarray, hi: np.ndarray, k: int, factor: float) -> None:
     """Stretch one direction about its middle."""
     middle = 0.5 * (lo[k] + hi[k])
     lo[k], hi[k] = middle + factor * (lo[k] - middle), middle + factor * (hi[k] - middle)
+
+
+def _in_box(x: np.ndarray, box: Box) -> np.ndarray:
+    """Fractional coordinates, always by inverse lengths as LAMMPS computes them here: they decide about atoms on a face."""
+    return box.fractional(x) if box.triclinic else (x - box.lo) * (1.0 / (box.hi - box.lo))
 
 
 def _to_box(s: np.ndarray, box: Box) -> np.ndarray:

@@ -297,12 +297,13 @@ def _random(session, values, system, region, lattice, options: _Options, kind: i
     crowd = None
     if options.overlap is not None:
         crowd = _Crowd(system, options.overlap * (lattice.spacings[0] if options.lattice else 1.0))
-    found, atoms, tries = [], 0, 0
+    found, atoms, tries, outside = [], 0, 0, 0
     while atoms < n:
         x = lo + generator.uniform(3 * max(64, n - atoms)).reshape(-1, 3) * (hi - lo)
         if system.dimension == 2:
             x[:, 2] = 0.0
-        good = _inside(x, box) if box.triclinic else np.ones(len(x), bool)
+        inside = _inside(x, box)        # a point on an upper face counts but is not placed
+        good = inside.copy() if box.triclinic else np.ones(len(x), bool)
         if region is not None:
             good &= region.inside(x)
         for row, point in enumerate(x):
@@ -311,14 +312,17 @@ def _random(session, values, system, region, lattice, options: _Options, kind: i
             tries += 1
             if good[row] and (wanted is None or wanted(x[row:row + 1])[0]):
                 point = _molecule(point, options, system.dimension) if options.template is not None else point
-                if crowd is None or crowd.takes(point):
-                    found.append(point)
+                accepted = crowd is None or crowd.takes(point, join=inside[row])
+                if accepted:
                     tries = options.maxtry
+                    outside += not inside[row]
+                if accepted and inside[row]:
+                    found.append(point)
                 elif options.template is not None:
                     options.matrices.pop()
             if tries == options.maxtry:      # on to the next atom, whether this one was placed or not
                 atoms, tries = atoms + 1, 0
-    if len(found) < n:
+    if len(found) + outside < n:
         session.warn(f"Only inserted {len(found)} particles out of {n}")
     x = np.array(found).reshape(-1, *((options.template.natoms,) if options.template is not None else ()), 3)
     return x, np.full(len(x), kind)
@@ -346,14 +350,16 @@ class _Crowd:
     def __init__(self, system, distance: float):
         self.box, self.limit, self.x, self.n = system.box, distance * distance, system.x.copy(), system.n
 
-    def takes(self, new: np.ndarray) -> bool:
-        """Whether new atoms (3,) or (m, 3) are far enough from all; if so they join."""
+    def takes(self, new: np.ndarray, join: bool = True) -> bool:
+        """Whether new atoms (3,) or (m, 3) are far enough from all; if so they join, if they shall."""
         new = new.reshape(-1, 3)
         if self.n:
             d = (new[:, None] - self.x[None, :self.n]).reshape(-1, 3)
             near, _ = self.box.minimum_image(d)
             if ((near * near).sum(axis=1) < self.limit).any():
                 return False
+        if not join:
+            return True
         if self.n + len(new) > len(self.x):
             self.x = np.concatenate([self.x[:self.n], np.zeros((max(64, self.n, len(new)), 3))])
         self.x[self.n:self.n + len(new)] = new
