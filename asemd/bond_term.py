@@ -68,9 +68,7 @@ class HistoryTerm(BondedTerm):
         for term in engine.bonds.terms:
             term.at = (np.cumsum(keep) - 1)[term.at]
         if topology.frozen is not None:
-            old = topology.frozen
-            stay = ~np.isin(pair_keys(old.bonds), pair_keys(pairs))
-            old.bonds, old.bond_types = old.bonds[stay], old.bond_types[stay]
+            topology.frozen.forget(pairs)
         return pairs if self.released else NOBODY
 
     def _record(self, system, pairs: np.ndarray, where: np.ndarray) -> None:

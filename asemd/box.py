@@ -237,7 +237,8 @@ class Box:
         upper = self.periodic & (s >= 1.0)
         s, n = np.where(upper, s - 1.0, s), n + upper
         (lx, ly, lz), (xy, xz, yz), lo = np.diag(self.cell), self.tilt, self.origin
-        x[rows] = np.column_stack([lx * s[:, 0] + xy * s[:, 1] + xz * s[:, 2] + lo[0], ly * s[:, 1] + yz * s[:, 2] + lo[1], lz * s[:, 2] + lo[2]])
+        x[rows] = np.column_stack([lx * s[:, 0] + xy * s[:, 1] + xz * s[:, 2] + lo[0], ly * s[:, 1] + yz * s[:, 2] + lo[1],
+                                   lz * s[:, 2] + lo[2]])
         image[rows] += n.astype(image.dtype)
 
     def _wrap_general(self, x, image):

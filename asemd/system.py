@@ -62,6 +62,8 @@ class System:
     units, atom_style, dimension, step
     extra : dict, optional
         Further per-atom arrays (n, ...) by name.
+    torn : list of (kind, type, ids)
+        Bonded items that lost atoms but are still listed with those that stayed, the first of the ids of a bond, the second of others.
     rotation : (3, 3) float, optional
         For a general triclinic box, which LAMMPS turns into its own frame: ``x = (x_general - box.origin) @ rotation + box.origin``.
     """
@@ -86,6 +88,7 @@ class System:
     step: int = 0
     extra: dict[str, np.ndarray] = field(default_factory=dict)
     rotation: np.ndarray | None = None
+    torn: list = field(default_factory=list)
 
     def __post_init__(self):
         self.x = np.ascontiguousarray(self.x, float).reshape(-1, 3)

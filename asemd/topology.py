@@ -19,6 +19,71 @@ def rows_of(index, n: int) -> np.ndarray:
 
 
 @dataclass(eq=False)
+class Partners:
+    """Pairs one, two and three bonds apart as they are listed, whatever has become of the bonds since.
+
+    Parameters
+    ----------
+    pairs : (m, 2) int32
+        Rows i < j, sorted.
+    kinds : (m,) int8
+        1, 2, 3 for 1-2, 1-3, 1-4.
+    """
+
+    pairs: np.ndarray
+    kinds: np.ndarray
+
+    def __post_init__(self):
+        self.pairs, self.kinds = np.array(self.pairs, np.int32).reshape(-1, 2), np.array(self.kinds, np.int8)
+
+    def __eq__(self, other) -> bool:
+        return isinstance(other, Partners) and np.array_equal(self.pairs, other.pairs) and np.array_equal(self.kinds, other.kinds)
+
+    __hash__ = None
+
+    def as_dict(self) -> dict:
+        """The arguments that make it again."""
+        return {"pairs": self.pairs, "kinds": self.kinds}
+
+    def special(self, n: int, angle: bool = False, dihedral: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """See `Topology.special`."""
+        return self.pairs, self.kinds
+
+    def select(self, index, n: int) -> Partners:
+        """The pairs among chosen atoms, in their new order."""
+        rows = rows_of(index, n)
+        new = np.full(n, -1, np.int64)
+        new[rows[::-1]] = np.arange(len(rows))[::-1]
+        renamed = new[self.pairs]
+        keep = (renamed >= 0).all(axis=1)
+        pairs = np.sort(renamed[keep], axis=1)
+        order = np.lexsort((pairs[:, 1], pairs[:, 0]))
+        return Partners(pairs[order], self.kinds[keep][order])
+
+    def shift(self, n: int) -> Partners:
+        """All row numbers plus `n`."""
+        return Partners(self.pairs + n, self.kinds)
+
+    def concatenate(self, *others) -> Partners | None:
+        """With atoms that have no bonds the list stays; with others it is made anew from the bonds (None)."""
+        return self if all(isinstance(o, Topology) and o.is_empty for o in others) else None
+
+    def repeat(self, n: int, copies: int) -> Partners:
+        """The pairs of `copies` copies of `n` atoms each."""
+        offset = np.repeat(np.arange(copies) * n, len(self.pairs))
+        return Partners(np.tile(self.pairs, (copies, 1)) + offset[:, None], np.tile(self.kinds, copies))
+
+    def repeat_periodic(self, *_) -> None:
+        """None: for a repeated cell the list is made anew from the bonds."""
+
+    def forget(self, pairs: np.ndarray) -> None:
+        """Bonds (m, 2) that do not count any more."""
+        p = np.sort(np.asarray(pairs, np.int64), axis=1)
+        gone = np.isin((self.pairs.astype(np.int64) << 31)[:, 0] + self.pairs[:, 1], (p[:, 0] << 31) + p[:, 1])
+        self.pairs, self.kinds = self.pairs[~gone], self.kinds[~gone]
+
+
+@dataclass(eq=False)
 class Topology:
     """Bonded items by atom row, counted from 0, with their types, counted from 1.
 
@@ -29,8 +94,8 @@ class Topology:
     bond_types, angle_types, dihedral_types, improper_types : (m,) int, optional
         Types; 1 for all if not given. The negative of a type: the item is turned off, its atoms still count as bonded; 0: a bond that
         broke.
-    frozen : Topology, optional
-        The state from which the 1-2, 1-3 and 1-4 pairs follow instead of the present one.
+    frozen : Topology or Partners, optional
+        The state from which the 1-2, 1-3 and 1-4 pairs follow instead of the present one, or these pairs.
 
     Raises
     ------
@@ -46,7 +111,7 @@ class Topology:
     dihedral_types: np.ndarray | None = None
     impropers: np.ndarray = ()
     improper_types: np.ndarray | None = None
-    frozen: Topology | None = None
+    frozen: Topology | Partners | None = None
 
     def __post_init__(self):
         for kind, width in ATOMS.items():
@@ -66,7 +131,7 @@ class Topology:
             setattr(self, kind + "s", atoms)
             setattr(self, kind + "_types", types)
         if isinstance(self.frozen, dict):
-            self.frozen = Topology(**self.frozen)
+            self.frozen = (Partners if "pairs" in self.frozen else Topology)(**self.frozen)
 
     def as_dict(self) -> dict:
         """The arguments that make it again."""
@@ -130,6 +195,11 @@ class Topology:
             parts[kind] = renamed[keep], types[keep]
         return Topology._made(parts, self.frozen and self.frozen.select(index, n))
 
+    def forget(self, pairs: np.ndarray) -> None:
+        """Bonds (m, 2) that do not count any more."""
+        stay = ~np.isin(_keys(1 << 31, self.bonds), _keys(1 << 31, pairs))
+        self.bonds, self.bond_types = self.bonds[stay], self.bond_types[stay]
+
     def shift(self, n: int) -> Topology:
         """All row numbers plus `n`."""
         return Topology._made({kind: (atoms + n, types) for kind, atoms, types in self}, self.frozen and self.frozen.shift(n))
@@ -140,7 +210,7 @@ class Topology:
         frozen = None
         if any(t.frozen is not None for t in tops):
             first, *rest = (t if t.frozen is None else t.frozen for t in tops)
-            frozen = first.concatenate(*rest)
+            frozen = None if any(isinstance(t, Partners) for t in rest) else first.concatenate(*rest)
         return Topology._made({kind: (np.concatenate([t.items(kind)[0] for t in tops]), np.concatenate([t.items(kind)[1] for t in tops]))
                                for kind in KINDS}, frozen)
 

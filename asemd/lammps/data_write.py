@@ -124,7 +124,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
     yield f"{s.counts['ntypes']} atom types"
     for section, kind in TOPOLOGY.items():
         if kind in atom_styles.bonded(s.atom_style) and s.counts[f"n{kind}types"]:
-            yield f"{np.count_nonzero(s.topology.items(kind)[1])} {section.lower()}"
+            yield f"{np.count_nonzero(s.topology.items(kind)[1]) + len(_torn(s, kind))} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
     yield ""
     yield from _box(s.box, general)
@@ -150,9 +150,19 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         atoms, item_types = s.topology.items(kind)
         on = item_types != 0
         atoms, item_types = atoms[on], np.abs(item_types[on])       # turned off ones as if they were on
-        if len(atoms):
-            columns = {"number": np.arange(1, len(atoms) + 1), "type": item_types, **dict(enumerate(s.id[atoms].T))}
+        ids = s.id[atoms]
+        if torn := _torn(s, kind):
+            ids = np.concatenate([ids, [item[2] for item in torn]])
+            item_types = np.append(item_types, [abs(item[1]) for item in torn])
+        if len(ids):
+            columns = {"number": np.arange(1, len(ids) + 1), "type": item_types, **dict(enumerate(ids.T))}
             yield from _section(section, _table(columns, {"type": names[kind]}, told))
+
+
+def _torn(s: System, kind: str) -> list:
+    """Items of a kind that lack atoms, but not the one they are written with."""
+    here = set(s.id.tolist()) if s.torn else ()
+    return [item for item in s.torn if item[0] == kind and item[1] != 0 and (item[2][0] if kind == "bond" else item[2][1]) in here]
 
 
 def _box(box, general: bool) -> Iterator[str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from asemd import units
 from asemd.errors import InputError, InputWarning
-from asemd.lammps import checkpoint, log, restart, setup_log
+from asemd.lammps import checkpoint, log, restart, setup_log, torn
 from asemd.lammps.live_coefficients import fill, live_coefficients, scale
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
@@ -57,6 +57,7 @@ def check(session) -> None:
             if not getattr(use.style, "newton_bond", True) and settings["break"] and not settings["overlay/pair"]:
                 raise InputError(f"bond_style {use.style.name} without overlay/pair yes or break no needs newton on off, which stands "
                                  "before the box is defined")
+    torn.check(session)
     check_lengths(session)
     neighbor = scene.neighbor
     if neighbor.delay % neighbor.every:

@@ -182,6 +182,7 @@ def take_up(session, document: dict[str, Any]) -> None:
     for name, value in document["neighbor"].items():
         setattr(scene.neighbor, name, value)
     scene.system = System(**document["system"], topology=Topology(**document["topology"]))
+    scene.system.topology.frozen = None         # partners are listed anew, as LAMMPS does
     scene.first_step = document["step"]
     session.print(f"  {describe(scene.system.box)}")
     session.print("  1 by 1 by 1 MPI processor grid")

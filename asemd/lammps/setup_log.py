@@ -21,7 +21,7 @@ def report_special(session) -> None:
         return
     started = time.perf_counter()
     kinds = listed(interactions)
-    topology = system.topology if system.topology.frozen is None else system.topology.frozen
+    topology = system.topology.frozen if isinstance(system.topology.frozen, Topology) else system.topology
     lines = ["Finding 1-2 1-3 1-4 neighbors ...", f"  special bond factors lj:    {_row(interactions.special_lj)}",
              f"  special bond factors coul:  {_row(interactions.special_coul)}"]
     counts = walks(topology, system.n)

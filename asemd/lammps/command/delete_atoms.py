@@ -4,9 +4,10 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps import torn
 from asemd.lammps.setup_log import report_mixing
 from asemd.marsaglia import Marsaglia
-from asemd.topology import KINDS
+from asemd.topology import KINDS, Partners
 from asemd.words import choice, number, take, whole, yes_no
 
 ARGUMENTS = {"group": 1, "region": 1, "overlap": 3, "variable": 1, "random": 6, "porosity": 4}
@@ -37,13 +38,19 @@ def run(session, args):
             raise InputError(f"{what} mol: atom_style {system.atom_style} has no molecules")
         gone |= np.isin(system.molecule, system.molecule[gone & (system.molecule > 0)])
     items = _cut(system, gone)
+    left = torn.left(system, gone, scene.newton[1], options["bond"])
     if any(items.values()) and not options["bond"]:
-        torn = ", ".join(f"{n} {kind}s" for kind, n in items.items() if n)
-        raise InputError(f"{what}: {torn} would lose some of their atoms; use bond yes to delete them or mol yes to delete whole molecules")
+        lost = ", ".join(f"{n} {kind}s" for kind, n in items.items() if n)
+        session.warn(f"{what}: {lost} lose some of their atoms, which stops the next run; use bond yes to delete them or mol yes to delete "
+                     "whole molecules")
     order = _storage_order(gone)
-    before = system.topology.counts()
+    before = torn.counts(system)
+    partners = Partners(*scene.interactions.special_pairs(system)) if any(items.values()) else None
     scene.groups.select(order)
     scene.system = new = system.select(order)
+    new.torn = left
+    if partners is not None:        # atoms two or three bonds apart stay partners when one between them goes
+        new.topology.frozen = partners.select(order, system.n)
     if options["compress"]:
         if system.molecular:
             session.warn("Ignoring 'compress yes' for molecular system")
@@ -52,8 +59,8 @@ def run(session, args):
     session.stale()
     session.print(f"Deleted {system.n - new.n} atoms, new total = {new.n}")
     if options["bond"] or options["mol"]:
-        for kind, n in new.topology.counts().items():
-            if system.counts[f"n{kind}types"]:
+        for kind, n in torn.counts(new).items():
+            if before[kind]:
                 session.print(f"Deleted {before[kind] - n} {kind}s, new total = {n}")
 
 
@@ -147,7 +154,7 @@ def _hidden_pairs(scene, system) -> set[tuple[int, int]]:
     """Bonded pairs whose weights in special_bonds are all zero: they are not seen as overlapping."""
     if system.topology.is_empty:
         return set()
-    pairs, kind = system.topology.special(system.n)
+    pairs, kind = scene.interactions.special_pairs(system)
     zero = [k for k in (1, 2, 3) if scene.interactions.special_lj[k - 1] == 0.0 and scene.interactions.special_coul[k - 1] == 0.0]
     return set(map(tuple, pairs[np.isin(kind, zero)].tolist()))
 

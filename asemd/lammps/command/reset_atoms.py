@@ -29,11 +29,16 @@ def reset_ids(session, words: list[str]) -> None:
         if words[0] != "sort":
             raise InputError(f"reset_atoms id: unknown keyword {words[0]!r}, there is sort")
         sort, words = yes_no(take(words[1:], 1, "reset_atoms id sort")[0], "reset_atoms id sort"), words[2:]
+    if system.torn:
+        kind, _, ids = system.torn[0]
+        raise InputError(f"reset_atoms id: {len(system.torn)} bonded items lack atoms, the first one is the {kind} of atoms "
+                         f"{' '.join(map(str, ids))}: delete atoms with bond yes or mol yes")
     session.print("Resetting atom IDs ...")
     report_mixing(session)
     system.box.wrap(system.x, system.image)
     order = _places(system) if sort else np.arange(system.n)
     system.id[order] = np.arange(1, system.n + 1)
+    system.topology.frozen = None       # partners are listed anew
     report_special(session)
     session.changed()
 
