@@ -16,12 +16,13 @@ COLUMNS = ("evdwl", "ebond", "eangle", "edihed", "pxx")
 def write_data(folder) -> str:
     """Two zigzag chains of eight atoms with bonds, angles and dihedrals; returns the path."""
     rng = np.random.default_rng(5)
-    x = np.array([(2 + 1.3 * k, 4 + 6 * c + 0.6 * (k % 2), 8 + 0.3 * (k // 2)) for c in range(2) for k in range(8)]) + rng.normal(0, 0.05, (16, 3))
+    x = np.array([(2 + 1.3 * k, 4 + 6 * c + 0.6 * (k % 2), 8 + 0.3 * (k // 2)) for c in range(2) for k in range(8)])
+    x += rng.normal(0, 0.05, x.shape)
     items = {"Bonds": 2, "Angles": 3, "Dihedrals": 4}
     rows = {name: [[8 * c + k + 1 + m for m in range(width)] for c in range(2) for k in range(9 - width)] for name, width in items.items()}
-    text = ["chains", "", "16 atoms", *(f"{len(r)} {name.lower()}" for name, r in rows.items()), "3 atom types",
-            *(f"2 {name.lower()[:-1]} types" for name in items), *(f"0 16 {a}lo {a}hi" for a in "xyz"), "", "Masses", "", "1 12", "2 1", "3 16",
-            "", "Atoms # molecular", ""]
+    text = ["chains", "", "16 atoms", *(f"{len(r)} {name.lower()}" for name, r in rows.items()), "3 atom types"]
+    text += [*(f"2 {name.lower()[:-1]} types" for name in items), *(f"0 16 {a}lo {a}hi" for a in "xyz"), "", "Masses", ""]
+    text += ["1 12", "2 1", "3 16", "", "Atoms # molecular", ""]
     text += [f"{n + 1} {n // 8 + 1} {n % 3 + 1} {p[0]:.6f} {p[1]:.6f} {p[2]:.6f}" for n, p in enumerate(x)]
     for name, r in rows.items():
         text += ["", name, "", *(f"{k + 1} {1 + k % 2} {' '.join(map(str, ids))}" for k, ids in enumerate(r))]
