@@ -147,6 +147,8 @@ def run(context: typer.Context,
     if safe:
         from asemd.lammps.safety import guard
         guard(os.getcwd())
+    if html:
+        check_page(html, dry)
     if dry:
         return rehearse(path, options)
     if quiet:
@@ -184,12 +186,27 @@ def run(context: typer.Context,
     return complain("interrupted", INTERRUPTED) if status == INTERRUPTED else status
 
 
+def check_page(target: str, dry: bool) -> None:
+    """Refuse a page that could not be written after a long run."""
+    if dry:
+        raise InputError("--html shows what a run did: leave out --dry")
+    folder = os.path.dirname(target) or "."
+    if not os.path.isdir(folder) or not os.access(folder, os.W_OK) or os.path.isdir(target):
+        raise InputError(f"--html {target}: cannot write a file there")
+
+
 def write_page(session, target: str | None, script: str | None, error: str) -> None:
-    """``--html``: the page of what was run, also when the run ended early."""
-    if target:
+    """``--html``: the page of what was run, also when the run ended early; then nothing hides the reason."""
+    if not target:
+        return
+    try:
         from asemd.page.run import page_of_run
         page = page_of_run(session, script if script and script != "-" else "standard input", error)
         session.log.write(f"Page: {page.write(target)}\n")
+    except Exception as e:
+        if not error or os.environ.get("ASEMD_DEBUG"):
+            raise
+        session.log.write(f"WARNING: no page was written: {type(e).__name__}: {e}\n")
 
 
 def rehearse(path: str | None, options: Switches) -> int:

@@ -7,8 +7,9 @@ import re
 import ase.build
 import numpy as np
 import pytest
+from lj_cell import BASE
 
-from asemd import Box, System, Topology
+from asemd import Box, System, Topology, cli
 from asemd.errors import InputError
 from asemd.page import Page, Series
 from asemd.page.plot import pareto, thin
@@ -173,6 +174,19 @@ def test_lengths_of_any_size():
     assert describe(small)["corners"] == describe(chain())["corners"]
 
 
+def test_of_very_many_atoms_a_part_is_shown():
+    n = 250_000
+    rng = np.random.default_rng(0)
+    system = System(units="lj", atom_style="atomic", box=Box.from_lammps((0, 0, 0), (60, 60, 60)), x=rng.random((n, 3)) * 60.0,
+                    type=np.ones(n, int), mass=[np.nan, 1.0])
+    data = describe(system)
+    assert data["of"] == n and 60_000 < data["n"] <= 100_000 and len(json.dumps(data)) < 3_000_000
+    pairs = np.arange(n).reshape(-1, 2)
+    system.topology, system.molecule = Topology(bonds=pairs, bond_types=np.ones(len(pairs), int)), 1 + np.arange(n) // 2
+    data = describe(system)
+    assert data["n"] <= 100_002 and len(data["bonds"]) > 200_000       # whole molecules, with their bonds
+
+
 def test_size_of_32000_bonded_atoms(tmp_path):
     n, rng = 32_000, np.random.default_rng(0)
     bonds = np.column_stack([np.arange(n - 1), np.arange(1, n)])
@@ -184,3 +198,39 @@ def test_size_of_32000_bonded_atoms(tmp_path):
     for k in range(14):
         page.curve(f"curve {k}", np.arange(50_000), rng.normal(size=50_000))
     assert page.write(tmp_path / "big.html").stat().st_size < 5_000_000
+
+
+# ------------------------------------------------------------------------------------------------------- asemd run --html ---
+
+@pytest.mark.parametrize("script, words", [
+    ("units lj\n", ["Atoms</dt><dd>none", "Wall time"]),
+    (BASE, ["Snapshot", "Plan", "Left out"]),
+    (BASE.replace("fix 1 all nve", "") + "run 3\n", ["No fix moves the atoms", "no fixes with time integration", "Timing"]),
+    (BASE + "fix 2 all langevin 1 1 1 77\nthermo 2\nrun 8\n", ["fix 2 (langevin)", "is not counted"]),
+    (BASE + "thermo 1\nrun 2\nrun 2\nrun 2\nminimize 0 0 2 9\n", ["run 3", "minimize"]),
+    (BASE + "thermo 1\n" + "run 2\n" * 9, ["Conserved quantity", "9"])])
+def test_page_of_a_run(tmp_path, monkeypatch, script, words):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.x").write_text(script)
+    assert cli.main(["run", "in.x", "--quiet", "--html", "x.html"]) == 0
+    text = (tmp_path / "x.html").read_text()
+    assert [w for w in words if w not in text] == [] and "Page: x.html" in (tmp_path / "log.lammps").read_text()
+
+
+def test_a_failed_run_leaves_its_page(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.x").write_text(BASE + "thermo 2\nrun 4\nset atom 1 x 0.01 y 0 z 0\nset atom 2 x 0.01 y 0 z 0\nrun 10\n")
+    assert cli.main(["run", "in.x", "--quiet", "--html", "x.html"]) == 1
+    text = (tmp_path / "x.html").read_text()
+    assert "The run ended early" in text and "Snapshot" in text and "Timing" in text
+    assert capsys.readouterr().err.count("ERROR") == 1
+
+
+def test_pages_that_cannot_be_written_are_refused_first(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.x").write_text(BASE + "run 1\n")
+    for more, words in ((["--html", "no/x.html"], "--html no/x.html: cannot write"), (["--html", "."], "cannot write"),
+                        (["--html", "x.html", "--dry"], "leave out --dry")):
+        assert cli.main(["run", "in.x", "--quiet", *more]) == 1
+        assert words in capsys.readouterr().err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["in.x"]

@@ -153,7 +153,7 @@ class Page:
         ----------
         system : asemd.System or ase.Atoms
             Elements have their colours where type labels or masses tell them, else each type has its own. Atoms are shown in the box, and
-            bonds that cross its periodic faces end half-way on both sides.
+            bonds that cross its periodic faces end half-way on both sides. Of more than 100,000 atoms a part is shown.
         title, note : str
         wide : bool
             As wide as the page, instead of two in a row.

@@ -10,6 +10,7 @@ import numpy as np
 from asemd.page.plot import COLOURS
 
 GRID = 65535            # positions are whole numbers from 0 to this, across what is shown
+MOST = 100_000          # atoms that are shown
 SIZE = 60.0             # what is shown is this wide in the viewer's units: units of length differ by 1e10
 NEIGHBOURS = 3000       # atoms whose next neighbour is looked for
 EDGES = ((0, 1), (0, 2), (0, 4), (1, 3), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 6), (5, 7), (6, 7))
@@ -35,6 +36,8 @@ def describe(system) -> dict[str, Any]:
     if not hasattr(system, "topology") or not hasattr(system, "box"):
         from asemd.system import System
         system = System.from_ase(system)
+    whole = system.n
+    system = _thinned(system)
     box = system.box
     x = np.array(system.x, float)
     image = np.zeros((system.n, 3), np.int32)
@@ -50,13 +53,23 @@ def describe(system) -> dict[str, Any]:
     spacing = _spacing(x, bonds, shift, box.cell, box.volume if system.dimension == 3 else 0.0)
     edges = EDGES if system.dimension == 3 else [e for e in EDGES if max(e) < 4]
     crossing = np.flatnonzero(shift.any(axis=1))
-    return {"n": int(system.n), "flat": system.dimension == 2, "grid": SIZE / GRID,
+    return {"n": int(system.n), "of": int(whole), "flat": system.dimension == 2, "grid": SIZE / GRID,
             "position": _pack(np.rint((x - low) / span * GRID).astype("<u2")), "kind": _pack(kind.astype("<u2")), "id": _ids(system.id),
             "bonds": _pack(bonds.astype("<u4")), "crossing": [int(i) for i in crossing],
             "toward": np.round(shift[crossing] @ box.cell * scale, 3).tolist(), "spacing": spacing * scale,
             "kinds": [[k.name, k.colour, round(k.radius, 3), k.count] for k in kinds],
             "centre": np.round((seen.max(axis=0) - low) * 0.5 * scale, 3).tolist(),
             "corners": np.round((corners - low) * scale, 3).tolist(), "edges": [list(e) for e in edges]}
+
+
+def _thinned(system):
+    """Every second, third ... atom of very large systems, or molecule where there are bonds, so that browsers can draw them."""
+    step = -(-system.n // MOST)
+    if step <= 1:
+        return system
+    single = system.topology.is_empty or system.molecule is None
+    number = np.arange(system.n) if single else np.unique(system.molecule, return_inverse=True)[1]
+    return system.select(number % step == 0)
 
 
 def _pack(values: np.ndarray) -> str:

@@ -214,7 +214,12 @@
     if (!data.flat) button("Spin", (self) => { spinning = !spinning; self.setAttribute("aria-pressed", String(spinning)); viewer.spin(spinning ? "y" : false, 0.5); }, tools);
     button("Reset", aim, tools);
     button("PNG", () => download("snapshot.png", viewer.pngURI()), tools);
-    place.append(legend, tools);
+    if (data.of > data.n) {
+      const text = document.createElement("p");
+      text.className = "note";
+      text.textContent = `${data.n.toLocaleString("en")} of ${data.of.toLocaleString("en")} atoms are shown.`;
+      place.append(legend, tools, text);
+    } else place.append(legend, tools);
   }
 
   // ------------------------------------------------------------------- page ---
