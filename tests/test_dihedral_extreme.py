@@ -361,3 +361,15 @@ def test_torsion_within_rounding_of_a_plane(name, words, energy, x):
 def test_refused(name, words, text):
     with pytest.raises(registry.InputError, match=text):
         registry.find("dihedral", name).parse_coeff(words.split(), {})
+
+
+@pytest.mark.parametrize("atom", range(4))
+@pytest.mark.parametrize("category", ["dihedral", "improper"])
+def test_a_position_that_is_no_number_is_reported(category, atom):
+    """And not taken for three atoms on a line."""
+    x = four(1.1)
+    x[atom, 1] = math.nan
+    for name in ("harmonic", "class2", "cvff", "charmm", "umbrella"):
+        if name in registry.names(category):
+            a = styles.sample(registry.find(category, name)).run(np.ascontiguousarray(x.T))
+            assert a.bad[0] and not a.forces.any()

@@ -34,7 +34,7 @@ def geometry(b, n, sides):
         h = closest(b, V3, k, sides)
         a, c = cross(f, g), cross(h, g)
         ff, gg, hh, aa, cc = dot(f, f), dot(g, g), dot(h, h), dot(a, a), dot(c, c)
-        bent = aa > 0.0 and cc > 0.0                             # else three atoms are on a line, and 90 degrees count
+        bent = aa != 0.0 and cc != 0.0                           # else three atoms are on a line, and 90 degrees count
         sine = dot(cross(c, a), g) / math.sqrt(gg) + 0.0         # never -0.0: trans is +pi
         phi = vector_atan2(sine, dot(a, c))
         put(b, PHI, k, phi if bent else 0.5 * math.pi)
@@ -80,7 +80,7 @@ def gradient(b, n):
         f, g, h = triple(b, V1, k), triple(b, V2, k), triple(b, V3, k)
         a, c = cross(f, g), cross(h, g)
         ff, gg, hh, aa, cc, slope = dot(f, f), dot(g, g), dot(h, h), dot(a, a), dot(c, c), number(b, D, k)
-        length, bent = math.sqrt(gg), aa > 0.0 and cc > 0.0
+        length, bent = math.sqrt(gg), aa != 0.0 and cc != 0.0
         u, w = slope / aa, slope / cc
         u, w = u if bent else 0.0, w if bent else 0.0            # with three atoms on a line the force has no direction
         p, q = dot(f, g) / length * u, dot(h, g) / length * w
