@@ -17,7 +17,9 @@ _FINITE = "acts on particles of finite size with an orientation and torques, whi
 # (category, name) -> why a style of LAMMPS is refused
 REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
     ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script "
-                            "with LAMMPS"}
+                            "with LAMMPS"} | dict.fromkeys(
+    [("bond", "bpm/spring/plastic"), ("angle", "amoeba"), ("angle", "cosine/buck6d"), ("angle", "mwlc"), ("improper", "amoeba")],
+    "is a style of LAMMPS that asemd does not have yet: run this script with LAMMPS")
 known: dict[tuple[str, str], Style] = {}      # by category and name
 
 

@@ -220,6 +220,13 @@ def test_styles_of_other_particles_say_why(words):
         Interactions().set_style("bond", words.split())
 
 
+@pytest.mark.parametrize(("category", "name"), [("bond", "bpm/spring/plastic"), ("angle", "amoeba"), ("angle", "mwlc"), ("improper", "amoeba")])
+def test_styles_of_lammps_alone_are_known(category, name):
+    from asemd.forcefield import Interactions
+    with pytest.raises(InputError, match=f"{name} is a style of LAMMPS that asemd does not have yet"):
+        Interactions().set_style(category, [name])
+
+
 def test_zero_nocoeff_takes_anything():
     zero = registry.find("bond", "zero")
     assert zero.parse_coeff("harmonic 1 2 3".split(), zero.parse_settings(["nocoeff"])) == {}
@@ -239,7 +246,7 @@ def test_refused_table_settings(category, words):
     ("bond", "KEY\nN 2 FQ 1 2\n\n1 1 0 0\n2 2 0 0\n", "FQ"), ("bond", "OTHER\nN 2\n\n1 1 0 0\n2 2 0 0\n", "KEY"),
     ("bond", "KEY\nN 2\n\n1 1 0 0\n2 2 x 0\n", "number"), ("angle", "KEY\nN 2\n\n1 10 0 0\n2 180 0 0\n", "0 to 180"),
     ("dihedral", "KEY\nN 3 NOF\n\n1 -180 0\n2 0 1\n3 180 0\n", "less than 360"), ("dihedral", "KEY\nN 2\n\n1 -80 0\n2 80 1\n", "number"),
-    ("dihedral", "KEY\nN 4\n\n1 -90 0 -9\n2 0 5 -9\n3 45 7 -9\n4 90 9 -9\n", ""),
+    ("dihedral", "KEY\nN 4\n\n1 -90 0 -0.05\n2 0 5 -0.05\n3 45 7 -0.05\n4 90 9 -0.05\n", ""),
     ("dihedral", "KEY\nN 4\n\n1 -90 0 9\n2 0 5 9\n3 45 7 9\n4 90 9 9\n", "inconsistent"),
 ])
 def test_refused_tables(category, text, message, tmp_path):

@@ -90,3 +90,27 @@ def test_table_cut(tmp_path):
                            (["aat", "1", "x", "140"], "angle1 must be a number")):
         with pytest.raises(InputError, match=message):
             read(tmp_path, text, style=cut, words=words)
+
+
+@pytest.mark.parametrize(("factor", "wrong", "good"), [(1.0, 0, True), (0.6, 36, True), (1.9, 36, True), (0.4, 36, False), (2.2, 36, False),
+                                                       (57.3, 36, False), (-1.0, 18, True), (-1.0, 19, False), (0.0, 36, True)])
+def test_forces_of_torsions_fit_the_energies_within_a_factor_of_2(factor, wrong, good, tmp_path):
+    """At more than half of the angles, as in LAMMPS; 57.3 is a force per radian in a table in degrees."""
+    phi = np.arange(36) * 10.0
+    energy, force = np.cos(np.radians(phi) + 0.3), np.sin(np.radians(phi) + 0.3) * math.pi / 180.0
+    force[:wrong] *= factor
+    (tmp_path / "t").write_text("K\nN 36\n\n" + "".join(f"{i} {p} {e} {f}\n" for i, (p, e, f) in enumerate(zip(phi, energy, force), 1)))
+    style = registry.find("dihedral", "table")
+    if good:
+        style.parse_coeff([str(tmp_path / "t"), "K"], {"style": "linear", "N": 50})
+        return
+    with pytest.raises(InputError, match="inconsistent forces and energies"):
+        style.parse_coeff([str(tmp_path / "t"), "K"], {"style": "linear", "N": 50})
+
+
+def test_splines_of_a_torsion_need_three_angles(tmp_path):
+    (tmp_path / "t").write_text("K\nN 2 NOF\n\n1 0 1\n2 90 2\n")
+    style = registry.find("dihedral", "table")
+    style.parse_coeff([str(tmp_path / "t"), "K"], {"style": "linear", "N": 50})
+    with pytest.raises(InputError, match="at least 3 angles"):
+        style.parse_coeff([str(tmp_path / "t"), "K"], {"style": "spline", "N": 50})

@@ -30,6 +30,11 @@ class SubStyles(Compute):
                              "is the energy")
         self.interactions = interactions
 
+    @property
+    def size(self) -> int:
+        """How many sub-styles there are."""
+        return len(self.interactions.uses[self.category])
+
     @classmethod
     def from_lammps(cls, group, words, session):
         if words:

@@ -28,6 +28,8 @@ class DihedralTable(TableStyle):
         forces, degrees = "NOF" not in section.parameters, "RADIANS" not in section.parameters
         if forces:
             section = self.section(path, keyword, known, 4, ("CHECKU", "CHECKF"))
+        if len(section.columns) < 3 and settings["style"] == "spline":
+            raise self.wrong(section, "splines need at least 3 angles, two can be interpolated linearly")
         x, e = section.columns[:, 1], section.columns[:, 2]
         f = section.columns[:, 3] if forces else None
         if x[-1] - x[0] >= (360.0 if degrees else TURN):
@@ -53,12 +55,14 @@ class DihedralTable(TableStyle):
         return out
 
     def compare(self, section, x, e, f) -> None:
-        """Refuse forces whose sign differs from that of the energy's slope at more than half of the angles."""
+        """Refuse forces that are not within a factor of 2 of the energy's slope at more than half of the angles; zeros are not judged."""
         before, after = np.roll(x, 1), np.roll(x, -1)
         before[0] -= TURN
         after[-1] += TURN
-        slope = ((e - np.roll(e, 1)) / (x - before) * (after - x) + (np.roll(e, -1) - e) / (after - x) * (x - before)) / (after - before)
-        if np.count_nonzero(slope * f > 0.0) > len(x) // 2:
+        slope = (np.roll(e, 1) - np.roll(e, -1)) / (after - before)
+        judged = (f != 0.0) & (slope != 0.0)
+        ratio = np.divide(f, slope, out=np.ones(len(x)), where=judged)
+        if np.count_nonzero((ratio < 0.5) | (ratio > 2.0)) > len(x) // 2:
             raise self.wrong(section, "inconsistent forces and energies (the force is -dE/dphi; or use NOF)")
 
     def inner(self, table, settings):
