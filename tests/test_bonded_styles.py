@@ -220,7 +220,8 @@ def test_styles_of_other_particles_say_why(words):
         Interactions().set_style("bond", words.split())
 
 
-@pytest.mark.parametrize(("category", "name"), [("bond", "bpm/spring/plastic"), ("angle", "amoeba"), ("angle", "mwlc"), ("improper", "amoeba")])
+@pytest.mark.parametrize(("category", "name"), [("bond", "bpm/spring/plastic"), ("angle", "amoeba"), ("angle", "mwlc"),
+                                                ("improper", "amoeba")])
 def test_styles_of_lammps_alone_are_known(category, name):
     from asemd.forcefield import Interactions
     with pytest.raises(InputError, match=f"{name} is a style of LAMMPS that asemd does not have yet"):

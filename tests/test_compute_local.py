@@ -232,3 +232,12 @@ def test_impropers_on_a_line_have_90_degrees_as_in_lammps():
                   [[-0.5, 1, 0], [0, 0, 0], [1.5, 0, 0], [2, 0, 1]]], float).transpose(1, 0, 2)
     g = SimpleNamespace(between=lambda i, j: x[i] - x[j])
     assert improper_local.chi(g) == pytest.approx([90.0, 90.0, 90.0]) and np.abs(phi(g)) == pytest.approx([0.0, 0.0, 90.0])
+
+
+def test_all_sub_styles_in_thermo_before_the_first_run(folder):
+    """``c_ID[*]`` is as long as the hybrid."""
+    lmp = ours([*lines_of("hybrid", folder / "d"), "compute b all bond", "compute d all dihedral",
+                "thermo_style custom step c_b[*] c_d[*]", "run 0 post no"])
+    words = list(lmp.session.scene.thermo.words)
+    lmp.close()
+    assert words == ["step", *(f"c_{id}[{k}]" for id in "bd" for k in range(1, 1 + len(words) // 2))] and len(words) > 3
