@@ -13,7 +13,8 @@ DRIFT = 0.05            # kT per degree of freedom and ns (1000 tau), below whic
 FLUCTUATION = 0.1       # of the conserved quantity, relative to that of the kinetic energy
 FASTER = 1.03           # what is gained must be more than this, for some knobs more than their `worth`
 NOISE = {"drift": "drift_error", "relative_fluctuation": "relative_fluctuation_error", "temperature": "temperature_error",
-         "configurational": "configurational_error", "temperature_offset": "offset_error"}
+         "configurational": "configurational_error", "temperature_offset": "offset_error",
+         "configurational_offset": "configurational_offset_error"}
 
 
 def tied(a: Point, b: Point, name: str) -> bool:

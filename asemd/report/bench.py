@@ -24,6 +24,7 @@ from asemd.scene import Scene
 
 SAMPLES = 120       # of energies in a run
 LOOKS = 6           # samples with reference forces and configurational temperature
+OFTEN = 24          # samples with configurational temperature where the temperature is what is looked at
 WARM = 10           # steps that compile what a run needs
 COMPLETE = 0.9      # part of its time that a run must have covered for its fluctuation to be compared
 BURSTS = 12         # of each runner in a race
@@ -140,7 +141,8 @@ class Bench:
                 d = (loop.system.f - reference.at(loop.system.x).forces)[free]
                 f = loop.system.f[free] - d
                 squares.append((float((d * d).sum()), float((f * f).sum())))
-        series = nve.run(scene, steps=steps, samples=samples, fixes=fixes, seed=self.seed, configurational=LOOKS, observe=observe,
+        series = nve.run(scene, steps=steps, samples=samples, fixes=fixes, seed=self.seed, observe=observe,
+                         configurational=LOOKS if fixes == "nve" else min(samples, OFTEN),
                          deadline=deadline)
         if squares and sum(f for _, f in squares) > 0.0:
             point.force_error = math.sqrt(sum(d for d, _ in squares) / sum(f for _, f in squares))
@@ -167,13 +169,17 @@ class Bench:
             point.relative_fluctuation_error = s.fluctuation_error * s.relative_fluctuation / s.fluctuation if s.fluctuation > 0.0 else 0.0
         half = len(s.temperature) // 2 if len(s.temperature) > 8 else 0
         point.temperature, point.temperature_error = float(np.mean(s.temperature[half:])), block_error(s.temperature[half:])
-        conf = s.configurational[np.isfinite(s.configurational)]
+        conf = s.configurational[half if fixes == "own" else 0:]
+        conf = conf[np.isfinite(conf)]
         if len(conf):
             point.configurational = float(np.mean(conf))
             point.configurational_error = float(np.std(conf, ddof=1) / math.sqrt(len(conf))) if len(conf) > 1 else math.nan
         target = baths(scene)[0].start if fixes == "own" and baths(scene) else point.configurational
         if target > 0.0:
             point.temperature_offset = point.temperature / target - 1.0
+            if fixes == "own" and len(conf):
+                point.configurational_offset = point.configurational / target - 1.0
+                point.configurational_offset_error = point.configurational_error / target
             point.offset_error = math.hypot(point.temperature_error, 0.0 if fixes == "own" else point.configurational_error) / target
         point.constraint_error = float(np.max(s.constraint, initial=0.0))
 

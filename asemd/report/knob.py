@@ -48,7 +48,8 @@ class Knob:
     metric : str
         The error that its curve shows: an attribute of `asemd.report.result.Point`.
     model : bool
-        Other values mean another model, not the same one less well computed: its values are measured, never recommended.
+        Other values mean another model, not the same one less well computed: its values are measured, never recommended; `remark` says
+        why.
     worth : float
         How many times faster it must make a run to be recommended.
     excludes : tuple of str
@@ -63,6 +64,7 @@ class Knob:
     order: ClassVar[int] = 50
     metric: ClassVar[str] = "force_error"
     model: ClassVar[bool] = False
+    remark: ClassVar[str] = "another model"
     worth: ClassVar[float] = 1.03
     excludes: ClassVar[tuple[str, ...]] = ()
     fixes: ClassVar[str] = "nve"

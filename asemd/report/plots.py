@@ -31,6 +31,7 @@ class Line:
     noise: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     model: bool = False
+    remark: str = ""
 
 
 @dataclass
@@ -56,11 +57,13 @@ class Picture:
         return out
 
 
-FLOORS = ("drift", "temperature")       # pictures of errors around zero, so that all below the tie band ties
+FLOORS = ("drift", "temperature", "configurational")       # pictures of errors around zero, so that all below the tie band ties
 KINDS = {"force_error": ("force-error", "Force error against run time", "relative force error (RMS)"),
          "relative_fluctuation": ("fluctuation", "Fluctuation of the conserved quantity against run time",
                                   "fluctuation relative to that of the kinetic energy"),
          "drift": ("drift", "Drift of the conserved quantity against run time", "drift, {drift}"),
+         "configurational_offset": ("configurational", "Configurational temperature against run time",
+                                    "relative error of the configurational temperature"),
          "temperature_offset": ("temperature", "Error of the temperature against run time", "relative error of the temperature")}
 
 
@@ -71,7 +74,7 @@ def pictures(report: Report) -> list[Picture]:
         lines = [line for curve in report.curves if (line := _line(curve, metric, report)) is not None]
         if not lines:
             continue
-        if report.combined and (line := _line(Curve("", "together", "", metric, False, report.combined), metric, report)):
+        if report.combined and (line := _line(Curve("", "together", "", metric, False, points=report.combined), metric, report)):
             lines.append(line)
         tie = None
         if metric in advice.NOISE and math.isfinite(value := abs(getattr(report.script, metric))):
@@ -100,9 +103,9 @@ def _line(curve: Curve, metric: str, report: Report) -> Line | None:
     if all(p.own for p in points):
         return None
     values = [abs(getattr(p, metric)) for p in points]
-    if curve.metric != metric and (metric == "temperature_offset" or max(values) < 1.05 * min(values) or max(values) < EXACT):
+    if curve.metric != metric and (metric.endswith("_offset") or max(values) < 1.05 * min(values) or max(values) < EXACT):
         return None
-    line = Line(curve.title, model=curve.model)
+    line = Line(curve.title, model=curve.model, remark=curve.remark)
     for p in points:
         scale = p.seconds_per_span / p.seconds_per_step
         line.x.append(p.seconds_per_span)
@@ -162,7 +165,7 @@ def _draw_picture(plt, picture: Picture):
         x, y = np.array(line.x)[order], np.array(line.y)[order]
         spans = np.abs(np.array([line.low, line.high])[:, order] - x)
         noise = np.minimum(np.nan_to_num(np.array(line.noise)[order]), 0.9 * y)
-        label = line.name + (" (another model)" if line.model else "")
+        label = line.name + (f"\n({textwrap.fill(line.remark, 24)})" if line.model else "")
         style = "none" if line.name == "together" else "--" if line.model else "-"
         ax.errorbar(x, y, xerr=spans, yerr=noise, color=COLOURS[k % len(COLOURS)], marker=MARKERS[k % len(MARKERS)], markersize=5,
                     linewidth=1.1, linestyle=style, elinewidth=0.7, label=label)

@@ -50,6 +50,8 @@ class Point:
     temperature_offset, offset_error : float
         Thermostats: difference of the kinetic temperature to the target, relative; otherwise difference of the kinetic to the
         configurational temperature, relative.
+    configurational_offset, configurational_offset_error : float
+        Thermostats: difference of the configurational temperature to the target, relative.
     constraint_error : float
         Largest error of constraints.
     builds_per_step : float
@@ -93,6 +95,8 @@ class Point:
     configurational_error: float = math.nan
     temperature_offset: float = math.nan
     offset_error: float = math.nan
+    configurational_offset: float = math.nan
+    configurational_offset_error: float = math.nan
     constraint_error: float = 0.0
     builds_per_step: float = math.nan
     dangerous: int = 0
@@ -124,7 +128,7 @@ class Curve:
     metric : str
         The attribute of `Point` that its plot shows.
     model : bool
-        Other values are another model: never recommended.
+        Its values are measured but never recommended, for the reason of `remark`.
     points : list of Point
         By size or in the order of the values; the script's own setting (``own``) is among them where the knob has it. A knob with a
         reference of its own has a point of its own for it.
@@ -139,6 +143,7 @@ class Curve:
     unit: str
     metric: str
     model: bool
+    remark: str = ""
     points: list[Point] = field(default_factory=list)
     script_label: str = ""
     script_number: float = math.nan

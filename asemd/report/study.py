@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from asemd.errors import AsemdError, InputError
+from asemd.fix import HOOKS
 from asemd.report import advice, nve
 from asemd.report.bench import LOOKS, WARM, Bench, kinetic_temperature
 from asemd.report.clock import Clock
@@ -156,7 +157,7 @@ class Study:
         for name, knob in self.knobs.items():
             if name in self.report.left_out:
                 continue
-            curve = Curve(name, knob.title, knob.unit, knob.metric, knob.model)
+            curve = Curve(name, knob.title, knob.unit, knob.metric, knob.model, knob.remark if knob.model else "")
             self.report.curves.append(curve)
             current = knob.current(self.scene)
             values = [v for v in knob.values(self.scene) if v != current]
@@ -290,4 +291,5 @@ class Study:
 
 def _follows_variables(scene: Scene) -> bool:
     """Whether a fix asks for variables, which only a running script can answer."""
-    return any(callable(value) for fix in scene.fixes.values() for value in vars(fix).values() if not hasattr(value, "__self__"))
+    return any(callable(value) for fix in scene.fixes.values() for name, value in vars(fix).items()
+               if name not in HOOKS and not hasattr(value, "__self__"))

@@ -69,7 +69,7 @@ def columns(report: Report) -> list[str]:
 def curve_table(curve: Curve, report: Report, brief: bool = False) -> Table:
     """All points of a knob."""
     rows = [row(p, report, f"{curve.script_label} (script)" if p.own else None) for p in curve.points]
-    title = f"{curve.title[0].upper()}{curve.title[1:]}" + (" (another model: measured, not recommended)" if curve.model else "")
+    title = f"{curve.title[0].upper()}{curve.title[1:]}" + (f" ({curve.remark}: measured, not recommended)" if curve.model else "")
     return cut(Table(title, columns(report), rows), brief)
 
 

@@ -88,7 +88,7 @@ def page(report: Report, system=None):
     if drawn:
         out.section("Error against run time")
     for picture in drawn:
-        series = [Drawn(line.name + " (another model)" * line.model, *_sorted(line)) for line in picture.lines]
+        series = [Drawn(line.name + f" ({line.remark})" * line.model, *_sorted(line)) for line in picture.lines]
         here = (*picture.script, "script") if picture.script else None
         floor = picture.tie[1] if picture.tie and picture.name in plots.FLOORS else None
         out.loglog(picture.title, series, picture.xlabel, picture.ylabel, front=True, floor=floor, here=here)

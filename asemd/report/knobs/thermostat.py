@@ -18,7 +18,7 @@ class Thermostat(Knob):
 
     name, title, order = "thermostat", "damping time", 70
     metric = "temperature_offset"
-    model = True
+    model, remark = True, "the script's fixes in place of constant energy"
     fixes = "own"
 
     def needs(self, scene):
