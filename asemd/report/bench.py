@@ -98,7 +98,8 @@ class Bench:
     def warm(self, scene: Scene, fixes: str) -> tuple[float, float]:
         """Compile what a run of the scene needs; seconds of compilation, and of a step, roughly."""
         before = self.clock.compiled
-        series = nve.run(scene, steps=WARM, samples=2, fixes=fixes, seed=self.seed)
+        with self.clock.warming():
+            series = nve.run(scene, steps=WARM, samples=2, fixes=fixes, seed=self.seed, configurational=1)
         return self.clock.compiled - before, series.seconds_per_step
 
     def measure(self, knob: str, label: str, number: float, settings: Mapping[str, Any], duration: float, deadline: float,

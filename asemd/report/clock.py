@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import contextmanager
 
 from numba.core import event
 
@@ -19,7 +20,7 @@ class Clock(event.TimingListener):
 
     def __init__(self, budget: float):
         super().__init__()
-        self.began, self.budget = time.perf_counter(), budget
+        self.began, self.budget, self.besides = time.perf_counter(), budget, 0.0
 
     def __enter__(self) -> Clock:
         event.register(self.KIND, self)
@@ -30,8 +31,17 @@ class Clock(event.TimingListener):
 
     @property
     def compiled(self) -> float:
-        """Seconds of compilation so far."""
-        return self.duration if self.done else 0.0
+        """Seconds of compilation so far, with what goes with it in blocks of `warming`."""
+        return (self.duration if self.done else 0.0) + self.besides
+
+    @contextmanager
+    def warming(self):
+        """A block that is there to compile: if anything is compiled in it, all of it counts as compilation (linking, files)."""
+        began, before = time.perf_counter(), self.compiled
+        yield
+        found = self.compiled - before
+        if found > 0.0:
+            self.besides += max(0.0, time.perf_counter() - began - found)
 
     @property
     def used(self) -> float:

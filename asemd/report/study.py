@@ -90,7 +90,8 @@ class Study:
             nve.warm(scene, t, report.seed)
             report.notes.append(f"The scene has no velocities: fresh ones of temperature {t:g}.")
         own = "own" if any(f.integrates for f in scene.fixes.values()) and not _follows_variables(scene) else "nve"
-        first = nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
+        with self.clock.warming():
+            first = nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
         if first.failed:
             report.notes.append(f"Settling failed: {first.failed}")
             return
@@ -137,11 +138,11 @@ class Study:
         report, wanted = self.report, self.wanted
         available = CAUTION * self.clock.left(1.0 - TOGETHER - REST)
         weights = 1.0 + sum(self._weight(knob, value) for knob, value in wanted)
-        first = len(report.curves)      # one value of each knob is measured even if its run is short
+        first = len(report.curves)      # one value of each knob is measured if there is any time, however short its run
 
         def room() -> float:
             return (available - overhead * (len(wanted) + 1)) / weights / max(step, 1e-9)
-        while wanted and room() < (FEWEST if len(wanted) > first else LEAST_STEPS):
+        while len(wanted) > first and room() < FEWEST:
             knob, value = wanted.pop()
             weights -= self._weight(knob, value)
             report.not_measured.insert(0, f"{knob.title} {knob.label(value)}")
@@ -177,7 +178,7 @@ class Study:
                 if knob.reference(self.scene) is None:
                     curve.points.append(report.script)
         for k, (knob, value) in enumerate(self.wanted):
-            left = self.clock.left(1.0 - TOGETHER - REST)
+            left = self.clock.left(1.0 - REST - (TOGETHER if k >= len(report.curves) else 0.0))
             if left <= 0.0:
                 report.not_measured += [f"{knob.title} {knob.label(v)}" for knob, v in self.wanted[k:]]
                 break
