@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd import tilted
 from asemd.errors import InputError, SimulationError
 
 BOUNDARIES = {"p": "periodic", "f": "fixed", "s": "shrink-wrapped", "m": "shrink-wrapped with a minimum"}
@@ -135,11 +136,7 @@ class Box:
     @property
     def inverse(self) -> np.ndarray:
         """(3, 3): ``(x - origin) @ inverse`` are fractional coordinates."""
-        if self.is_lammps_frame:        # by the terms of `fractional`
-            (lx, ly, lz), (xy, xz, yz) = np.diag(self.cell), self.tilt
-            return np.array([[1.0 / lx, 0.0, 0.0], [-xy / (lx * ly), 1.0 / ly, 0.0],
-                             [(yz * xy - ly * xz) / (lx * ly * lz), -yz / (ly * lz), 1.0 / lz]])
-        return np.linalg.inv(self.cell)
+        return tilted.inverse(self.cell) if self.is_lammps_frame else np.linalg.inv(self.cell)
 
     @property
     def aligned(self) -> bool:
@@ -178,10 +175,8 @@ class Box:
     def fractional(self, x: np.ndarray) -> np.ndarray:
         """Fractional coordinates of positions (n, 3)."""
         d = x - self.origin
-        if self.is_lammps_frame and self.triclinic:     # sums in LAMMPS's order: it says on which side of a face an atom is
-            (lx, ly, lz), (xy, xz, yz) = np.diag(self.cell), self.tilt
-            return np.column_stack([1.0 / lx * d[:, 0] - xy / (lx * ly) * d[:, 1] + (yz * xy - ly * xz) / (lx * ly * lz) * d[:, 2],
-                                    1.0 / ly * d[:, 1] - yz / (ly * lz) * d[:, 2], 1.0 / lz * d[:, 2]])
+        if self.is_lammps_frame and self.triclinic:
+            return tilted.fractional(d, self.cell)
         return d / np.diag(self.cell) if self.aligned else d @ self.inverse
 
     # ---- periodicity
@@ -236,9 +231,7 @@ class Box:
         s, n = s[rows] - n[rows], n[rows]
         upper = self.periodic & (s >= 1.0)
         s, n = np.where(upper, s - 1.0, s), n + upper
-        (lx, ly, lz), (xy, xz, yz), lo = np.diag(self.cell), self.tilt, self.origin
-        x[rows] = np.column_stack([lx * s[:, 0] + xy * s[:, 1] + xz * s[:, 2] + lo[0], ly * s[:, 1] + yz * s[:, 2] + lo[1],
-                                   lz * s[:, 2] + lo[2]])
+        x[rows] = tilted.positions(s, self.cell, self.origin)
         image[rows] += n.astype(image.dtype)
 
     def _wrap_general(self, x, image):
