@@ -11,7 +11,6 @@ from asemd.errors import InputError, SimulationError
 
 BOUNDARIES = {"p": "periodic", "f": "fixed", "s": "shrink-wrapped", "m": "shrink-wrapped with a minimum"}
 MARGIN = 1e-4      # LAMMPS keeps a shrink-wrapped face this part of the initial box length away from the outermost atom
-
 FARTHEST = 1e9     # boxes; image flags are 32-bit numbers
 
 
@@ -202,8 +201,7 @@ class Box:
             far = np.abs(self.fractional(x)[:, self.periodic]).max(axis=1)
             if far.max() > FARTHEST:
                 raise SimulationError(f"atom row {int(np.argmax(far))} is {far.max():.3g} boxes away, too far to be wrapped")
-        wrapper = self._wrap_aligned if self.aligned else self._wrap_tilted if self.is_lammps_frame else self._wrap_general
-        wrapper(x, image)
+        (self._wrap_aligned if self.aligned else self._wrap_tilted if self.is_lammps_frame else self._wrap_general)(x, image)
 
     def _wrap_aligned(self, x, image):
         for k in np.flatnonzero(self.periodic):
