@@ -132,6 +132,17 @@ def test_interrupted(melt, monkeypatch):
     assert report.interrupted and report.script.seconds_per_step > 0.0 and report.curve("timestep").points == [report.script]
 
 
+def test_interrupted_late(melt):
+    """The advice then rests on what there is."""
+    def tell(done, total, what):
+        if what.startswith("precision mixed"):
+            raise KeyboardInterrupt
+    report = asemd.report(melt, 20.0, only=["timestep", "precision"], lammps=False, tell=tell)
+    assert report.interrupted and len(report.curve("timestep").points) == 2
+    if report.best is not None:
+        assert report.gain > 1.0 and "faster" in report.recommendation
+
+
 def test_bad_input(melt, tmp_path):
     for options, words in (({"budget": 0.5}, "budget must be at least 1"), ({"only": ["skim"]}, "no knob 'skim'"),
                            ({"at": 3}, "has 2 runs"), ({"tolerance": 0.0}, "tolerance must be positive")):

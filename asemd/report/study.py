@@ -75,8 +75,18 @@ class Study:
                 self._race()
                 self._wheel()
         except KeyboardInterrupt:
-            self.report.interrupted = True
+            self._cut_short()
         self._conclude()
+
+    def _cut_short(self) -> None:
+        """After Ctrl-C: advice from what there is, without the race."""
+        report = self.report
+        report.interrupted = True
+        if self.bench is not None and not math.isnan(report.script.seconds_per_span) and report.best is None:
+            self._clock()
+            advice.mark_ties(report.points, report.script)
+            report.best = advice.choose(report.points, report.script, self.knobs, self.force)
+            report.gain = advice.gain(report.best, report.script) if report.best else math.nan
 
     def _told(self, what: str) -> None:
         self.tell(min(self.clock.used, self.clock.budget), self.clock.budget, what)
@@ -205,7 +215,7 @@ class Study:
         """On a busy machine processor time is the better measure of run time."""
         bench, report = self.bench, self.report
         share = sorted(bench.shares)[len(bench.shares) // 2] if bench.shares else 1.0
-        if share < BUSY:
+        if share < BUSY and not bench.busy:
             bench.busy = report.busy = True
             report.notes.append(f"Other work ran on the machine (this program had {share:.0%} of a core): all times are processor times, "
                                 "for several threads the mean of the threads.")
