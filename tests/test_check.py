@@ -2,6 +2,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -272,6 +275,14 @@ def test_fixes_bring_checks_of_their_own(folder, monkeypatch):
     from asemd.fix.nve import NVE
     monkeypatch.setattr(NVE, "check_stability", lambda self, case: [Finding("warning", "fix nve", "is lonely")], raising=False)
     assert check(LJ).of("fix nve")[0].message == "is lonely"
+
+
+def test_package_and_function_have_one_name(folder):
+    """Whatever is imported first."""
+    Path("in.x").write_text(LJ)
+    for first in ("import asemd.check.report", "from asemd.check import Report", "import asemd", "from asemd import check"):
+        code = f"{first}\nimport asemd\nassert asemd.check('in.x').ok\nfrom asemd import check\nassert check('in.x').ok"
+        subprocess.run([sys.executable, "-c", code], check=True, timeout=120, env={**os.environ, "PYTHONPATH": str(ROOT)})
 
 
 def test_one_atom_and_none(folder):

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import copy
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -185,4 +185,5 @@ def of_scene(scene, source: str = "scene") -> Case:
     """The case of a scene, which becomes the case's own: it must be a copy."""
     system = scene.need_system("check")
     scene.interactions.check_complete(system)
-    return Case(source, system, scene.interactions, scene.settings(), dict(scene.fixes), dict(scene.groups), scene.dt, scene.respa, scene)
+    settings = replace(scene.settings(), precision="double")      # differences of forces need their digits
+    return Case(source, system, scene.interactions, settings, dict(scene.fixes), dict(scene.groups), scene.dt, scene.respa, scene)
