@@ -13,6 +13,7 @@ from asemd import Box, System, Topology, cli
 from asemd.errors import InputError
 from asemd.page import Page, Series
 from asemd.page.plot import pareto, thin
+from asemd.page.run import _limits
 from asemd.page.snapshot import describe
 
 
@@ -215,6 +216,15 @@ def test_page_of_a_run(tmp_path, monkeypatch, script, words):
     assert cli.main(["run", "in.x", "--quiet", "--html", "x.html"]) == 0
     text = (tmp_path / "x.html").read_text()
     assert [w for w in words if w not in text] == [] and "Page: x.html" in (tmp_path / "log.lammps").read_text()
+
+
+def test_rows_that_would_flatten_a_curve_are_told_instead():
+    y = np.concatenate([[9000.0, 300.0], 1.0 + 0.1 * np.sin(np.arange(100))])
+    limits, note = _limits(np.arange(102) * 10.0, y, "K")
+    assert 0.8 < limits[0] < 0.9 and 1.1 < limits[1] < 1.2 and note == "2 of 102 rows are beyond the plot, up to 9000 K at step 0."
+    assert _limits(np.arange(100.0), np.linspace(0.0, 5.0, 100), "K") == (None, "")
+    assert _limits(np.arange(5.0), np.array([9e9, 1, 1, 1, 1]), "K") == (None, "")
+    assert _limits(np.arange(30.0), np.append(np.ones(29), 2.0), "K") == (None, "")
 
 
 def test_a_failed_run_leaves_its_page(tmp_path, monkeypatch, capsys):

@@ -85,8 +85,8 @@ class Page:
                 raise InputError(f"table {title or columns[0]!r}: a row has {len(row)} cells for {len(columns)} columns")
         self.parts.append(document.Part("table", title, document.table(columns, rows), note, wide=True))
 
-    def curve(self, title: str, x, y, xlabel: str = "", ylabel: str = "", *, band: Mapping[str, tuple] | None = None, wide: bool = False,
-              note: str = "") -> Plot:
+    def curve(self, title: str, x, y, xlabel: str = "", ylabel: str = "", *, band: Mapping[str, tuple] | None = None,
+              limits: tuple[float, float] | None = None, wide: bool = False, note: str = "") -> Plot:
         """Add curves over a common axis.
 
         Parameters
@@ -99,6 +99,8 @@ class Page:
             With units.
         band : mapping, optional
             Name of a curve -> (low (n,), high (n,)), drawn as a shade.
+        limits : (low, high), optional
+            What the axis of y shows; curves are cut off there.
         wide : bool
             As wide as the page, instead of two in a row.
         note : str
@@ -106,7 +108,7 @@ class Page:
         """
         curves = y if isinstance(y, Mapping) else {ylabel or title: y}
         curves = {name: np.asarray(values, float) for name, values in curves.items()}
-        return self._plot(curve_plot(title, np.asarray(x, float), curves, xlabel, ylabel, band), wide, note)
+        return self._plot(curve_plot(title, np.asarray(x, float), curves, xlabel, ylabel, band, limits), wide, note)
 
     def loglog(self, title: str, series: Sequence[Series], xlabel: str = "", ylabel: str = "", *, front: bool = False,
                floor: float | None = None, here: tuple[float, float, str] | None = None, wide: bool = True, note: str = "") -> Plot:

@@ -20,10 +20,14 @@ WIDTH = 520         # of a static plot
 COLOURS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#ee7733", "#009988", "#999933", "#882255")
 
 
-def theme(text: str, faint: str) -> dict[str, Any]:
-    """Vega's configuration for a colour of text and one of lines."""
+# the same order of hues, lighter
+LIGHT = ("#77aadd", "#ee8c96", "#5fc27e", "#eedd88", "#99ddff", "#d68ac0", "#f2a36b", "#44bba4", "#cccc66", "#c98aa8")
+
+
+def theme(text: str, faint: str, colours: Sequence[str]) -> dict[str, Any]:
+    """Vega's configuration for a colour of text, one of lines, and those of curves."""
     font = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif"
-    return {"background": None, "font": font, "view": {"stroke": None}, "range": {"category": list(COLOURS)},
+    return {"background": None, "font": font, "view": {"stroke": None}, "range": {"category": list(colours)}, "bar": {"color": colours[0]},
             "axis": {"labelColor": text, "titleColor": text, "domainColor": faint, "tickColor": faint, "gridColor": faint,
                      "gridOpacity": 0.5, "labelFontSize": 11, "titleFontSize": 12, "titleFontWeight": "normal", "titlePadding": 8},
             "legend": {"labelColor": text, "titleColor": text, "labelFontSize": 11, "orient": "top", "title": None, "labelLimit": 260,
@@ -32,7 +36,7 @@ def theme(text: str, faint: str) -> dict[str, Any]:
             "title": {"color": text, "anchor": "start", "fontSize": 14}}
 
 
-THEMES = {"light": theme("#333f4d", "#c9d1da"), "dark": theme("#d4dce5", "#46505c")}
+THEMES = {"light": theme("#333f4d", "#c9d1da", COLOURS), "dark": theme("#d4dce5", "#46505c", LIGHT)}
 
 
 @dataclass
@@ -137,7 +141,7 @@ def precise(x: np.ndarray) -> float:
 
 
 def curve_plot(title: str, x: np.ndarray, curves: Mapping[str, np.ndarray], xlabel: str, ylabel: str,
-               band: Mapping[str, tuple] | None) -> Plot:
+               band: Mapping[str, tuple] | None, limits: tuple[float, float] | None) -> Plot:
     """See `asemd.page.Page.curve`."""
     rows, shade = [], []
     for name, y in curves.items():
@@ -150,17 +154,19 @@ def curve_plot(title: str, x: np.ndarray, curves: Mapping[str, np.ndarray], xlab
                 shade.append({"x": float(x[i]), "low": number(low[i]), "high": number(high[i]), "s": name})
     names = list(curves)
     colour: dict[str, Any] = {"field": "s", "type": "nominal", "scale": {"domain": names}, "legend": {} if len(names) > 1 else None}
-    xs = {"field": "x", "type": "quantitative", "title": xlabel, "scale": {"zero": False, "nice": False}, "axis": {"tickCount": 6}}
-    ys = {"field": "y", "type": "quantitative", "title": ylabel, "scale": {"zero": False}, "axis": {"tickCount": 5}}
+    xs = {"field": "x", "type": "quantitative", "title": xlabel, "scale": {"zero": False, "nice": False},
+          "axis": {"tickCount": 6, "labelOverlap": "greedy", "labelSeparation": 8}}
+    span = {"zero": False} if limits is None else {"zero": False, "domain": list(limits)}
+    ys = {"field": "y", "type": "quantitative", "title": ylabel, "scale": span, "axis": {"tickCount": 5}}
     tip = [{"field": "s", "title": "curve"}] * (len(names) > 1) + [{"field": "x", "title": xlabel or "x", "format": ".7~g"},
                                                                   {"field": "y", "title": ylabel or "y", "format": ".7~g"}]
     layer: list[dict[str, Any]] = []
     if shade:
-        layer.append({"data": {"values": shade}, "mark": {"type": "area", "opacity": 0.18},
+        layer.append({"data": {"values": shade}, "mark": {"type": "area", "opacity": 0.18, "clip": True},
                       "encoding": {"x": xs, "y": {**ys, "field": "low"}, "y2": {"field": "high"}, "color": colour}})
     layer.append({"mark": {"type": "line", "point": len(x) == 1, "clip": True}, "encoding": {"x": xs, "y": ys, "color": colour}})
     layer.append({"params": [{"name": "near", "select": {"type": "point", "on": "pointerover", "nearest": True, "clear": "pointerout"}}],
-                  "mark": {"type": "point", "filled": True, "size": 60},
+                  "mark": {"type": "point", "filled": True, "size": 60, "clip": True},
                   "encoding": {"x": xs, "y": ys, "color": colour, "tooltip": tip,
                                "opacity": {"condition": {"param": "near", "empty": False, "value": 1}, "value": 0}}})
     return Plot(title, {"data": {"values": rows}, "layer": layer})
@@ -235,6 +241,6 @@ def bar_plot(title: str, values: Mapping[str, float], xlabel: str) -> Plot:
     ys = {"field": "n", "type": "nominal", "title": None, "sort": list(values), "axis": plain}
     xs = {"field": "v", "type": "quantitative", "title": xlabel, "axis": {"tickCount": 5}}
     tip = [{"field": "n", "title": "part"}, {"field": "v", "title": xlabel or "value", "format": ".4~g"}]
-    layer = [{"mark": {"type": "bar", "cornerRadiusEnd": 3, "color": COLOURS[0]}, "encoding": {"x": xs, "y": ys, "tooltip": tip}},
+    layer = [{"mark": {"type": "bar", "cornerRadiusEnd": 3}, "encoding": {"x": xs, "y": ys, "tooltip": tip}},
              {"mark": {"type": "text", "align": "left", "dx": 5}, "encoding": {"x": xs, "y": ys, "text": {"field": "v", "format": ".3~g"}}}]
     return Plot(title, {"data": {"values": rows}, "layer": layer}, height=max(90, 30 * len(rows)))

@@ -20,6 +20,7 @@ from asemd.thermo import KEYWORDS
 CURVES = 14             # most plots of thermo columns
 APART = 6               # runs that are drawn as curves of their own
 WARNINGS = 12
+OUTLYING = 8.0          # a curve whose range is so many times that of nine tenths of its rows is cut off
 # columns that say where the run is rather than how the system does
 CLOCK = {"step", "elapsed", "elaplong", "dt", "time", "cpu", "tpcpu", "spcpu", "cpuremain", "cpuuse", "timeremain", "part"}
 TITLES = {"temp": "Temperature", "press": "Pressure", "pe": "Potential energy", "ke": "Kinetic energy", "etotal": "Total energy",
@@ -150,11 +151,30 @@ def _thermo(page: Page, section: str, runs: Sequence[Run]) -> None:
             drawn += 1
             unit = _unit(word, having[0])
             x, curves = _joined(steps, values, section == "Thermo")
-            page.curve(TITLES.get(word, title), x, curves, "step", f"{title} ({unit})" if unit else title)
+            limits, note = _limits(np.concatenate(steps), np.concatenate(values), unit)
+            page.curve(TITLES.get(word, title), x, curves, "step", f"{title} ({unit})" if unit else title, limits=limits, note=note)
     if constant:
         page.text("Constant: " + ", ".join(f"`{c}`" for c in constant))
     if left:
         page.text("Not drawn: " + ", ".join(f"`{c}`" for c in left))
+
+
+def _limits(steps: np.ndarray, values: np.ndarray, unit: str) -> tuple[tuple[float, float] | None, str]:
+    """Where a few rows, as at the start of many runs, would flatten the curve: what to show instead, and a line that says so."""
+    known = np.isfinite(values)
+    if known.sum() < 20:
+        return None, ""
+    steps, values = steps[known], values[known]
+    low, high = np.percentile(values, (5, 95))
+    margin = 0.6 * (high - low)
+    if np.ptp(values) < OUTLYING * (high - low) or not high > low:
+        return None, ""
+    beyond = np.flatnonzero((values < low - margin) | (values > high + margin))
+    worst = beyond[np.argmax(np.abs(values[beyond] - 0.5 * (low + high)))]
+    inside = np.delete(values, beyond)
+    room = 0.08 * np.ptp(inside)
+    note = f"{len(beyond)} of {len(values)} rows are beyond the plot, up to {values[worst]:.5g} {unit} at step {steps[worst]:.0f}."
+    return (float(inside.min() - room), float(inside.max() + room)), " ".join(note.split())
 
 
 def _steps(run: Run) -> np.ndarray:
@@ -234,7 +254,7 @@ def _timing(page: Page, record: Record) -> None:
     spent = {name: sum(r.timings.get(name, 0.0) for r in ran) for name in SECTIONS}
     total = sum(r.seconds for r in ran)
     spent["Other"] = max(0.0, total - sum(spent.values()))
-    page.bars("Where the time went", {k: v for k, v in spent.items() if v > 0.0}, "seconds", wide=True,
+    page.bars("Where the time went", {k: v for k, v in spent.items() if v > 0.001 * total}, "seconds", wide=True,
               note=f"{total:.4g} s in runs; {max(0.0, record.seconds - total):.3g} s outside them: reading, set-up, compilation.")
     rows = [(r.kind, f"{r.begin:,}", f"{r.steps:,}", f"{r.atoms:,}", f"{r.seconds:.4g}", f"{r.steps / r.seconds:,.4g}", f"{r.builds:,}",
              f"{r.dangerous:,}") for r in ran[-20:]]
