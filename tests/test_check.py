@@ -285,6 +285,15 @@ def test_package_and_function_have_one_name(folder):
         subprocess.run([sys.executable, "-c", code], check=True, timeout=120, env={**os.environ, "PYTHONPATH": str(ROOT)})
 
 
+def test_later_lines_do_not_hide_the_first_run(folder):
+    report = check(LJ + "fix 9 all nonsense\nrun 10\n")
+    assert report.of("time step") and "unknown fix style 'nonsense'" in report.of("script")[0].message
+    report = check(edit(LJ, ("run 10", "run 0\nrun 10\ntimestep 0.03\nrun 5")))
+    assert [f.severity for f in report.of("time step")] == ["ok", "warning"] and report.of("time step")[1].where == "run of line 15"
+    with pytest.raises(InputError, match="nonsense"):
+        check(edit(LJ, ("run 10", "fix 9 all nonsense\nrun 10")))
+
+
 def test_one_atom_and_none(folder):
     one = edit(LJ, ("create_atoms 1 box", "create_atoms 1 single 1 1 1"), ("velocity all create 1.44 87287 loop geom", ""))
     report = check(one)

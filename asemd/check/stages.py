@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 
 from asemd.check.case import Case, of_scene
+from asemd.errors import InputError
 from asemd.lammps import script
 from asemd.lammps.command.minimize import Minimization
 from asemd.lammps.driver import check_integration
@@ -23,8 +24,8 @@ class Reading(DrySession):
         One for every run with another timestep, force field, fixes or levels than the ones before.
     empty : Case or None
         A run of no steps, of use if there is no other.
-    known : int
-        Problems of the script before its first run.
+    blocking : list of InputError
+        Problems of the script before its first run; those after it are told as warnings.
     """
 
     def __init__(self, switches=None):
@@ -33,7 +34,7 @@ class Reading(DrySession):
         self.relaxes = False
         self._seen: set[str] = set()
         self.empty: Case | None = None
-        self.known = 0
+        self.blocking: list[InputError] = []
 
     def drive(self, driver) -> None:
         super().drive(driver)
@@ -41,16 +42,21 @@ class Reading(DrySession):
             self.relaxes = True
         elif not self.cases:
             check_integration(self)
-            case = self._case()
-            self.known = len(self.problems)
+            self.blocking = self._problems_so_far()
+            case = self._case() or self.empty
             if driver.plan.steps:
                 self.cases.append(case)
-            elif self.empty is None:
+            else:
                 self.empty = case
-        elif len(self.cases) < MOST and not self.problems[self.known:]:
+        elif len(self.cases) < MOST and not self._problems_so_far():
             case = self._case()
             if case is not None:
                 self.cases.append(case)
+
+    def _problems_so_far(self) -> list[InputError]:
+        """Problems but those of lines after the present one, which the first look at the script found."""
+        here = self._position
+        return [p for p in self.problems if not (here and p.where and p.where.file == here.file and p.where.line > here.line)]
 
     def _case(self) -> Case | None:
         """The run that begins now; None if there was one like it."""
@@ -81,11 +87,13 @@ def of_script(path: str, switches=None) -> Case:
     """
     session = Reading(switches)
     session.rehearse(path)
-    script.raise_problems(session.problems[:session.known] if session.cases or session.empty else session.problems)
+    has_run = bool(session.cases or session.empty)
+    script.raise_problems(session.blocking if has_run else session.problems)
     session.scene.need_system("check")
     cases = session.cases or [session.empty or session._case()]
     case = cases[0]
-    case.source, case.warnings, case.where = path, list(session.notes), ""
+    case.source, case.where = path, ""
+    case.warnings = [*session.notes, *(f"after the first run: {p}" for p in session.problems)]
     case.later = cases[1:]
     for other in case.later:
         other.source = path
