@@ -44,8 +44,8 @@ class ForceField(Calculator):
     threads : int
     precision : str
         ``double`` or ``mixed``.
-    shift, tail, mix, dielectric
-        As in ``pair_modify`` and ``dielectric``.
+    shift, tail, mix, dielectric, compat
+        As in ``pair_modify`` and ``dielectric``; ``compat="lammps"``: LAMMPS's forces also where they are not the gradient of its energy.
 
     Raises
     ------
@@ -64,15 +64,16 @@ class ForceField(Calculator):
     def __init__(self, bond: Mapping | None = None, angle: Mapping | None = None, dihedral: Mapping | None = None,
                  improper: Mapping | None = None, pair: Mapping | None = None, *, topology: Topology | Mapping | None = None,
                  special_bonds=None, shift: bool = False, tail: bool = False, mix: str | None = None, dielectric: float = 1.0,
-                 skin: float = 2.0, threads: int = 1, precision: str = "double"):
+                 compat: str = "", skin: float = 2.0, threads: int = 1, precision: str = "double"):
         super().__init__()
-        if precision not in ("double", "mixed"):
-            raise InputError(f"precision must be double or mixed, got {precision!r}")
+        for name, value, known in (("precision", precision, ("double", "mixed")), ("compat", compat, ("lammps", ""))):
+            if value not in known:
+                raise InputError(f"{name} must be {' or '.join(known) if all(known) else 'lammps or nothing'}, got {value!r}")
         if not skin >= 0.0:
             raise InputError(f"skin must not be negative, got {skin}")
         given = dict(bond=bond, angle=angle, dihedral=dihedral, improper=improper, pair=pair)
         self.arguments = {category: with_keys(styles or {}) for category, styles in given.items()} | dict(
-            special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric)
+            special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric, compat=compat)
         self.interactions: Interactions | None = None
         self.topology = Topology(**topology) if isinstance(topology, Mapping) else topology
         self.natoms = 0                          # atoms that `topology` is for, once known
@@ -149,7 +150,7 @@ class ForceField(Calculator):
         """The arguments, JSON-able; of a script's force field the commands that make it."""
         out: dict[str, Any] = {k: as_json(v) for k, v in self.arguments.items() if v and not (k == "dielectric" and v == 1.0)}
         if self.interactions is not None and not self.arguments:
-            out["units"], out["commands"] = self.units, self.commands()
+            out |= {"units": self.units, "commands": self.commands(), "compat": self.interactions.compat}
         if self.topology is not None and self.arguments:
             out["topology"] = {f"{kind}s": items.tolist() for kind, items, _ in self.topology if len(items)} | {
                 f"{kind}_types": types.tolist() for kind, _, types in self.topology if len(types)}
@@ -364,8 +365,7 @@ class ForceField(Calculator):
         u = {d: unit_styles.factor(d, self.units) for d in ("energy", "force", "distance")}
         energy, forces = result.potential, result.forces
         virial = result.virial + result.virial_of.get("tail", 0.0)
-        shares = np.zeros(len(atoms))
-        strains = np.zeros((len(atoms), 6))
+        shares, strains = np.zeros(len(atoms)), np.zeros((len(atoms), 6))
         if self.loads:
             forces = forces.copy()
             x = atoms.positions + (atoms.arrays["image"] @ atoms.cell.array if "image" in atoms.arrays else 0.0)

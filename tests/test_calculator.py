@@ -186,6 +186,18 @@ def test_arguments_survive_json():
         assert other.get_potential_energy() == pytest.approx(energy, rel=1e-13)
 
 
+def test_forces_of_lammps_where_they_are_no_gradient():
+    atoms = asemd.Atoms("CCC", positions=[[1, 0, 0], [0, 0, 0], [-0.3, 1.1, 0.2]], topology=Topology(angles=[[0, 1, 2]], angle_types=[1]))
+    atoms.calc = ForceField(angle={"mm3": {1: (2.0, 70.0)}}, compat="lammps")
+    energy, forces = atoms.get_potential_energy(), atoms.get_forces()
+    assert json.loads(json.dumps(atoms.calc.todict()))["compat"] == "lammps"
+    atoms.calc = ForceField(angle={"mm3": {1: (2.0, 70.0)}})
+    assert atoms.get_potential_energy() == pytest.approx(energy, rel=1e-14)
+    assert 1e-6 < np.abs(atoms.get_forces() - forces).max() < 1e-2 * np.abs(forces).max()
+    with pytest.raises(InputError, match="compat must be lammps or nothing, got 'gromacs'"):
+        ForceField(compat="gromacs")
+
+
 def test_repeated_atoms_have_repeated_energy():
     atoms = waters(2, SHAPES["tilted"])
     energy, forces = atoms.get_potential_energy(), atoms.get_forces()

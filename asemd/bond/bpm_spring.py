@@ -80,7 +80,7 @@ COEFF = (Parameter("k", "force/distance"), Parameter("ecrit"), Parameter("gamma"
 @bond("bpm/spring", cls=BPMSpring, coeff=COEFF, settings=(Parameter("keyword", "word", True),), example="1.0 0.4 0.1", check=check,
       settings_example="overlay/pair yes smooth no normalize yes break yes", breaks="removed", remembers="bonds",
       xfail=dict.fromkeys(("slope", "gradient", "virial"), "its force is smoothed and damped, its energy is not"),
-      domain="its reference length is 0: its atoms were at the same place")
+      domain="its reference length must not be 0 (its atoms were at the same place)")
 def bpm_spring(r, rate, reference, k: "force/distance", ecrit, gamma: "force/velocity", smooth, normalize, breaks):
     if reference == 0.0:
         return math.inf, math.inf
