@@ -220,7 +220,7 @@ in_data("one bound", "0.0 10.0 xlo xhi => 10.0 xlo xhi", "xlo xhi;2;1")
 in_data("bounds misspelt", "0.0 10.0 xlo xhi => 0.0 10.0 xlow xhi", "xlow")
 in_data("tilt text", "0.0 10.2 zlo zhi => 0.0 10.2 zlo zhi\n0.0 z 0.0 xy xz yz", "z", ("scene.data", "0.0 z 0.0 xy xz yz"))
 in_data("tilt of two", "0.0 10.2 zlo zhi => 0.0 10.2 zlo zhi\n0.0 0.0 xy xz yz", "3;2", ("scene.data", "0.0 0.0 xy xz yz"))
-in_data("no box", "0.0 10.0 xlo xhi\n0.0 10.1 ylo yhi\n0.0 10.2 zlo zhi\n => ", "xlo|box|outside|bond|image", (), expect="warning")
+in_data("no box", "0.0 10.0 xlo xhi\n0.0 10.1 ylo yhi\n0.0 10.2 zlo zhi\n => ", "no line xlo xhi", ("scene.data", "4 atoms"), expect="warning")
 in_data("unknown header", "1 atom types => 1 atom kinds", "atom kinds")
 
 # ---- data files: sections

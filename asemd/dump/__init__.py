@@ -134,7 +134,10 @@ class Dump(Modify):
                 self.variables.find(source)
             else:
                 provider = self.variables.provider
-                if not provider.defined("compute" if name[0] == "c" else "fix", source) or not provider.has(name[0], source, "per_atom"):
+                kind = "compute" if name[0] == "c" else "fix"
+                if not provider.defined(kind, source):
+                    raise InputError(f"dump {self.style}: there is no {kind} {source}")
+                if not provider.has(name[0], source, "per_atom"):
                     raise InputError(f"dump {self.style}: {name} does not name values per atom")
 
     @property

@@ -118,6 +118,10 @@ class _Reader(DataText):
         try:
             if is_general(head):
                 return general_box(head, self.boundary, self.dimension, self.shift)
+            missing = [f"{a}lo {a}hi" for a in "xyz"[:self.dimension] if f"{a}lo {a}hi" not in head]
+            if missing and self.number("atoms"):
+                self.warn(f"the header has no line {' and no line '.join(missing)}: the box goes from -0.5 to 0.5 there",
+                          self.header_line["atoms"])
             bounds = np.array([head.get(f"{a}lo {a}hi", [-0.5, 0.5]) for a in "xyz"]) + self.shift[:, None]
             box = Box.from_lammps(*bounds.T, head.get("xy xz yz", (0, 0, 0)), self.boundary, triclinic="xy xz yz" in head)
         except InputError as e:

@@ -61,7 +61,8 @@ def check(session) -> None:
     check_lengths(session)
     neighbor = scene.neighbor
     if neighbor.delay % neighbor.every:
-        raise InputError(f"neigh_modify delay {neighbor.delay} must be 0 or a multiple of every {neighbor.every}")
+        raise InputError(f"neigh_modify delay {neighbor.delay} must be 0 or a multiple of every {neighbor.every}",
+                         session.places.get("neigh_modify"))
     for kind, atoms, _ in system.topology:
         if len(atoms) and not scene.interactions.uses[kind]:
             apart = {"bond": 0, "angle": 1, "dihedral": 2}.get(kind)
@@ -112,6 +113,8 @@ def check_integration(session) -> None:
     """Warn when nothing moves the atoms, or two fixes move the same ones."""
     scene, movers = session.scene, []
     for id, fix in scene.fixes.items():
+        if fix.group not in scene.dynamic_groups and not scene.groups.mask(fix.group).any() and scene.system.n:
+            session.warn(f"fix {id} (style {fix.style}) acts on no atoms: group {fix.group} is empty", session.places.get(f"fix {id}"))
         if fix.integrates:
             mask = scene.groups.mask(fix.group)
             for other, before in movers:

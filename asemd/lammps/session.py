@@ -118,7 +118,8 @@ class Session:
             With the place of the command.
         """
         if isinstance(command, str):
-            command = Command(command, Where("", 1, " ".join(command.split())))
+            line = self._position       # of an `if` or the like that executes it
+            command = Command(command, Where(line.file if line else "", line.line if line else 1, " ".join(command.split())))
         outer, self._position = self._position, command.where
         try:
             self._execute(command)

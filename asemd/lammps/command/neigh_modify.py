@@ -28,6 +28,7 @@ def run(session, args):
             if count < (key == "every"):
                 raise InputError(f"{what}: must be {'positive' if key == 'every' else 'zero or positive'}, got {value}")
             setattr(settings, key, count)
+            session.remember("neigh_modify")
         elif key == "check":
             settings.check = yes_no(value, what)
         elif key == "once":
