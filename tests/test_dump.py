@@ -214,7 +214,7 @@ def test_speed(tmp_path):
 
 @pytest.mark.parametrize("line, message", [
     ("dump d all custom 1 F", "at least one column"), ("dump d all custom 1 F id foo", "unknown"),
-    ("dump d all custom 1 F id tipe", "did you mean type"), ("dump d all custom 1 F id c_no", "values per atom"),
+    ("dump d all custom 1 F id tipe", "did you mean type"), ("dump d all custom 1 F id c_no", "no compute no"),
     ("dump d all custom 1 F id v_no", "undefined variable"), ("dump d all atom 1 F id", "no more words"),
     ("dump d all atom 0 F", "positive"), ("dump d all xyz 1 F.%", "per processor"), ("dump d all xyz 1 F.bin", "bin"),
     ("dump d all dcdd 1 F", "dump style"), ("dump d nope atom 1 F", "unknown group"), ("dump_modify a sort 7", "5 columns"),
