@@ -18,6 +18,8 @@ CASES = {
                                "fix_modify 1 temp t"], ["f_1"]),
     "langevin friction": ([NVE, "fix 2 all langevin 0 0 50 77"], []),
     "langevin tally": ([NVE, "fix 2 some langevin 0 0 50 77 tally yes scale 1 2.0 zero yes"], ["f_2", "ecouple"]),
+    "langevin gjf vfull": (["fix 2 all langevin 0 0 50 77 gjf vfull", NVE], []),
+    "langevin gjf strong": (["fix 2 all langevin 0 0 0.3 77 zero yes gjf vfull", NVE], []),
     "temp/rescale": ([NVE, "fix 2 all temp/rescale 1 300 400 10 0.5"], ["f_2"]),
     "temp/rescale every": ([NVE, "fix 2 some temp/rescale 3 300 400 10 1.0"], ["f_2"]),
     "temp/rescale variable": ([NVE, "fix 2 some temp/rescale 3 v_warm 400 10 1.0"], ["f_2"]),
