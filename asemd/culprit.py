@@ -13,6 +13,7 @@ from asemd.hessian import ListEngine
 from asemd.term import PairListTerm
 
 UNUSUAL = 0.02          # of its length: how far the pull of an interaction moves an atom in one step, from which on it is named
+MANY, FASTEST = 100_000, 20     # atoms
 CANDIDATES = 200        # closest pairs that are looked at
 STEP = 1e-4             # of differences, relative to the length of an item
 EARLY = 1000            # steps: a kick that is far too large before was so at the start,
@@ -57,8 +58,10 @@ class Item:
         return f"{self.kind}{of_type} between atoms {atoms} ({self.style}, {length}energy {self.energy:.4g}, force {self.force:.4g})"
 
 
-def worst_item(system, interactions, settings, dt: float) -> Item | None:
+def worst_item(system, interactions, settings, dt: float, reach: float = math.inf) -> Item | None:
     """The interaction whose force moves an atom furthest in one step, or None if none does so to an unusual degree.
+
+    Of many atoms only the fastest ones are looked at, with all that is closer to them than `reach`.
 
     Parameters
     ----------
@@ -68,6 +71,8 @@ def worst_item(system, interactions, settings, dt: float) -> Item | None:
     dt : float
         Time step, in the system's units.
     """
+    if system.n > MANY and reach < math.inf:
+        system, settings = _around_the_fastest(system, settings, reach)
     units = unit_styles.get(system.units)
     scale = units.ftm2v * dt * dt / system.atom_masses()
     found: list[Item] = []
@@ -80,6 +85,15 @@ def worst_item(system, interactions, settings, dt: float) -> Item | None:
         found += _pairs(system, interactions, settings, scale)
     found = [i for i in found if i.kick > UNUSUAL * max(i.distance, 1e-300)]
     return max(found, key=lambda i: i.kick, default=None)
+
+
+def _around_the_fastest(system, settings, reach: float):
+    """The fastest atoms and their surroundings."""
+    near = np.zeros(system.n, bool)
+    for row in np.argsort((system.v**2).sum(axis=1))[-FASTEST:]:
+        near |= (system.box.minimum_image(system.x - system.x[row])[0] ** 2).sum(axis=1) <= reach * reach
+    exclude = [(kind, *(m if kind == "type" else m[near] for m in masks)) for kind, *masks in settings.exclude]
+    return system.select(near), replace(settings, exclude=exclude)
 
 
 def _distance(system, a: int, b: int) -> float:

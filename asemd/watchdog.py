@@ -292,8 +292,11 @@ class Watchdog:
         error.verdict = verdict = Verdict(loop.step, text)
         if frame is not None:
             verdict.good = frame.system(loop.system)
-            verdict.item = worst_item(verdict.good, loop.interactions, loop.settings, loop.dt)
             parts = []
+            try:
+                verdict.item = worst_item(verdict.good, loop.interactions, loop.settings, loop.dt, self.reach)
+            except Exception as problem:        # noqa: BLE001  whatever it is must not hide why the run ended
+                parts.append(f"no interaction could be named ({problem})")
             if verdict.item is not None:
                 parts.append(f"strongest pull at step {frame.step}: {verdict.item}")
             parts += self._write(verdict)

@@ -100,6 +100,26 @@ def test_the_pair_is_that_of_a_brute_search(tmp_path):
     assert item.period == pytest.approx(2 * math.pi / omega, rel=1e-4)
 
 
+def test_many_atoms(tmp_path, monkeypatch):
+    """Of many atoms the fastest and their surroundings are searched: here they hold the same pair."""
+    from asemd import culprit
+    session = both.asemd(CRAMMED + "fix 1 all nve\nrun 0\nvelocity all set 0 0 0\n")
+    system, inter = session.scene.system, session.scene.interactions
+    settings = Settings(exclude=[("group", np.zeros(300, bool), np.ones(300, bool))])
+    whole = worst_item(system, inter, settings, 0.003)
+    system.v[system.index_of(whole.ids)] = 1.0
+    monkeypatch.setattr(culprit, "MANY", 100)
+    part = worst_item(system, inter, settings, 0.003, 2.5)
+    assert part.ids == whole.ids and part.energy == pytest.approx(whole.energy, rel=1e-10)
+
+
+def test_a_report_that_fails_hides_nothing(tmp_path, monkeypatch):
+    from asemd import culprit
+    monkeypatch.setattr(culprit, "worst_item", lambda *_: 1 / 0)
+    error, _ = failure(CRAMMED + "fix 1 all nve\nrun 500\n", tmp_path)
+    assert "since the neighbour list was built" in str(error) and "(division by zero)" in str(error) and error.verdict.path
+
+
 def test_the_last_good_state_goes_on(tmp_path):
     """The file holds the state to the last digit, and read_dump takes it."""
     error, session = failure(MELT.format(n=4, dt=0.05) + "run 400\n", tmp_path)
