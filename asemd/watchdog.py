@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from asemd.culprit import Item
 
 SHARE = 500.0       # it waits this many times as long as its last look took: below 1 / SHARE of the run
+FIRST = 5           # looks at the start of a run that it does not wait for: most of what goes wrong does so there
 FREE = 10.0         # where there are bonds only, the reach is this many times the longest one
 SLOW = 0.1          # of the length of `Watchdog.reach` per step: atoms of a good frame are slower
 GROWTH = 10.0       # the kinetic energy is this many times that of the start, and
@@ -28,7 +29,7 @@ SILENT = ("ave/", "print", "store/", "vector", "halt", "property/")     # fixes 
 
 @dataclass
 class Frame:
-    """Atoms between two steps, as the slots of an engine have them."""
+    """Atoms between two steps, as the slots of an engine have them; `slow`: no atom moves by more than `SLOW` of the reach per step."""
 
     step: int
     x: np.ndarray
@@ -36,6 +37,7 @@ class Frame:
     row: np.ndarray
     image: np.ndarray
     box: object
+    slow: bool = True
 
     def system(self, like):
         """A copy of the system `like`, of the same atoms, in this state."""
@@ -99,7 +101,8 @@ class Watchdog:
         self.frames: list[Frame] = []
         self._energies: tuple[float, float] | None = None       # total and kinetic, of the start
         self.seconds, self._next, self._next_energy = 0.0, 0.0, 0.0
-        self.reach = self._limit = np.inf
+        self._spare, self.reach = 0, np.inf
+        self._limit = np.inf
 
     # ---- before the run -----------------------------------------------------------------------------------------------------------------
     def begin(self) -> None:
@@ -111,6 +114,7 @@ class Watchdog:
         self._limit = min(self.reach, self.width) ** 2
         self._free = _conserving(loop)
         self.frames.clear()
+        self._spare = FIRST
         self.again()
 
     def again(self) -> None:
@@ -120,8 +124,8 @@ class Watchdog:
         self._atoms = loop.system.n
         self._energies, self._warned = None, False
         self._next = self._next_energy = 0.0
-        self._look_at_energy(loop.result)
-        self._keep()
+        self.energy(loop.result)
+        self._timed(self._keep)
 
     # ---- during the run -----------------------------------------------------------------------------------------------------------------
     def before_build(self, compiled: bool) -> None:
@@ -177,14 +181,15 @@ class Watchdog:
             self._look_at_energy(result)
             now = time.perf_counter()
             self.seconds += now - began
-            self._next_energy = now + SHARE * (now - began)
+            self._next_energy = now + 2.0 * SHARE * (now - began)
 
     def _timed(self, action) -> None:
         began = time.perf_counter()
         action()
         now = time.perf_counter()
         self.seconds += now - began
-        self._next = now + SHARE * (now - began)
+        self._spare -= 1
+        self._next = now + SHARE * (now - began) if self._spare < 0 else 0.0
 
     def _look(self) -> None:
         e = self.loop.engine
@@ -253,20 +258,22 @@ class Watchdog:
         return int(e.system.id[e.state.row[slot]])
 
     def _keep(self) -> None:
-        """Keep this frame, and the one before."""
+        """Keep this frame, and the last one before it in which no atom was too fast."""
         if not self.explains:
             return
         loop, e = self.loop, self.loop.engine
         s, image = e.state, e.system.image
-        if len(self.frames) == 2 and self.frames[0].x.shape[1] == e.ns and len(self.frames[0].image) == len(image):
-            old = self.frames.pop(0)
+        slow = bool(self._speeds().max(initial=0.0) * loop.dt**2 <= (SLOW * self.reach) ** 2)
+        same = [f for f in self.frames if len(f.image) == len(image)]
+        old = same.pop(0 if same[-1].slow else -1) if len(same) == 2 else None
+        if old is not None and old.x.shape[1] == e.ns:
             for kept, now in ((old.x, s.x[:, :e.ns]), (old.v, s.v[:, :e.ns]), (old.row, s.row[:e.ns]), (old.image, image)):
                 kept[:] = now
-            old.step, old.box = loop.step, e.system.box
-            self.frames.append(old)
-            return
-        self.frames = [f for f in self.frames if len(f.image) == len(image)][-1:]
-        self.frames.append(Frame(loop.step, s.x[:, :e.ns].copy(), s.v[:, :e.ns].copy(), s.row[:e.ns].copy(), image.copy(), e.system.box))
+            old.step, old.box, old.slow = loop.step, e.system.box, slow
+        else:
+            arrays = (s.x[:, :e.ns].copy(), s.v[:, :e.ns].copy(), s.row[:e.ns].copy(), image.copy())
+            old = Frame(loop.step, *arrays, e.system.box, slow)
+        self.frames = [*same, old]
 
     # ---- when it went wrong -------------------------------------------------------------------------------------------------------------
     def __enter__(self) -> Watchdog:
@@ -277,10 +284,9 @@ class Watchdog:
             self.explain(error)
 
     def good_frame(self) -> Frame | None:
-        """The last frame that is sound: all numbers finite, and no atom much faster than before."""
+        """The last frame that is sound: all numbers finite, and if possible no atom too fast."""
         sound = [f for f in self.frames if np.isfinite(f.x).all() and np.isfinite(f.v).all()]
-        slow = [f for f in sound if np.sqrt((f.v**2).sum(axis=0).max(initial=0.0)) * self.loop.dt <= SLOW * self.reach]
-        return (slow or sound or [None])[-1]
+        return ([f for f in sound if f.slow] or sound or [None])[-1]
 
     def explain(self, error: SimulationError) -> None:
         """Add the interaction that went wrong, the last good frame and advice to an error of the run; writes the frame to `path`."""
