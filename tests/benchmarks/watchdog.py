@@ -11,7 +11,7 @@ from tests.benchmarks import compare, scenes
 
 CALLS = ("before_build", "after_build", "look", "energy")
 NEIGH = "delay 0 every 1 check yes"
-SCENES = {"LJ, 500 atoms": (scenes.lj((5, 5, 5), NEIGH), 20000), "LJ, 32,000 atoms": (scenes.lj((20, 20, 20), NEIGH), 200),
+SCENES = {"LJ, 500 atoms": (scenes.lj((5, 5, 5), NEIGH), 20000), "LJ, 32,000 atoms": (scenes.lj((20, 20, 20), NEIGH), 500),
           "LJ, 500 atoms, hot": (scenes.lj((5, 5, 5), NEIGH).replace("create 1.44", "create 20.0") + "timestep 0.002\n", 20000)}
 
 
