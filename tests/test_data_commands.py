@@ -167,7 +167,8 @@ def test_merge_interleaves_ids_and_groups(folder):
     ("read_data second.data add append offset 2 0 0 0 0", "needs atom type 3.*extra/atom/types"),
     ("read_data second.data add append extra/atom/types 1", "extra/atom/types is not possible with add"),
     ("read_data second.data add append ofset 1", "ofset.*did you mean offset"),
-    ("read_data second.data add append fix mycmap crossterm CMAP", "fix is not supported"),
+    ("read_data second.data add append fix mycmap crossterm CMAP", "no fix mycmap"),
+    ("read_data second.data add append fix a NULL", "3 values"),
     ("read_data second.data add append shift 1 2", "3 values"),
     ("write_data x.data pair jj", "ii ij"),
     ("write_data x.data triclinic/general", "not general triclinic"),
@@ -187,6 +188,18 @@ def test_faulty_commands(folder, line, words):
 def test_before_the_box(folder, line, words):
     with pytest.raises(InputError, match=words):
         session(line)
+
+
+def test_lines_for_a_fix(folder):
+    """Header lines for a fix are passed over, as LAMMPS's fixes that do not read do; sections would be lost and are refused."""
+    (folder / "second.data").write_text(SECOND.replace("2 atoms", "2 atoms\n7 crossterms", 1))
+    lines = "read_data first.data", "fix move all nve"
+    assert session(*lines, "read_data second.data add append fix move crossterm CMAP").scene.system.n == 4
+    with pytest.raises(InputError, match="unknown header line"):
+        session(*lines, "read_data second.data add append fix move NULL CMAP")
+    (folder / "second.data").write_text(SECOND + "\nCMAP\n\n1 2 3\n")
+    with pytest.raises(InputError, match="section CMAP is for fix move, which reads nothing"):
+        session(*lines, "read_data second.data add append fix move NULL CMAP")
 
 
 def test_extra_types_and_room(folder):

