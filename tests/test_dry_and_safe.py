@@ -159,3 +159,14 @@ def test_dry_leaves_out_what_follows_from_other_problems(folder, capsys):
     assert cli.main(["run", "--dry", "in.x"]) == 1
     told = capsys.readouterr().err.splitlines()
     assert [line.split("(in.x:")[1].split(":")[0] for line in told] == ["7", "10", "26"], told
+
+
+def test_dry_looks_at_dumps(folder, capsys):
+    """Columns that the atoms cannot fill are found before the run."""
+    (folder / "in.dump").write_text("region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\n"
+                                    "pair_style zero 1\npair_coeff * *\ndump e all extxyz 5 d.extxyz\nrun 10\nundump e\n"
+                                    "dump q all custom 5 d.dump id q\nrun 10\n")
+    assert cli.main(["run", "--dry", "in.dump"]) == 1
+    problems = capsys.readouterr().err.splitlines()
+    assert len(problems) == 2 and "dump_modify e element" in problems[0]
+    assert "no charges for the column q (in.dump:11: run 10)" in problems[1]

@@ -153,6 +153,12 @@ class Dump(Modify):
                     found |= self.variables.provider.source("c", re.sub(r"\[\d+\]$", "", n[2:])).needs
         return frozenset(found)
 
+    def check_scene(self, system) -> None:
+        """Raise `InputError` for what these atoms cannot give; before a run."""
+        for name, there, what in (("q", system.q is not None, "charges"), ("mol", system.molecular, "molecules")):
+            if name in self.columns and not there:
+                raise InputError(f"dump: atom style {system.atom_style} has no {what} for the column {name}")
+
     def view(self, snapshot) -> View:
         """The atoms of this snapshot that are written, in order."""
         mask = snapshot.mask(self.group).copy()

@@ -36,9 +36,13 @@ class ExtXYZ(XYZ):
     def _arrange(self) -> None:
         self.columns = ["typelabel", "x", "y", "z", *(c for name, (_, own) in COLUMNS.items() if getattr(self, name) for c in own)]
 
-    def symbols(self, view):
-        if self.numeric or not (self.element or view.system.labels.get("atom")):
+    def check_scene(self, system):
+        super().check_scene(system)
+        if self.numeric or not (self.element or system.labels.get("atom")):
             raise InputError(f"dump extxyz: atoms need names: dump_modify {self.id} element ..., or type labels (labelmap)")
+
+    def symbols(self, view):
+        self.check_scene(view.system)
         return super().symbols(view)
 
     def head(self, snapshot, step, n):

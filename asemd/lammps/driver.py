@@ -58,6 +58,8 @@ def check(session) -> None:
                 raise InputError(f"bond_style {use.style.name} without overlay/pair yes or break no needs newton on off, which stands "
                                  "before the box is defined")
     torn.check(session)
+    for dump in scene.dumps.values():
+        dump.check_scene(system)
     check_lengths(session)
     neighbor = scene.neighbor
     if neighbor.delay % neighbor.every:
