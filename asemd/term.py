@@ -146,11 +146,11 @@ class PairTerm:
             engine.changed = True
             self.row = pair_kernels.row_length(int(1.15 * clusters.longest()))
             real = np.float32 if self.single else np.float64
-            size = (7 + 2 * (len(self.uniform) - sum(self.uniform)) + 1) * self.row
+            size = (7 + 2 * pair_kernels.buffer_rows(len(self.uniform) - sum(self.uniform)) + 1) * self.row
             self.buffer = aligned((engine.threads, -(-size // 16) * 16), real)
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
-            self.rows = self.tables.rows.astype(real)
+            self.rows = pair_kernels.varying_rows(self.tables.rows, self.uniform)
             self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, self.single)
 
     def arguments(self, engine, tid):

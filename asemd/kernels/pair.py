@@ -106,7 +106,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
-    for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=len(varying), ENERGY=energy,
+    for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(len(varying)), ENERGY=energy,
                             CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
                             OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
@@ -117,8 +117,10 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.text(_adapter(style.parts, names, uniform, energy, piece), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
     if varying:
         lines = ["def fill_rows(b, full, rows, t, types, base):"]
-        for v, r in enumerate(varying):
-            lines += ["    for k in range(full):", f"        b[k + base + {v} * ROW] = rows[{r}, t, types[k]]"]
+        for block in range(-(-len(varying) // 4)):
+            lines += [f"    table = rows[{block}, t]", "    for k in range(0, full, 8):",
+                      f"        gather8(b, base + {4 * block} * ROW + k, ROW, table, types, k, 0.0, 0.0, 0.0, table, SLOT_BITS, False, "
+                      f"{3 if len(varying) >= 4 * block + 4 else 0})"]
         b.text("\n".join(lines))
     for f in (pair_sums.eight, pair_sums.plus, pair_sums.add):
         b.function(f, fast=True)
@@ -137,6 +139,20 @@ def cluster_tuple(rows: np.ndarray, constants: np.ndarray, uniform: Sequence[boo
     real = np.float32 if single else np.float64
     values = [rows[k, 1, 1] for k, u in enumerate(uniform) if u] + list(constants)
     return tuple(real(v) for v in values) or (real(0),)
+
+
+def buffer_rows(varying: int) -> int:
+    """Rows of the buffer for the coefficients of one atom: they come by fours, or by threes for the rest."""
+    return varying // 4 * 4 + 3 * (varying % 4 > 0)
+
+
+def varying_rows(rows: np.ndarray, uniform: Sequence[bool]) -> np.ndarray:
+    """The rows that are not uniform, four to a place (m, ntypes + 1, ntypes + 1, 4)."""
+    chosen = [r for r, same in zip(rows, uniform) if not same]
+    out = np.zeros((max(1, -(-len(chosen) // 4)), *rows.shape[1:], 4))
+    for k, r in enumerate(chosen):
+        out[k // 4, :, :, k % 4] = r
+    return out
 
 
 def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
