@@ -130,8 +130,7 @@ class ReleasedPairTerm(PairListTerm):
         self.code[b.slot_types == 0] += 1
         if len(rules.rules):
             left = np.arange(len(self.i), dtype=np.int32)
-            n = engine.k.drop_excluded(engine.state.row, self.i.copy(), self.j.copy(), left, len(left), rules.rule_mask, rules.molecule,
-                                       rules.rules)
+            n = engine.k.drop_excluded(engine.state.row, self.i.copy(), self.j.copy(), left, len(left), *rules.rule_arrays)
             self.code[np.setdiff1d(np.arange(len(self.i)), left[:n])] |= 3
 
     def arguments(self, engine, tid):

@@ -97,12 +97,14 @@ class Engine:
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
         chosen = not all(t.is_plain for t in self.pair_terms)
-        self.expanded = self.mode == "cluster" and (chosen or bool(len(self.exclusions.rules)))
+        self.expanded = self.mode == "cluster" and chosen
         volume = abs(float(np.linalg.det(self.vectors)))
         few = 2.1 * self.reach**3 * n < SPARSE * volume
-        self.sparse = self.mode == "cluster" and not self.expanded and (few or table)
+        rules = bool(len(self.exclusions.rules))
+        self.sparse = self.mode == "cluster" and not self.expanded and (few or table or rules)
         if self.sparse:
-            self.why = "tables: rows of single atoms" if table else f"fewer than {SPARSE} neighbours per atom: rows of single atoms"
+            reason = "tables" if table else "neigh_modify exclude" if rules else f"fewer than {SPARSE} neighbours per atom"
+            self.why = f"{reason}: rows of single atoms"
 
     def _make_terms(self) -> list:
         terms: list = []
@@ -212,11 +214,13 @@ class Engine:
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             if self.sparse:
-                self.rows = self.list.rows(k, s, self.ns, self._partners(), self.parallel)
+                self.rows = self.list.rows(k, s, self.ns, self._partners(), self.exclusions.rule_arrays, self.parallel)
             weighted, kinds = self.exclusions.weighted, self.exclusions.weighted_kinds
             self.special = [np.empty(len(weighted), np.int32) for _ in range(3)]
             if len(weighted) and not self.expanded:
                 k.special_pairs(weighted, kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
+                left = k.drop_excluded(s.row, *self.special, len(weighted), *self.exclusions.rule_arrays)
+                self.special = [a[:left] for a in self.special]
         elif self.mode == "plain":
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
@@ -267,7 +271,8 @@ class Engine:
         if self.mode == "cluster" and not self.expanded:
             i, j, code = self.special
             d = self.held[:, i] - self.held[:, j] - self.shifts27[code >> 2].T
-            return self.list.count(self.k, self.state, self.held, self._partners()) + int(((d * d).sum(axis=0) <= self.reach**2).sum())
+            others = self.list.row_entries() if self.sparse else self.list.count(self.k, self.state, self.held, self._partners())
+            return others + int(((d * d).sum(axis=0) <= self.reach**2).sum())
         return len(self.plain[0]) if self.mode != "none" else 0
 
     def arguments(self, tid: int) -> tuple:

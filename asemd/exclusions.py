@@ -78,6 +78,11 @@ class Exclusions:
                 bit <<= 1
         self.molecule = np.asarray(system.molecule, np.int64) if system.molecule is not None else np.zeros(system.n, np.int64)
 
+    @property
+    def rule_arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What compiled code needs of the rules: bits and molecules of the atoms, rules."""
+        return self.rule_mask, self.molecule, self.rules
+
     def mark(self, k, x, row, i, j, code, shifts, cell, periodic) -> list[np.ndarray]:
         """The pairs (i, j, code) of a plain list without those that a rule forbids, the partners among them marked by their kind.
 
@@ -85,7 +90,7 @@ class Exclusions:
         """
         n = len(i)
         if len(self.rules):
-            n = k.drop_excluded(row, i, j, code, n, self.rule_mask, self.molecule, self.rules)
+            n = k.drop_excluded(row, i, j, code, n, *self.rule_arrays)
         if self.partners is not None:
             n = k.mark_special(x, row, i, j, code, n, shifts, *self.partners, self.keep, cell.reduced * periodic[:, None],
                                cell.reduced_inverse)

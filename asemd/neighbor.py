@@ -29,7 +29,7 @@ def kernels(ortho: bool, mark: bool = False):
     for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.count,
               cluster_rows.expand, cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather,
               rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear,
-              rebuild.mark_special, rebuild.drop_excluded, rebuild.special_pairs):
+              rebuild.mark_special, rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs):
         b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster_rows.rows))
     return b.build()
 
@@ -197,15 +197,18 @@ class ClusterList:
                     return
                 again = False
 
-    def rows(self, k, state, ns: int, partners, parallel) -> tuple[np.ndarray, np.ndarray]:
-        """The list as rows of single atoms without the special pairs: start (nth, ns+1) and neighbors (nth, m)."""
+    def rows(self, k, state, ns: int, partners, rules, parallel) -> tuple[np.ndarray, np.ndarray]:
+        """The list as rows of single atoms without the special pairs: start (nth, ns+1) and neighbors (nth, m).
+
+        `partners` and `rules` are what `asemd.exclusions.Exclusions` says, as arrays.
+        """
         if self.row_start.shape[1] < ns + 1:
             self.row_start = np.zeros((self.threads, ns + 1 + ns // 8), np.int32)
         results = [0] * self.threads
 
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-            results[t] = k.rows(state.row, self.first[t], self.entries[t], self.hide[t], self.own, self.span, c0, c1, *partners,
+            results[t] = k.rows(state.row, self.first[t], self.entries[t], self.hide[t], self.own, self.span, c0, c1, *partners, *rules,
                                 self.row_start[t], self.neighbors[t])
         while True:
             parallel(work)
@@ -229,6 +232,10 @@ class ClusterList:
         weights = np.array(lengths, float) + 16.0 * np.diff(self.bounds)
         total = np.concatenate([[0.0], np.cumsum(weights)])
         self.shares = np.interp(np.linspace(0, total[-1], self.threads + 1), total, edges)
+
+    def row_entries(self) -> int:
+        """Pairs in the rows."""
+        return sum(int(self.row_start[t, CLUSTER * int(self.bounds[t + 1])]) for t in range(self.threads))
 
     def longest(self) -> int:
         """Most neighbours of one cluster."""

@@ -121,11 +121,11 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
     return n
 
 
-def rows(row, first, entries, hide, own, span, c0, c1, partner_start, partners, start, neighbors):
-    """The cluster list as rows of single atoms, for sparse systems: slots of clusters c0..c1-1, entries as in the cluster list.
+def rows(row, first, entries, hide, own, span, c0, c1, partner_start, partners, mask_row, molecule_row, rules, start, neighbors):
+    """The cluster list as rows of single atoms: slots of clusters c0..c1-1, entries as in the cluster list.
 
-    `hide` says which atoms of the cluster each entry is out of reach of. Partners (special pairs) are left out. `start (nslots+1,)`,
-    `neighbors (m,)`; returns the number of entries, or -1 if `neighbors` is too small.
+    `hide` says which atoms of the cluster each entry is out of reach of. Partners (special pairs) and pairs that `rules` forbid are left
+    out. `start (nslots+1,)`, `neighbors (m,)`; returns the number of entries, or -1 if `neighbors` is too small.
     """
     n = 0
     for ci in range(c0, c1):
@@ -160,6 +160,13 @@ def rows(row, first, entries, hide, own, span, c0, c1, partner_start, partners, 
                         met += partners[np.uint64(q)] == other
                     neighbors[np.uint64(m)] = entry
                     m += met == 0
+                n = m
+            if rules.shape[0] > 0:
+                m = at
+                for k in range(at, n):
+                    entry = neighbors[np.uint64(k)]
+                    neighbors[np.uint64(m)] = entry
+                    m += not forbidden(r, row[np.uint32(entry & np.int32(SLOT_BITS))], mask_row, molecule_row, rules)
                 n = m
     start[c1 * CLUSTER] = n
     return n

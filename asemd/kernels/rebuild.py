@@ -162,27 +162,30 @@ def mark_special(x, row, pair_i, pair_j, code, n, shifts, start, partner, kind, 
     return m
 
 
-def drop_excluded(row, pair_i, pair_j, code, n, mask_row, molecule_row, rules):
-    """Take out pairs by ``neigh_modify exclude``; returns how many stay.
+def forbidden(ri, rj, mask_row, molecule_row, rules):
+    """Whether ``neigh_modify exclude`` forbids two atoms.
 
     `rules (k, 3)`: kind and two group bits; kind 0 group-group, 1 same molecule in a group, 2 different molecules in a group.
     """
+    mi = mask_row[ri]
+    mj = mask_row[rj]
+    out = False
+    for k in range(rules.shape[0]):
+        a = rules[k, 1]
+        b = rules[k, 2]
+        if rules[k, 0] == 0:
+            out = out or ((mi & a) != 0 and (mj & b) != 0) or ((mi & b) != 0 and (mj & a) != 0)
+        elif (mi & a) != 0 and (mj & a) != 0:
+            same = molecule_row[ri] == molecule_row[rj]
+            out = out or (same if rules[k, 0] == 1 else not same)
+    return out
+
+
+def drop_excluded(row, pair_i, pair_j, code, n, mask_row, molecule_row, rules):
+    """Take out pairs that are `forbidden`; returns how many stay."""
     m = 0
     for p in range(n):
-        ri = row[pair_i[p]]
-        rj = row[pair_j[p]]
-        out = False
-        for k in range(rules.shape[0]):
-            a = rules[k, 1]
-            b = rules[k, 2]
-            mi = mask_row[ri]
-            mj = mask_row[rj]
-            if rules[k, 0] == 0:
-                out = out or ((mi & a) != 0 and (mj & b) != 0) or ((mi & b) != 0 and (mj & a) != 0)
-            elif (mi & a) != 0 and (mj & a) != 0:
-                same = molecule_row[ri] == molecule_row[rj]
-                out = out or (same if rules[k, 0] == 1 else not same)
-        if not out:
+        if not forbidden(row[pair_i[p]], row[pair_j[p]], mask_row, molecule_row, rules):
             pair_i[m] = pair_i[p]
             pair_j[m] = pair_j[p]
             code[m] = code[p]

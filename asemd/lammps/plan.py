@@ -172,9 +172,7 @@ def _list(e: Engine) -> list[Item]:
         what = [" ".join(map(str, x)) if x[0] == "type" else x[0] for x in settings.exclude]
         out.append(Item("exclusions", ", ".join(what), "neigh_modify exclude"))
     if e.expanded:
-        table = any(p.arrays for t in e.pair_terms for p in t.style.parts)
-        out.append(Item("expansion", "after each build", "a table style needs its pairs one by one" if table else
-                        "exclusions by group" if len(e.exclusions.rules) else "sub-styles with factors, or chosen by molecule"))
+        out.append(Item("expansion", "after each build", "sub-styles with factors, or chosen by molecule"))
     return out
 
 
