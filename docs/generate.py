@@ -76,7 +76,7 @@ def styles_page() -> str:
     for category in FORCE_FIELD:
         out += [f"## {category}_style", ""]
         for name in catalog.names(category):
-            if name in catalog.WRAPPERS or name == "hybrid/overlay":
+            if name in catalog.WRAPPERS or name.startswith("hybrid/"):
                 module = importlib.import_module(style.module_of(category, name))
                 out += [f"### {category} {name}", "", markdown(inspect.getdoc(module) or ""), ""]
             else:

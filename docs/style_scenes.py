@@ -20,7 +20,7 @@ from asemd.testing.styles import example_words
 from asemd.topology import ATOMS
 
 CATEGORIES = ("bond", "angle", "dihedral", "improper", "pair")
-HYBRIDS = ("hybrid", "hybrid/overlay")
+HYBRIDS = ("hybrid", "hybrid/overlay", "hybrid/scaled", "hybrid/molecular")
 PARTS = {"bond": ("harmonic", "morse"), "angle": ("harmonic", "cosine"), "dihedral": ("opls", "harmonic"), "improper": ("harmonic", "cvff"),
          "pair": ("lj/cut", "coul/cut")}       # sub-styles that the example of a hybrid has
 # bonds of beads, whose example coefficients are meant in reduced units; pair styles are told by their cutoff
@@ -73,6 +73,7 @@ EXTRA = {
     ("angle", "dipole"): Extra(setup=("import numpy as np",
                                       'molecule.set_array("mu", np.array([[0.3, 0.4, 0], [0, 0, 0], [0, 0, 0]], float))'),
                                late=("set atom 1 dipole 0.3 0.4 0.0",), atom_style="hybrid full sphere dipole"),
+    ("pair", "hybrid/molecular"): Extra(late=("set atom 1*2 mol 1", "set atom 3 mol 2")),
     ("angle", "spica"): SPICA, ("angle", "sdk"): SPICA,
     ("dihedral", "charmm"): CHARMM["charmm"], ("dihedral", "charmmfsw"): CHARMM["charmmfsw"],
 }
@@ -201,6 +202,11 @@ def hybrid(category: str, name: str) -> Scene:
     """Two styles side by side, or two pair styles one upon the other."""
     a, b = (registry.find(category, n) for n in PARTS[category])
     words = [s.example.split() for s in (a, b)]
+    if name in ("hybrid/scaled", "hybrid/molecular"):      # from scripts only
+        numbers = ["0.7 ", "0.3 "] if name == "hybrid/scaled" else ["", ""]
+        lines = [f"pair_style {name} {numbers[0]}lj/cut 8.0 {numbers[1]}coul/cut 10.0", "pair_coeff 1 1 lj/cut 0.1 3.0",
+                 "pair_coeff 1 1 coul/cut"]
+        return Scene(category, name, "real", [(0, 0, 0), (3.5, 0, 0), (0, 4.0, 0)], lines=lines, charges=(0.4, -0.4, 0.2))
     if category == "pair":
         same = name == "hybrid/overlay"
         words = [["0.1", "3.0"], []]
@@ -274,6 +280,12 @@ def table_code(category: str) -> list[str]:
 
 def python(s: Scene) -> str:
     """The scene as Python text that prints energy and forces."""
+    if s.name in HYBRIDS and not s.python:
+        script = lammps(s)
+        return "\n".join(["from pathlib import Path", "import asemd", "", 'Path("in.example").write_text("""', script, '""")',
+                          'molecule = asemd.read("in.example")',
+                          "energy, forces = molecule.get_potential_energy(), molecule.get_forces()", 'print(f"{energy:.8g} eV")',
+                          "print(forces.round(6))"])
     x, made, n = s.extra, items(s), len(s.positions)
     symbols = "C" * n if s.types == 1 or s.category != "pair" else "CO"
     symbols = f"C{n}" if set(symbols) == {"C"} else symbols
