@@ -144,7 +144,10 @@ class ClusterList:
         self.bounds = np.zeros(self.threads + 1, np.int64)
         self.shares = None
         if not self.entries.shape[1]:
-            around = min(float(n), 4.2 * self.reach**3 * n / max(bins.volume, 1e-300))
+            # in reach of an atom: a ball, in flat cells a disc, in thin ones a rod
+            thin, middle = sorted(bins.widths)[:2]
+            r = self.reach
+            around = min(float(n), min(4.2 * r**3, 3.2 * r * r * thin, 2.0 * r * thin * middle) * n / max(bins.volume, 1e-300))
             self.entries = np.zeros((self.threads, int(self.capacity / CLUSTER * (1.5 * around + 64) / self.threads) + 1024), np.int32)
         return True
 
