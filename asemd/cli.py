@@ -186,7 +186,7 @@ def run(context: typer.Context,
     return complain("interrupted", INTERRUPTED) if status == INTERRUPTED else status
 
 
-def check_page(target: str, dry: bool) -> None:
+def check_page(target: str, dry: bool = False) -> None:
     """Refuse a page that could not be written after a long run."""
     if dry:
         raise InputError("--html shows what a run did: leave out --dry")

@@ -15,9 +15,13 @@ def check(context: typer.Context, script: Script = None,
           battery: Annotated[bool, typer.Option("--battery", help="Stiff and extreme cases with known answers; needs no script.")] = False,
           force: Annotated[bool, typer.Option("--force", help="A timestep that no integrator stands is a warning, not an error.")] = False,
           compat: Compat = None, precision: Precision = "double", threads: Threads = 1, import_: Import = None,
+          html: Annotated[str | None, typer.Option(help="Write a page of it to look at or to mail.")] = None,
           as_json: Json = False) -> int:
     """Look for what may make a script's run unstable or wrong; exit status 0 when fine or with warnings, 2 on an error."""
-    from asemd.cli import import_files
+    from asemd.cli import check_page, import_files
+    if html:
+        check_page(html)
+    system = None
     if battery:
         if script or run:
             raise InputError("asemd check --battery has scenes of its own: it goes without a script and without --run")
@@ -29,7 +33,10 @@ def check(context: typer.Context, script: Script = None,
         path, switches = set_up(context, script, "check", compat, precision, threads)
         import_files(import_)
         case = of_script(path, switches)
-        case.force = force
+        case.force, system = force, case.system
         report = of_case(case, run, **({"budget": budget} if run else {}))
+    if html:
+        from asemd.check.page import page_of, page_of_battery
+        (page_of_battery(report) if battery else page_of(report, system)).write(html)
     print_parts(report.parts(), report.to_dict(), as_json)
     return report.exit_status

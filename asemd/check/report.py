@@ -53,6 +53,10 @@ class Report:
         """The findings of one check."""
         return [f for f in self.findings if f.name == name]
 
+    def of_severity(self, severity: str) -> list[Finding]:
+        """The findings of one severity."""
+        return [f for f in self.findings if f.severity == severity]
+
     def at_least(self, severity: str) -> list[Finding]:
         """Findings of this severity or a worse one, the worst first."""
         rank = SEVERITIES.index(severity)
@@ -82,8 +86,7 @@ class Report:
     def parts(self, width: int = 0) -> list[Table | str]:
         """A table with a row for each finding, what is worth reading about them in sentences, further tables."""
         width = width or min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
-        table = Table("", ("check", "found", "value", "limit"), [
-            (_name(f), "ok" if f.severity == "ok" else f.severity.upper(), _text(f.value), _text(f.limit)) for f in self.findings])
+        table = Table("", ("check", "found", "value", "limit"), [row_of(f) for f in self.findings])
         out: list[Table | str] = [f"Check of {self.source}: {self.summary()}", table] if self.findings else [f"Check of {self.source}"]
         out += [_paragraph(f, width) for f in self.at_least("note")]
         if self.left_out:
@@ -100,6 +103,11 @@ class Report:
                 "findings": [asdict(f) | {"value": _plain(f.value), "limit": _plain(f.limit)} for f in self.findings],
                 "left_out": [{"name": name, "why": why} for name, why in self.left_out],
                 "tables": [{"title": t.title, "columns": list(t.columns), "rows": [list(r) for r in t.rows]} for t in self.tables]}
+
+
+def row_of(f: Finding) -> tuple[str, str, str, str]:
+    """A finding as a row: check, found, value, limit."""
+    return _name(f), "ok" if f.severity == "ok" else f.severity.upper(), _text(f.value), _text(f.limit)
 
 
 def _name(f: Finding) -> str:
