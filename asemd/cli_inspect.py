@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from typing import Annotated
 
 import typer
@@ -55,13 +56,17 @@ def validate(context: typer.Context, script: Script = None,
 
 def plan(context: typer.Context, script: Script = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
          import_: Import = None,
-         calibrate: Annotated[bool, typer.Option(help="Measure the speed of this machine once, for the expected steps per second.")] = True,
+         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine, once (about 20 seconds), "
+                                                 "for the expected steps per second.")] = False,
          as_json: Json = False) -> int:
     """Print what a script's scene needs, what it will cost, what is left out, and why; no step of it is run."""
+    from asemd.lammps.calibration import known
     from asemd.lammps.plan import of_script
     path, switches = set_up(context, script, "plan", compat, precision, threads)
     from asemd.cli import import_files
     import_files(import_)
+    if calibrate and not known(threads, precision):
+        print("Measuring the speed of this machine, once: a few seconds, some twenty if kernels have to be compiled ...", file=sys.stderr)
     found = of_script(path, switches, calibrate)
     print_parts(found.parts(), found.to_dict(), as_json)
     return 0

@@ -11,6 +11,7 @@ from test_validate import molecules
 import asemd
 from asemd import cli
 from asemd.errors import InputError
+from asemd.lammps import calibration
 
 
 @pytest.fixture
@@ -32,7 +33,7 @@ def big(cells: int) -> str:
 
 def test_cluster_scene(folder, capsys):
     (folder / "in.x").write_text(big(6) + "thermo 5\ndump d all atom 3 dump.x\nrun 10\n")
-    assert cli.main(["plan", "in.x", "--no-calibrate"]) == 0
+    assert cli.main(["plan", "in.x"]) == 0
     assert "cluster kernel" in capsys.readouterr().out
     plan = asemd.plan("in.x")
     near, pair = items(plan, "Neighbour list"), items(plan, "Forces")["pair lj/cut"]
@@ -79,9 +80,24 @@ def test_atoms(folder):
         asemd.plan(asemd.Atoms("H"))
 
 
+def test_only_on_request_is_the_machine_measured(folder, capsys, monkeypatch):
+    """It takes some seconds, and more where kernels have to be compiled for it."""
+    monkeypatch.setenv("ASEMD_CACHE_DIR", str(folder / "cache"))
+    (folder / "in.x").write_text(BASE + "run 10\n")
+    costs = calibration.Costs(1e8, 1e-6, 1e-8, 1e-9, 1e-10, 1e-9, 1e-8, 1e-9, 1e-4, {"bond": 1e-8})
+    monkeypatch.setattr(calibration, "calibrate", lambda threads, precision: pytest.fail("measured without being asked"))
+    assert cli.main(["plan", "in.x"]) == 0
+    shown = capsys.readouterr()
+    assert "not known" in shown.out and "asemd plan --calibrate" in " ".join(shown.out.split()) and not shown.err
+    monkeypatch.setattr(calibration, "calibrate", lambda threads, precision: costs)
+    assert cli.main(["plan", "in.x", "--calibrate"]) == 0
+    shown = capsys.readouterr()
+    assert "Measuring the speed of this machine, once" in shown.err and "a calibration of this machine" in shown.out
+
+
 def test_no_forces(folder, capsys):
     (folder / "in.x").write_text("region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\n")
-    assert cli.main(["plan", "in.x", "--json", "--no-calibrate"]) == 0
+    assert cli.main(["plan", "in.x", "--json"]) == 0
     left = {i["name"] for i in json.loads(capsys.readouterr().out)["left_out"]}
     assert "neighbour list" in left and "energy and virial between outputs" in left
     (folder / "in.y").write_text("units lj\n")

@@ -117,7 +117,8 @@ def known(threads: int, precision: str) -> Costs | None:
 
 
 def calibrate(threads: int = 1, precision: str = "double") -> Costs:
-    """The costs of this machine, measured now if they are not known (about ten seconds, in a process of its own).
+    """The costs of this machine, measured now if they are not known (in a process of its own: about three
+    seconds, twenty where its kernels have to be compiled first).
 
     Raises
     ------
