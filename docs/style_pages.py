@@ -1,4 +1,4 @@
-"""A page for every force-field style, written by Sphinx at build time (see conf.py) from the registry and docs/measured/agreement.json.
+"""A page for every force-field style, written by Sphinx at build time (see conf.py) from the registry, docs/measured/agreement.json and speed.json.
 
 Nothing on the pages is written by hand: text and formula are the docstring of the style's file, units come from its parameters, examples
 from `style_scenes`, curves from `style_plots`, and the numbers below an example are what it prints.
@@ -15,6 +15,7 @@ from pathlib import Path
 
 import style_plots
 import style_scenes
+import style_speed
 from generate import markdown, words
 
 from asemd import style as registry
@@ -150,8 +151,8 @@ def notes(s: Style) -> list[str]:
     return ["## Notes", "", *(f"- {n}" for n in out), ""] if out else []
 
 
-def page(category: str, name: str, known: dict, said: dict[str, str], figure: str = "") -> str:
-    """The page of one style; `figure` is the file of its curves."""
+def page(category: str, name: str, known: dict, said: dict[str, str], figure: str = "", speed: dict | None = None, plot: str = "") -> str:
+    """The page of one style; `figure` is the file of its curves, `speed` what was measured, `plot` the file of error against time."""
     text = markdown(style_scenes.text_of(category, name))
     out = [f"# {category} {name}", "", text, ""]
     plain = name in catalog.WRAPPERS or name in style_scenes.HYBRIDS
@@ -177,7 +178,7 @@ def page(category: str, name: str, known: dict, said: dict[str, str], figure: st
     out += ["## Python", "", same, "", "```python", style_scenes.python(scene), "```", "", "```text",
             said[f"{category} {name}"].rstrip(), "```", ""]
     if s:
-        out += agreement(category, name, known) + notes(s)
+        out += agreement(category, name, known) + (style_speed.section(category, name, speed, plot) if speed else []) + notes(s)
     return re.sub(r"\n{3,}", "\n\n", "\n".join(out)).rstrip() + "\n"
 
 
@@ -200,19 +201,24 @@ def caption(s: Style) -> str:
 
 def write(folder: Path) -> list[str]:
     """Write all pages and their curves into a folder; returns the names of the pages in their order."""
-    known, said = json.loads((HERE / "measured" / "agreement.json").read_text()), outputs()
+    known, speed = (json.loads((HERE / "measured" / name).read_text()) for name in ("agreement.json", "speed.json"))
+    said = outputs()
     folder.mkdir(exist_ok=True)
     names = []
     for category, name in style_scenes.every_style():
-        title, figure = docname(category, name), ""
+        title, figure, plot = docname(category, name), "", ""
         s = None if name in catalog.WRAPPERS else registry.find(category, name)
         if s and style_plots.has_curves(s):
             figure = f"{title}.svg"
             save(folder / figure, style_plots.svg(s))
-        save(folder / f"{title}.md", page(category, name, known, said, figure))
+        entry = speed["styles"].get(f"{category} {name}")
+        if entry:
+            plot = f"{title}-speed.svg"
+            save(folder / plot, style_speed.svg(category, name, entry))
+        save(folder / f"{title}.md", page(category, name, known, said, figure, speed, plot))
         names.append(title)
     for path in folder.iterdir():
-        if path.stem not in names:
+        if path.stem.removesuffix("-speed") not in names:
             path.unlink()
     return names
 
