@@ -197,6 +197,15 @@ def printer() -> tuple[Callable[[Any], str], list[str]]:
         def _print_Relational(self, e):
             return f"({self._print(e.lhs)} {e.rel_op} {self._print(e.rhs)})"
 
+        def _print_And(self, e):
+            return f"({' and '.join(map(self._print, e.args))})"
+
+        def _print_Or(self, e):
+            return f"({' or '.join(map(self._print, e.args))})"
+
+        def _print_Not(self, e):
+            return f"(not {self._print(e.args[0])})"
+
         def _print_cosm1(self, e):
             return f"(-2.0*numpy.sin(0.5*({self._print(e.args[0])}))**2)"
 

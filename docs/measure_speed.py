@@ -34,7 +34,7 @@ from style_formula import Untraceable, expression, traced  # noqa: E402
 from asemd import style as registry  # noqa: E402
 from asemd import units as unit_styles  # noqa: E402
 from asemd.engine import Engine  # noqa: E402
-from asemd.errors import AsemdError, InputError  # noqa: E402
+from asemd.errors import AsemdError, InputError, SimulationError  # noqa: E402
 from asemd.lammps import Lammps  # noqa: E402
 from asemd.lammps.command import angle_write, bond_write, dihedral_write  # noqa: E402
 from asemd.lammps.table_write import style_of  # noqa: E402
@@ -165,8 +165,9 @@ def opened(case: Case | None, scene: style_scenes.Scene) -> Lammps:
     x, edge = (np.array(scene.positions) + 20.0, 40.0) if case is None else (case.x if case.rest is None else case.rest, case.edge)
     types = 1 if case is None or case.types is None else 2
     room = [] if category == "pair" else [f"{category}/types 1", *["bond/types 1"] * (extra.chain and category != "bond")]
-    lmp.commands_list([f"units {scene.unit}", f"atom_style {extra.atom_style}", *extra.start, f"region box block 0 {edge!r} 0 {edge!r} 0 "
-                       f"{edge!r}", f"create_box {types} box {' '.join(room)}", "mass * 12.0", f"neighbor {0.3 if scene.unit == 'lj' else 2.0} bin"])
+    lmp.commands_list([f"units {scene.unit}", f"atom_style {extra.atom_style}", *extra.start,
+                       "region box block" + f" 0 {edge!r}" * 3, f"create_box {types} box {' '.join(room)}", "mass * 12.0",
+                       f"neighbor {0.3 if scene.unit == 'lj' else 2.0} bin"])
     n = len(x)
     lmp.create_atoms(n, None, [1] * n if case is None or case.types is None else case.types.tolist(), np.mod(x, edge).ravel().tolist())
     system = lmp.scene.need_system("measure")
@@ -176,7 +177,7 @@ def opened(case: Case | None, scene: style_scenes.Scene) -> Lammps:
         system.topology = Topology(**{f"{category}s": rows, f"{category}_types": np.ones(len(rows), int)})
     elif scene.charges:
         lmp.commands_list([f"set type {t} charge {q}" for t, q in enumerate(scene.charges[:types], 1)])
-    lmp.commands_list([line for line in extra.lines])
+    lmp.commands_list(list(extra.lines))
     lmp.commands_list([line.replace("set atom 1 dipole 0.3 0.4 0.0", "set group all dipole/random 7 0.5") for line in extra.late])
     return lmp
 
@@ -221,10 +222,10 @@ def no_table(style) -> str:
     """Why a style has no table of its own, "" if it has."""
     if style.category == "improper":
         return "there is no improper style table"
-    if style.category == "pair":
+    if style.category == "pair" or style.name.startswith("table"):
         return ""
     if style.coordinates != (COORDINATE[style.category],):
-        return f"the energy depends on more than the {'length' if style.category == 'bond' else 'angle'} between the atoms"
+        return f"the energy depends on more than the {'length of the bond' if style.category == 'bond' else 'angle between the atoms'}"
     return ""
 
 
@@ -295,7 +296,7 @@ def pair_formula(lmp, case: Case) -> list[str]:
     term, = lmp.scene.interactions.pair_terms(system.counts["ntypes"], units)
     if any(part.arrays for part in term.style.parts):
         raise Untraceable("its function reads arrays")
-    lines = [f"pair_style lepton {case.values.max()!r}"]
+    lines = [f"pair_style lepton {float(case.values.max())!r}"]
     functions = [traced(part.function) for part in term.style.parts]
     for i, j in ((1, 1), (1, 2), (2, 2))[:1 if case.types is None else 3]:
         qq = units.qqr2e * scene.charges[i - 1] * scene.charges[j - 1] if scene.charges else 0.0
@@ -340,6 +341,8 @@ def variants(case: Case, folder: str) -> tuple[dict[str, Runner], dict[str, str]
     def attempt(name: str, make: Callable[[], Runner]) -> None:
         try:
             out[name] = make()
+        except SimulationError:
+            missing[name] = "it is not finite at some of these geometries"
         except (Untraceable, AsemdError) as e:
             missing[name] = getattr(e, "message", str(e))
 
@@ -382,13 +385,14 @@ def measure(category: str, name: str) -> dict:
             scene = style_scenes.scene(category, name)
             if scene.table:
                 style_scenes.write_table(category, folder)
-                scene.lines = retold(scene.lines, *DENSE)
             if category == "pair":
                 case = pair_case(name)
             else:
                 few = opened(None, scene)
                 few.commands_list(scene.lines)
                 case = bonded_case(category, name, few)
+            if scene.table:
+                case.scene = replace(case.scene, lines=retold(case.scene.lines, *DENSE))
             runners, missing = variants(case, folder)
         finally:
             os.chdir(here)
@@ -415,8 +419,8 @@ def main() -> int:
         began = time.perf_counter()
         try:
             known[f"{category} {name}"] = measure(category, name)
-        except InputError as e:
-            raise InputError(f"{category} {name}: {e.message}") from None
+        except AsemdError as e:
+            raise InputError(f"{category} {name}: {e}") from None
         save(known)
         print(f"{category} {name}: {time.perf_counter() - began:.1f} s, "
               + ", ".join(f"{v} {e['error']:.0e} {e['ns'][1]:g}" for v, e in known[f"{category} {name}"]["variants"].items()), flush=True)

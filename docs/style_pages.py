@@ -1,4 +1,4 @@
-"""A page for every force-field style, written by Sphinx at build time (see conf.py) from the registry, docs/measured/agreement.json and speed.json.
+"""A page for every force-field style, written by Sphinx at build time (see conf.py) from the registry and the numbers in docs/measured.
 
 Nothing on the pages is written by hand: text and formula are the docstring of the style's file, units come from its parameters, examples
 from `style_scenes`, curves from `style_plots`, and the numbers below an example are what it prints.
@@ -235,7 +235,7 @@ def link(source: str) -> str:
 
     def below(match):
         name = docname(match[1], match[2])
-        return f"{match[0]}\n[Units, curves, examples, agreement]({FOLDER}/{name}.md)\n" if name in names else match[0]
+        return f"{match[0]}\n[Units, curves, examples, agreement, error against time]({FOLDER}/{name}.md)\n" if name in names else match[0]
     text = re.sub(r"^### (\w+) (\S+)\n", below, source, flags=re.M)
     toctree = ["", "```{toctree}", ":hidden:", ":maxdepth: 1", "", *(f"{FOLDER}/{n}" for n in names), "```", ""]
     return text + "\n".join(toctree)

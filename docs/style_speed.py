@@ -64,9 +64,12 @@ def section(category: str, name: str, known: dict, figure: str) -> list[str]:
     again = f'{known["command"]} "{category} {name}"'
     spread = ("atoms of a Lennard-Jones liquid at reduced temperature 1, scaled to the style" if category == "pair"
               else "at random places, drawn as they occur at 300 K (reduced units: temperature 1)")
-    return [*out, "", f"Root mean square of the force's relative error and processor time of {WHAT[category]}, forces without energies, one "
-            f"thread, {entry['items']:,} of them ({spread}). Tables are the style's own, lepton is the same function as an expression. Measured "
-            f"by `{again}` on {known['machine']['cpu']}, numpy {known['machine']['numpy']}, numba {known['machine']['numba']}.", ""]
+    table = " Double is the file of the example, read as a spline of 50,000 values." if name.startswith("table") else ""
+    machine = known["machine"]
+    return [*out, "", f"Root mean square error of the force, relative to that of the force, and processor time for {WHAT[category]} "
+            f"(forces without energies, one thread, {entry['items']:,} of them: {spread}). Tables are the style's own, lepton is the same "
+            f"function as an expression.{table} Measured by `{again}` on {machine['cpu']}, numpy {machine['numpy']}, numba "
+            f"{machine['numba']}.", ""]
 
 
 def svg(category: str, name: str, entry: dict) -> str:
@@ -74,8 +77,8 @@ def svg(category: str, name: str, entry: dict) -> str:
     text = figure(category, name, entry).decode()
     text = text[text.index("<svg"):].replace(INK, "currentColor")
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.S).replace("*{stroke", "svg *{stroke")
-    size = 'style="width: 100%; height: auto; max-width: 34rem" role="img"'
-    return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', f'{size} aria-label="Error against time of {category} style {name}"', text, count=1)
+    size = f'style="width: 100%; height: auto; max-width: 34rem" role="img" aria-label="Error against time of {category} style {name}"'
+    return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', size, text, count=1)
 
 
 def figure(category: str, name: str, entry: dict, target: str = "svg") -> bytes:
@@ -99,7 +102,9 @@ def figure(category: str, name: str, entry: dict, target: str = "svg") -> bytes:
                           mfc="none" if kind == "double" else colour, ls="-" if len(rows) > 1 else "none")
             for (variant, _), x, e in zip(rows, middle, y):
                 if len(rows) > 1:
-                    axes.annotate(variant.split()[-1], (x, e), xytext=(6, 3), textcoords="offset points", fontsize=7, color=colour)
+                    left = kind == "table linear"
+                    axes.annotate(variant.split()[-1], (x, e), xytext=(-7 if left else 7, 3), textcoords="offset points", fontsize=7,
+                                  color=colour, ha="right" if left else "left")
             times += [*low, *high]
             errors += y
         axes.set_xscale("log")

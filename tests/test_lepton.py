@@ -27,6 +27,7 @@ EXPRESSIONS = [
     "cos(3*r)", "sec(r)+csc(r)+cot(r)", "tan(r)", "asin(r/3)", "acos(r/3)", "atan(r)", "atan2(r,2)", "atan2(2,r)", "sinh(r)+2*cosh(r)",
     "tanh(r)", "erf(r)+erfc(2*r)", "step(r-1)*r", "delta(r-0.5)+r", "square(r)+cube(r)+recip(r)", "min(r,1)", "max(r,1)", "abs(r-1)",
     "floor(r*2)*r", "ceil(r)*r", "select(step(r-1),r^2,r)", "select(r-0.5,r,r^2)", "min(max(r,1),1.2)*r", "3*(1-exp(-2*(r-1)))^2",
+    "select(step(abs(r-1)-0.2),r^2,r)", "select((1-step(r-1))*(1-step(r-0.6)),select(step(r-0.4),r,2*r),r^2)",
     "-0.5*30*2.25*log(1-(r/3)^2)", "2*(1+cos(3*r))", "2*(1-cos(r))^2", "log(1+r)+log(1-r/4)", "(exp(r)-1)*(1-erf(r))",
     "(cos(r)-1)*(erf(r)-1)", "3*(-1+cos(r))", "r*(1-exp(r))", "-r*(-r+2)/(-r-1)", "0*r+1", "2*3*r", "r^3*exp(-r^2)*sin(5*r)/(1+r^2)",
 ]

@@ -311,3 +311,10 @@ if __name__ == "__main__":
         ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
     jobs_, result = Path(sys.argv[1]), Path(sys.argv[2])
     result.write_text(json.dumps(wheel(json.loads(jobs_.read_text()))))
+
+
+@pytest.mark.parametrize("name", STYLES)
+def test_functions_write_their_constants_out(name):
+    """Numbers written out take the precision of the kernel; math.pi stays double, and mixed precision does not compile."""
+    for part in style.find("pair", name).parts:
+        assert not {"pi", "e", "tau"} & set(part.function.__code__.co_names), part.function

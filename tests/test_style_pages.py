@@ -1,18 +1,22 @@
-"""The pages of the styles: every example runs and both of its forms agree, measured numbers are there, the page on own styles is true."""
+"""The pages of the styles: every example runs and both of its forms agree, measured numbers are there and
+plausible, the page on own styles is true."""
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import asemd
 from asemd import style as registry
 from asemd.errors import InputError
+from asemd.expression import condense, differentiate
 from asemd.testing import oracle
 from asemd.testing.styles import report_style
 from asemd.user_styles import import_file
@@ -21,15 +25,21 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
 
 import measure  # noqa: E402
+import measure_speed  # noqa: E402
+import style_formula  # noqa: E402
 import style_pages  # noqa: E402
 import style_plots  # noqa: E402
 import style_scenes  # noqa: E402
+import style_speed  # noqa: E402
 
 STYLES = style_scenes.every_style()
-KNOWN = json.loads(measure.FILE.read_text())
+KNOWN, SPEED = json.loads(measure.FILE.read_text()), json.loads(measure_speed.FILE.read_text())
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
 PAGE = ROOT / "docs" / "custom-style.md"
 LARGEST = 1e-9          # relative difference from LAMMPS, which loses digits near straight and planar arrangements
+# styles whose force has a corner within the range of a table
+CORNERS = ("bond harmonic/shift/cut", "angle mesocnt", "pair lj/charmm/coul/charmm", "pair lj/charmmfsw/coul/charmmfsh")
+TABULATED = [key.split(" ", 1) for key, entry in SPEED["styles"].items() if "table" not in entry["left out"]]
 RUN = """
 import contextlib, io, json, sys, warnings
 warnings.simplefilter("ignore")
@@ -70,7 +80,7 @@ def test_every_example_runs_and_both_forms_agree(category, tmp_path):
 
 @pytest.mark.parametrize(("category", "name"), STYLES)
 def test_page(category, name):
-    text = style_pages.page(category, name, KNOWN, {f"{category} {name}": "1 eV"})
+    text = style_pages.page(category, name, KNOWN, {f"{category} {name}": "1 eV"}, speed=SPEED, plot="plot.svg")
     assert text.startswith(f"# {category} {name}\n") and "```python" in text and f"{category}_style {name}" in text
     if (category, name) not in measure.measured():
         return
@@ -78,6 +88,7 @@ def test_page(category, name):
     assert "$$" in text or category == "pair"
     for p in (*style.settings, *style.coeff):
         assert f"| `{p.name}` | " in text, p.name
+    assert "## Error against time" in text and ":file: plot.svg" in text and f'measure_speed.py "{category} {name}"' in text
     assert "## Agreement with LAMMPS" in text and ("--compat lammps" in text) == measure.has_twin(category, name)
 
 
@@ -120,6 +131,109 @@ def test_curves(category, name):
     assert (style_plots.outside(style) != "") == (name == "fene")
 
 
+# ------------------------------------------------------------------ error against time ---
+
+@pytest.mark.parametrize(("category", "name"), measure_speed.measured())
+def test_speed_of_every_style_is_known(category, name):
+    """Each variant has a point or a reason; numbers are those of the present example."""
+    again = f'run {measure_speed.COMMAND} "{category} {name}"'
+    entry = SPEED["styles"].get(f"{category} {name}")
+    assert entry and entry["commands"] == style_scenes.scene(category, name).lines, again
+    assert entry["items"] >= 2000 and entry["variants"]["double"]["error"] == 0.0
+    for variant in ("mixed", "table", "lepton"):
+        points = [v for v in entry["variants"] if v.startswith(variant)]
+        reason = entry["left out"].get(variant, "")
+        assert bool(points) != bool(reason) and len(points) in (0, 1, 6) and "/" not in reason.replace(name, ""), (variant, points, reason)
+    for variant, v in entry["variants"].items():
+        low, middle, high = v["ns"]
+        assert 0.1 < low <= middle <= high < 2000.0, variant
+    errors = {n: v["error"] for n, v in entry["variants"].items()}
+    assert 1e-9 < errors.get("mixed", 1e-7) < 1e-5 and errors.get("lepton", 0.0) < 1e-13
+
+
+def test_speed_has_no_other_styles():
+    assert set(SPEED["styles"]) == {f"{c} {n}" for c, n in measure_speed.measured()} and SPEED["machine"]["cpu"]
+
+
+@pytest.mark.parametrize(("category", "name"), TABULATED)
+def test_errors_of_tables_fall_as_theory_says(category, name):
+    """With the square of the spacing for linear tables and the fourth power or faster for splines, down to rounding; slower where the force
+    has a corner, and at once to rounding where it is a polynomial."""
+    errors = {n: v["error"] for n, v in SPEED["styles"][f"{category} {name}"]["variants"].items()}
+    for kind, order in (("linear", 2.0), ("spline", 4.0)):
+        e = [errors[f"table {kind} {n}"] for n in measure_speed.TABLES]
+        if f"{category} {name}" in CORNERS:
+            assert e[2] < 0.1 * e[0], (kind, e)
+            continue
+        for a, b in zip(e, e[1:]):
+            seen = math.log(a / b) / math.log(5.0)
+            assert b < 5e-11 or order - 0.5 < seen and (seen < order + 0.5 or kind == "spline"), (kind, e)
+
+
+def test_measuring_a_style_again(monkeypatch):
+    monkeypatch.setattr(measure_speed, "ROUNDS", 2)
+    known, entry = SPEED["styles"]["bond fene"], measure_speed.measure("bond", "fene")
+    assert entry["left out"] == known["left out"] and list(entry["variants"]) == list(known["variants"])
+    for n in ("table linear 200", "table linear 5000", "table spline 200"):
+        assert entry["variants"][n]["error"] == pytest.approx(known["variants"][n]["error"], rel=0.05)
+
+
+def formula_value(text: str, x: float) -> float:
+    return differentiate(condense(text), "x", ()).value(x)
+
+
+def test_formula_of_a_function():
+    """Comparisons that go one way on all values leave no trace, others become select; helpers are followed."""
+    def half(x):
+        return 0.5 * x
+
+    def energy(x, k):
+        if x > 10.0:
+            return math.inf
+        if x < 1.0:
+            return half(k) * math.expm1(x)
+        return k * abs(x - 2.0) if x <= 1.5 else math.copysign(k, -x) / x**2
+
+    values = np.linspace(0.3, 2.7, 101)
+    plain = style_formula.traced(energy)
+    text = style_formula.expression(lambda x: plain(x, 3.0), "x", values)
+    assert "select" in text and "inf" not in text
+    for x in (0.3, 0.99, 1.2, 1.51, 2.6):
+        assert formula_value(text, x) == pytest.approx(energy(x, 3.0), rel=1e-14)
+    assert "select" not in style_formula.expression(lambda x: plain(x, 3.0), "x", values[values > 1.6])
+
+
+@pytest.mark.parametrize(("function", "reason"), [
+    (lambda x: [1.0, 2.0][int(x)], "more than arithmetic"), (math.gamma, "not one of lepton's"), (lambda x: math.inf * x, "not finite"),
+    (lambda x: 1.0 if x == 1.0 else x, "equality")])
+def test_functions_without_a_formula(function, reason):
+    plain = style_formula.Functions().gamma if function is math.gamma else function
+    with pytest.raises(style_formula.Untraceable, match=reason):
+        style_formula.expression(plain, "x", np.linspace(0.0, 2.0, 5))
+
+
+@pytest.mark.parametrize(("category", "name"), [("bond", "morse"), ("improper", "cossq"), ("pair", "lj/cut")])
+def test_plot_of_error_against_time(category, name):
+    pytest.importorskip("matplotlib")
+    entry = SPEED["styles"][f"{category} {name}"]
+    first = style_speed.svg(category, name, entry)
+    assert first == style_speed.svg(category, name, entry) and first.startswith("<svg") and len(first) < 60_000
+    assert "currentColor" in first and "#000000" not in first
+    assert all(kind in first for kind in style_speed.kinds(entry)) and "relative error of the force" in first
+
+
+def test_reading_of_the_plot():
+    def entry(**others):
+        times = {"double": (0.0, [9.0, 10.0, 11.0]), **others}
+        return {"variants": {n: {"error": e, "ns": ns} for n, (e, ns) in times.items()}}
+    read = style_speed.reading
+    assert "nothing else to compare" in read("bond", entry())
+    assert read("angle", entry()).startswith("Double precision takes 10 ns for an angle;")
+    assert read("bond", entry(lepton=(0.0, [8.0, 8.5, 9.5]))).endswith("nothing else is faster.")
+    text = read("pair", entry(mixed=(2e-7, [4.0, 5.0, 6.0]), lepton=(1e-16, [7.0, 8.0, 8.5])))
+    assert "Faster: lepton (1.2 times as fast, error 1e-16); fastest: mixed (2 times as fast, error 2e-07)." in text
+
+
 def test_sphinx_builds_without_warnings(tmp_path):
     for package in ("sphinx", "myst_parser", "furo", "matplotlib"):
         pytest.importorskip(package)
@@ -127,7 +241,8 @@ def test_sphinx_builds_without_warnings(tmp_path):
                            str(tmp_path / "site")], capture_output=True, text=True, env={**ENV, "NUMBA_DISABLE_JIT": "1"}, timeout=600)
     assert done.returncode == 0 and not done.stderr.strip(), done.stderr[-3000:]
     text = (tmp_path / "site" / "styles" / "bond-fene.html").read_text()
-    assert "<svg" in text and "kcal/mol" in text and "21.468258" in text
+    assert text.count("<svg") >= 2 and "Error against time of bond style fene" in text
+    assert "kcal/mol" in text and "21.468258" in text
 
 
 # ------------------------------------------------------------------ the page on own styles ---

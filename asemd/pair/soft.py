@@ -34,4 +34,4 @@ def soft(r2, A: "energy", cut: "distance"):
     slope = (slope * w + 2.5501640398773455) * w - 5.16771278004997
     slope = slope * w + 3.141592653589793
     slope = slope / cut if near else slope * gap / r
-    return 2.0 * A * root * root, -0.5 * math.pi * A * slope / cut
+    return 2.0 * A * root * root, -1.5707963267948966 * A * slope / cut
