@@ -65,6 +65,8 @@ def section(category: str, name: str, known: dict, figure: str) -> list[str]:
     spread = ("atoms of a Lennard-Jones liquid at reduced temperature 1, scaled to the style" if category == "pair"
               else "at random places, drawn as they occur at 300 K (reduced units: temperature 1)")
     table = " Double is the file of the example, read as a spline of 50,000 values." if name.startswith("table") else ""
+    if table and category == "dihedral":
+        table += " Splines take the slope of the energy as force, linear tables the file's forces; on a file of 36 values they differ."
     machine = known["machine"]
     return [*out, "", f"Root mean square error of the force, relative to that of the force, and processor time for {WHAT[category]} "
             f"(forces without energies, one thread, {entry['items']:,} of them: {spread}). Tables are the style's own, lepton is the same "
