@@ -56,7 +56,7 @@ def validate(context: typer.Context, script: Script = None,
 
 def plan(context: typer.Context, script: Script = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
          import_: Import = None,
-         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine, once (about 20 seconds), "
+         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine, once (less than a minute), "
                                                  "for the expected steps per second.")] = False,
          as_json: Json = False) -> int:
     """Print what a script's scene needs, what it will cost, what is left out, and why; no step of it is run."""
@@ -66,7 +66,7 @@ def plan(context: typer.Context, script: Script = None, compat: Compat = None, p
     from asemd.cli import import_files
     import_files(import_)
     if calibrate and not known(threads, precision):
-        print("Measuring the speed of this machine, once: a few seconds, some twenty if kernels have to be compiled ...", file=sys.stderr)
+        print("Measuring the speed of this machine, once: some seconds, up to a minute if kernels have to be compiled ...", file=sys.stderr)
     found = of_script(path, switches, calibrate)
     print_parts(found.parts(), found.to_dict(), as_json)
     return 0

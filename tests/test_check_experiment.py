@@ -31,11 +31,12 @@ velocity all zero linear
 fix 1 all nve
 timestep {dt}
 """
+AMPLE = 1000.0      # seconds: more than any of them takes, so that on a slow machine too nothing is left out
 LATE = "neighbor 0.05 bin\nneigh_modify every 20 delay 0 check no\n"
 
 
 def check(text: str, **options):
-    options.setdefault("budget", 10.0)
+    options.setdefault("budget", AMPLE)
     return experiment.run(both.asemd(text).scene, **options)
 
 
@@ -138,7 +139,7 @@ def test_the_scene_stays_as_it_is(tmp_path, monkeypatch):
     text = MELT.format(n=4, dt=0.005) + f"dump 1 all atom 1 {tmp_path}/d\nrestart 1 {tmp_path}/r\n"
     scene = both.asemd(text).scene
     before = copied(scene)
-    found = [experiment.run(scene, budget=30.0, seed=3) for _ in range(2)]
+    found = [experiment.run(scene, budget=AMPLE, seed=3) for _ in range(2)]
     for a, b in ((scene.system.x, before.system.x), (scene.system.v, before.system.v), (scene.system.image, before.system.image)):
         np.testing.assert_array_equal(a, b)
     assert scene.step == 0 and scene.dt == 0.005 and list(scene.dumps) == ["1"] and list(scene.fixes) == ["1"]
@@ -174,7 +175,7 @@ def test_two_timestep_levels():
 def test_command_line(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.melt").write_text(MELT.format(n=4, dt=0.005) + "run 10\n")
-    assert cli.main(["check", "in.melt", "--run", "--budget", "4", "--json"]) == 0
+    assert cli.main(["check", "in.melt", "--run", "--budget", str(AMPLE), "--json"]) == 0
     names = {f["name"] for f in json.loads(capsys.readouterr().out)["findings"]}
     assert {"onset of instability", "order of the integrator", "energy", "time reversal", "missed pairs"} <= names
     assert [p.name for p in tmp_path.iterdir()] == ["in.melt"]
@@ -184,7 +185,7 @@ def test_atoms():
     atoms = asemd.Atoms("Ar2", [(0, 0, 0), (1.0, 0, 0)], cell=[20] * 3, pbc=True)
     atoms.calc = asemd.ForceField(bond={"harmonic": {1: (10.0, 1.0)}}, topology=asemd.Topology(bonds=[(0, 1)]))
     omega = math.sqrt(2 * 10.0 / (39.948 / 2))
-    report = asemd.check(atoms, run=True, dt=0.1 / omega, budget=5.0)
+    report = asemd.check(atoms, run=True, dt=0.1 / omega, budget=AMPLE)
     assert report.of("onset of instability")[0].limit * omega == pytest.approx(2.0, rel=0.01)
 
 

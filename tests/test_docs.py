@@ -28,7 +28,7 @@ def scripts(page: Path) -> dict[str, str]:
 
 
 def python(*arguments: str, cwd: Path) -> str:
-    done = subprocess.run([sys.executable, *arguments], env=ENV, cwd=cwd, capture_output=True, text=True, timeout=300)
+    done = subprocess.run([sys.executable, *arguments], env=ENV, cwd=cwd, capture_output=True, text=True, timeout=1800)      # compiles
     assert done.returncode == 0, done.stdout[-1000:] + done.stderr[-3000:]
     return done.stdout
 

@@ -236,6 +236,16 @@ def test_a_failed_run_leaves_its_page(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().err.count("ERROR") == 1
 
 
+def test_atoms_that_flew_away_leave_their_page(tmp_path, monkeypatch, capsys):
+    """Two atoms almost in one place: after a step they are too far away to be drawn."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.x").write_text(BASE + "create_atoms 1 single 0.001 0 0\nrun 10\n")
+    assert cli.main(["run", "in.x", "--quiet", "--html", "x.html"]) == 1
+    text = (tmp_path / "x.html").read_text()
+    assert "The run ended early" in text and "cannot be drawn" in text and "Left out" in text
+    assert "no page was written" not in capsys.readouterr().err
+
+
 def test_pages_that_cannot_be_written_are_refused_first(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in.x").write_text(BASE + "run 1\n")

@@ -181,6 +181,14 @@ def test_interrupted_late(melt, stopped):
         assert report.gain > 1.0 and "faster" in report.recommendation
 
 
+def test_a_script_that_comes_apart(melt, tmp_path):
+    """Nothing is recommended, nor is the script."""
+    (tmp_path / "in.long").write_text(MELT.replace("timestep 0.004", "timestep 0.06"))
+    report = asemd.report(tmp_path / "in.long", 5.0, lammps=False)
+    assert report.script.failed and report.best is None and not report.curves
+    assert "own settings fail" in report.recommendation and "asemd check" in report.recommendation
+
+
 def test_bad_input(melt, tmp_path):
     for options, words in (({"budget": 0.5}, "budget must be at least 1"), ({"only": ["skim"]}, "no knob 'skim'"),
                            ({"at": 3}, "has 2 runs"), ({"tolerance": 0.0}, "tolerance must be positive")):
@@ -276,6 +284,7 @@ def test_choice_and_sentence(melt):
     assert advice.choose([script, best, model, unchecked], script, knobs) is best
     assert advice.sentence(best, script, knobs, 2.3) == (
         "Timestep 2, mixed precision, skin 0.9: 2.3x faster than the script's settings at the same error.")
+    assert "between 1.2x and 4.0x" in advice.sentence(best, script, knobs, 2.3, (1.2, 4.0))
     assert advice.sentence(None, script, knobs, math.nan).startswith("Keep the script's settings")
     assert advice.together({"timestep": 2.0}, {"integrator": 2}, knobs) is None
     assert advice.together({"timestep": 2.0}, {"skin": 2.0}, knobs) == {"timestep": 2.0, "skin": 2.0}

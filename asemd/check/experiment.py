@@ -131,10 +131,14 @@ def onset(b: Bench, report: Report, force: bool, _) -> float | None:
     top = static_limit(b)
     static = f" The fastest vibration of the start alone allows {top:.4g} (2/omega)." if top else ""
     severity = ("warning" if force else "error") if b.dt >= low else "warning" if ratio > NEAR else "note" if ratio > CLOSE else "ok"
-    message = f"Runs of {steps} steps come apart from a timestep of {limit:.4g} on; {b.dt:.4g} is {100 * ratio:.3g} % of that.{static}"
+    message = f"Runs of {steps} steps come apart from a timestep of {limit:.4g} on; {b.dt:.4g} is {_share(ratio)} that.{static}"
     advice = f"timestep {0.3 * limit:.2g} or less" if severity != "ok" else ""
     report.findings.append(Finding(severity, name, message, value=b.dt, limit=limit, advice=advice))
     return limit
+
+
+def _share(ratio: float) -> str:
+    return f"{100 * ratio:.3g} % of" if ratio < 10.0 else f"{ratio:.3g} times"
 
 
 def static_limit(b: Bench) -> float | None:

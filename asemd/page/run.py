@@ -66,7 +66,10 @@ def page_of_run(session, source: str, error: str = "") -> Page:
         page.warning(f"and {more} more, which are in the log")
     if scene.system is not None:
         page.section("Snapshot")
-        page.snapshot(scene.system, f"Step {scene.step:,}", note=_says(scene))
+        try:
+            page.snapshot(scene.system, f"Step {scene.step:,}", note=_says(scene))
+        except AsemdError as e:         # of a run that came apart
+            page.text(f"The atoms of step {scene.step:,} cannot be drawn: {e}.")
     _thermo(page, "Thermo", runs)
     _thermo(page, "Minimisation", [r for r in record.runs if r.kind == "minimize"])
     _drift(page, moving)

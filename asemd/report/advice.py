@@ -8,6 +8,7 @@ from asemd.report.knob import Knob
 from asemd.report.result import Curve, Point
 
 SIGMA = 2.0             # standard errors within which two values are the same
+SCATTER = 1.5           # ratio of quartiles above which a gain is told with them
 FORCE = 1e-5            # relative force error that no run notices beside that of its timestep
 DRIFT = 0.05            # kT per degree of freedom and ns (1000 tau), below which a drift does not matter
 FLUCTUATION = 0.1       # of the conserved quantity, relative to that of the kinetic energy
@@ -124,14 +125,17 @@ def choose(points: Sequence[Point], script: Point, knobs: Mapping[str, Knob], fo
     return min(good, key=lambda p: p.seconds_per_span) if good else None
 
 
-def sentence(best: Point | None, script: Point, knobs: Mapping[str, Knob], times: float) -> str:
-    """The recommendation; `times` faster."""
+def sentence(best: Point | None, script: Point, knobs: Mapping[str, Knob], times: float,
+             quartiles: tuple[float, float] = (math.nan, math.nan)) -> str:
+    """The recommendation; `times` faster, with quartiles, which are told where they are far apart."""
     if script.failed:
-        return f"The script's own settings fail: {script.failed}"
+        return f"The script's own settings fail: {script.failed}. Mend that first; asemd check tells what is wrong."
     if best is None:
         return "Keep the script's settings: nothing that was tried is faster at the same error."
     words = ", ".join(knobs[name].phrase(value) for name, value in sorted(best.settings.items(), key=lambda kv: knobs[kv[0]].order))
     out = f"{words[0].upper()}{words[1:]}: {times:.1f}x faster than the script's settings at the same error"
+    if quartiles[1] > SCATTER * quartiles[0]:
+        out += f" (half of the comparisons between {quartiles[0]:.1f}x and {quartiles[1]:.1f}x: other work disturbed them)"
     if best.relative_fluctuation > 1.05 * script.relative_fluctuation and "relative_fluctuation" not in best.ties:
         out += (f"; the conserved quantity fluctuates by {best.relative_fluctuation:.2g} of the kinetic energy's fluctuation, it was "
                 f"{script.relative_fluctuation:.2g}")

@@ -198,9 +198,10 @@ class Bench:
             clock, bursts = time.process_time if self.busy else time.perf_counter, []
             for loop, _ in runners:
                 loop.advance(WARM)
-                began = time.perf_counter()
+                began = clock()
                 loop.advance(WARM)
-                bursts.append(max(1, int(WARM * seconds / (2 * BURSTS) / max(time.perf_counter() - began, 1e-9))))
+                # at least so many steps that lists are built in them
+                bursts.append(max(2 * WARM, int(WARM * seconds / (2 * BURSTS) / max(clock() - began, 1e-9))))
             for _ in range(BURSTS):
                 for (loop, dt), steps, found in zip(runners, bursts, times):
                     began = clock()

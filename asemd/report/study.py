@@ -66,8 +66,9 @@ class Study:
         """Everything; after Ctrl-C the report holds what was measured until then, and says so."""
         try:
             self._settle()
-            self.bench = Bench(self.scene, self.knobs, self.clock, self.report.seed)
-            self._script()
+            if not self.report.script.failed:
+                self.bench = Bench(self.scene, self.knobs, self.clock, self.report.seed)
+                self._script()
             if not self.report.script.failed:
                 self._turn()
                 self._clock()
@@ -103,16 +104,22 @@ class Study:
         with self.clock.warming():
             first = nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
         if first.failed:
-            report.notes.append(f"Settling failed: {first.failed}")
+            self._did_not_settle(own, first.failed)
             return
         seconds = SETTLE * report.budget
         steps = max(1, min(SETTLING, int(seconds / max(first.seconds_per_step, 1e-9))))
         series = nve.run(scene, steps=steps, samples=min(50, steps), fixes=own, seed=report.seed, deadline=self.clock.at(1.5 * seconds))
         if series.failed:
-            report.notes.append(f"Settling failed: {series.failed}")
+            self._did_not_settle(own, series.failed)
             return
         self.scene.system = series.system
         report.notes.append(f"Measured after {series.steps} steps of {'the fixes of the script' if own == 'own' else 'constant energy'}.")
+
+    def _did_not_settle(self, own: str, why: str) -> None:
+        """With the script's own fixes and timestep there is nothing to compare with."""
+        self.report.notes.append(f"Settling failed: {why}")
+        if own == "own":
+            self.report.script.failed, self.report.script.own = why, True
 
     def _target(self) -> float:
         """The temperature the script has in mind."""
@@ -294,7 +301,7 @@ class Study:
             if curve.name == "timestep":
                 good = [p for p in curve.points if not p.failed and p.steps >= ENOUGH and 0.0 < p.relative_fluctuation < advice.FLUCTUATION]
                 curve.exponent, curve.exponent_error = fit_exponent([p.dt for p in good], [p.fluctuation for p in good])
-        report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain)
+        report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain, report.gain_quartiles)
         for name, value in (report.best.settings if report.best else {}).items():
             report.options += self.knobs[name].options(value)
         report.compile_seconds, report.seconds = self.clock.compiled, self.clock.used

@@ -16,6 +16,7 @@ from asemd.lammps import catalog
 RECOMMENDED, COARSE, FINE = 20.0, 10.0, 500.0     # steps per period
 RARE = 3.5              # steps per period of the fastest motion of all as it is now, which may be a rare collision
 RESONANCE = 3.0         # outer steps of r-RESPA per period
+CRUSHED = 1e-3          # steps per period below which atoms lie on each other
 SHOWN = 3
 TIME = {"real": " fs", "metal": " ps", "electron": " fs", "lj": " tau"}
 USUAL = {"real": "1.0 (fs)", "metal": "0.001 (ps)", "electron": "0.001 (fs)"}
@@ -79,6 +80,8 @@ def fastest(case: Case) -> list[Finding]:
         verdict, rank, limit = _verdict(steps, period)
         return [Finding(rank, name, f"{text}; a step of {dt:g} is {verdict}.", ids, dt, limit)]
     advice = f"use a timestep below {period / COARSE:.2g}" + ("" if not case.relaxes else ", or look again after the minimisation")
+    if steps < CRUSHED:
+        advice = "no timestep helps: relax the structure first (minimize, fix nve/limit)"
     if steps < math.pi:
         severity = "note" if case.gentle else "warning" if case.force else "error"
         return [Finding(severity, name, f"{text}: with a step of {dt:g} it grows without bounds.", ids, dt, limit, advice)]
