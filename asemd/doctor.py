@@ -1,6 +1,7 @@
 """Facts about this installation that decide whether asemd runs, and how fast."""
 from __future__ import annotations
 
+import contextlib
 import importlib.metadata
 import os
 import platform
@@ -78,9 +79,14 @@ def _compiler() -> Fact:
 def _cache() -> Fact:
     from asemd.kernels.generate import cache_dir
     folder = cache_dir()
-    files = [f for f in Path(folder).rglob("*") if f.is_file()]
-    size = sum(f.stat().st_size for f in files) / 2**20
-    modules = sum(f.suffix == ".py" for f in files)
+    sizes: list[int] = []
+    modules = 0
+    for f in Path(folder).rglob("*"):
+        with contextlib.suppress(OSError):      # another process may just have dropped it
+            if f.is_file():
+                sizes.append(f.stat().st_size)
+                modules += f.suffix == ".py"
+    size = sum(sizes) / 2**20
     wanted = "ASEMD_CACHE_DIR" if os.environ.get("ASEMD_CACHE_DIR") else "the cache folder of the user"
     kept = not Path(folder).parent.name.startswith("asemd-")       # the name of the temporary folder
     return Fact("kernel cache", f"{folder}: {modules} kernel modules, {size:.1f} MB", kept, "" if kept else

@@ -238,13 +238,13 @@ def test_ase_atoms_carry_dipoles(data):
 
 
 def test_from_python():
-    atoms = Bonded(Atoms("OO", positions=[[0, 0, 0], [1.2, 0, 0]], cell=[20, 20, 20], pbc=True))
-    atoms.topology = Topology(angles=np.array([[0, 1, 1]], np.int32), angle_types=np.array([1], np.int32))
+    atoms = Bonded(Atoms("OOO", positions=[[0, 0, 0], [1.2, 0, 0], [5.0, 5.0, 0]], cell=[20, 20, 20], pbc=True))
+    atoms.topology = Topology(angles=np.array([[0, 1, 2]], np.int32), angle_types=np.array([1], np.int32))
     atoms.calc = ForceField(angle={"dipole": {1: (2.0, 0.0)}})
-    atoms.set_array("mu", np.array([[0.0, 0.3, 0.0], [0, 0, 0]]))
+    atoms.set_array("mu", np.array([[0.0, 0.3, 0.0], [0, 0, 0], [0, 0, 0]]))
     assert atoms.get_potential_energy() == pytest.approx(2.0)
     assert atoms.get_forces()[1] == pytest.approx([0, 2 * 2.0 / 1.2, 0])
-    atoms.set_array("mu", np.array([[0.3, 0.3, 0.0], [0, 0, 0]]))
+    atoms.set_array("mu", np.array([[0.3, 0.3, 0.0], [0, 0, 0], [0, 0, 0]]))
     assert atoms.get_potential_energy() == pytest.approx(2.0 * (np.sqrt(0.5) - 1.0) ** 2)
 
 

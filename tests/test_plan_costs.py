@@ -163,7 +163,8 @@ def test_speed(folder, costs, name):
     seconds = []
     for _ in range(5):
         seconds.append(calibration.timed(lammps, 300)[0] / 300)
-    assert expected / 3 < 1.0 / float(np.median(seconds)) < 3 * expected
+    # a factor of 3 on a quiet machine; calibration and runs are minutes apart
+    assert expected / 5 < 1.0 / float(np.median(seconds)) < 5 * expected
 
 
 def test_costs_are_numbers(costs):
