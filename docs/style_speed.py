@@ -7,6 +7,8 @@ import re
 
 from style_plots import COLOURS, INK
 
+from asemd import style as registry
+
 WHAT = {"bond": "a bond", "angle": "an angle", "dihedral": "a dihedral", "improper": "an improper", "pair": "a pair within the cutoff"}
 LOOKS = {"double": ("#808080", "o"), "mixed": (COLOURS[3], "D"), "table linear": (COLOURS[0], "s"), "table spline": (COLOURS[2], "^"),
          "lepton": (COLOURS[1], "v")}
@@ -37,7 +39,7 @@ def reading(category: str, entry: dict) -> str:
     def told(name):
         v = faster[name]
         return f"{name} ({exact['ns'][1] / v['ns'][1]:.2g} times as fast, error {v['error']:.0e})"
-    return f"{text}. Faster: {told(best)}" + (f"; fastest: {told(quick)}." if quick != best else ".")
+    return f"{text}. Faster: {told(best)}" + (f"; fastest: {told(quick)}." if faster[quick]["ns"][2] < faster[best]["ns"][0] else ".")
 
 
 def left_out(entry: dict) -> str:
@@ -46,6 +48,17 @@ def left_out(entry: dict) -> str:
     for name, reason in entry["left out"].items():
         reasons.setdefault(reason, []).append(name)
     return "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
+
+
+def geometry(style) -> str:
+    """How the items were placed, see `measure_speed.along`."""
+    if style.category == "pair":
+        return "atoms of a Lennard-Jones liquid at reduced temperature 1, scaled to the style"
+    if style.category == "improper" or style.coordinates == ("gamma",):
+        return "normally distributed about the middle of the range of the curves, by a tenth of it"
+    if style.function is None or style.remembers:
+        return "lengths spread evenly from 5 % below to 10 % above one at which there is something to see"
+    return "drawn as they occur at 300 K (reduced units: temperature 1)"
 
 
 def section(category: str, name: str, known: dict, figure: str) -> list[str]:
@@ -62,8 +75,7 @@ def section(category: str, name: str, known: dict, figure: str) -> list[str]:
     if entry["left out"]:
         out += ["", f"Left out: {left_out(entry)}."]
     again = f'{known["command"]} "{category} {name}"'
-    spread = ("atoms of a Lennard-Jones liquid at reduced temperature 1, scaled to the style" if category == "pair"
-              else "at random places, drawn as they occur at 300 K (reduced units: temperature 1)")
+    spread = geometry(registry.find(category, name))
     table = " Double is the file of the example, read as a spline of 50,000 values." if name.startswith("table") else ""
     if table and category == "dihedral":
         table += " Splines take the slope of the energy as force, linear tables the file's forces; on a file of 36 values they differ."
