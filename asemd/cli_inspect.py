@@ -56,18 +56,20 @@ def validate(context: typer.Context, script: Script = None,
 
 def plan(context: typer.Context, script: Script = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
          import_: Import = None,
-         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine, once (less than a minute), "
+         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine (less than a minute; it is kept), "
                                                  "for the expected steps per second.")] = False,
          as_json: Json = False) -> int:
     """Print what a script's scene needs, what it will cost, what is left out, and why; no step of it is run."""
-    from asemd.lammps.calibration import known
+    from asemd.lammps import calibration
     from asemd.lammps.plan import of_script
     path, switches = set_up(context, script, "plan", compat, precision, threads)
     from asemd.cli import import_files
     import_files(import_)
-    if calibrate and not known(threads, precision):
-        print("Measuring the speed of this machine, once: some seconds, up to a minute if kernels have to be compiled ...", file=sys.stderr)
-    found = of_script(path, switches, calibrate)
+    found = of_script(path, switches)
+    if calibrate:
+        print("Measuring the speed of this machine: some seconds, up to a minute if kernels have to be compiled ...", file=sys.stderr)
+        calibration.calibrate(threads, precision, again=True)
+        found = of_script(path, switches)
     print_parts(found.parts(), found.to_dict(), as_json)
     return 0
 

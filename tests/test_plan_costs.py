@@ -177,6 +177,10 @@ def test_calibration_is_done_once(tmp_path, monkeypatch):
               "items": {"bond": 1e-8}}
     monkeypatch.setattr(calibration, "_process", lambda threads, precision, *what: {"program": 1e8} if what else values)
     first = calibration.calibrate(2, "mixed")
+    monkeypatch.setattr(calibration, "_process", lambda threads, precision, *what: {"program": 1e8} if what else {**values, "step": 2e-6})
+    assert calibration.calibrate(2, "mixed", again=True).step == 2e-6
+    monkeypatch.setattr(calibration, "_process", lambda threads, precision, *what: {"program": 1e8} if what else values)
+    calibration.calibrate(2, "mixed", again=True)
     monkeypatch.setattr(calibration, "_process", lambda *a: pytest.fail("measured again"))
     assert calibration.calibrate(2, "mixed") == first == calibration.Costs(program=1e8, **values)
     assert calibration.known(1, "double") is None

@@ -338,7 +338,7 @@ def _costs(out: Plan, e: Engine, scene, calibrate: bool) -> None:
     u = unit_styles.get(scene.units)
     per_day = f"{day:.3g} tau a day" if scene.units == "lj" else f"{day / u.femtosecond / 1e6:.3g} ns a day"
     items = [Item("steps per second", f"about {out.steps_per_second:.3g}",
-                  f"{per_day}; from a calibration of this machine, right within a factor of 2 or so")]
+                  f"{per_day}; from a calibration of this machine, right within a factor of 2 or 3; if it seems wrong: --calibrate")]
     total = sum(speed.parts.values())
     items += [Item(name, f"{100.0 * t / total:.0f} %", "") for name, t in speed.parts.items() if t > 0.005 * total]
     if e.mode != "none" and speed.builds < 1e3:
