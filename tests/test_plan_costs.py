@@ -157,14 +157,15 @@ def costs():
 @pytest.mark.parametrize("name", ["liquid", "chains", "chains without pairs", "few atoms", "gas"])
 def test_speed(folder, costs, name):
     """The median of some runs; time in which the processor did something else does not count."""
-    lammps = loaded(folder, name)
-    expected = asemd.plan(lammps.scene).steps_per_second
-    lammps.command("run 10")
-    seconds = []
-    for _ in range(5):
-        seconds.append(calibration.timed(lammps, 300)[0] / 300)
-    # a factor of 3 on a quiet machine; calibration and runs are minutes apart
-    assert expected / 5 < 1.0 / float(np.median(seconds)) < 5 * expected
+    for limit in (3, 5):        # a factor of 3 on a quiet machine
+        lammps = loaded(folder, name)
+        expected = asemd.plan(lammps.scene).steps_per_second
+        lammps.command("run 10")
+        found = 1.0 / float(np.median([calibration.timed(lammps, 300)[0] / 300 for _ in range(5)]))
+        if expected / limit < found < limit * expected:
+            return
+        calibration.calibrate(again=True)       # the machine was measured at a bad moment, or long ago
+    pytest.fail(f"{found:.3g} steps per second, not {expected:.3g}")
 
 
 def test_costs_are_numbers(costs):
