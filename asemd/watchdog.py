@@ -238,7 +238,8 @@ class Watchdog:
         loop, system = self.loop, self.loop.system
         if not self._free or result is None:
             return
-        kinetic = 0.5 * loop.units.mvv2e * float(loop.engine.mass_row @ np.einsum("ij,ij->i", system.v, system.v))
+        # not a dot product: BLAS would wake threads that spin on beside the next steps
+        kinetic = 0.5 * loop.units.mvv2e * float(np.einsum("i,ij,ij->", loop.engine.mass_row, system.v, system.v))
         potential = result.potential - result.energy.get("etail", 0.0)
         if self._energies is None or not np.isfinite(self._energies[0]):
             self._energies, self._depth, self._since = (potential + kinetic, kinetic), abs(potential), loop.step

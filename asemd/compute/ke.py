@@ -6,6 +6,8 @@ Source: LAMMPS manual, compute ke. Units: energy, for the whole group (not per a
 """
 from __future__ import annotations
 
+import numpy as np
+
 from asemd.compute import Compute
 
 
@@ -18,4 +20,4 @@ class KE(Compute):
         """Half the sum of m v^2."""
         mask = state.mask(self.group)
         v, mass = state.system.v[mask], state.system.atom_masses()[mask]
-        return float(0.5 * state.units.mvv2e * (mass @ (v * v).sum(axis=1)))
+        return float(0.5 * state.units.mvv2e * np.einsum("i,ij,ij->", mass, v, v))
