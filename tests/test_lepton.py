@@ -347,3 +347,15 @@ def test_long_sums_and_shared_definitions_are_no_burden():
     assert len(program.lines) < 5000
     chain = "a0;" + ";".join(f"a{k}=a{k + 1}*a{k + 1}" for k in range(60)) + ";a60=r/r"
     assert math.isclose(differentiate(chain, "r").value(0.5), 1.0)
+
+
+def test_logarithm_of_a_sum_of_gaussians_does_not_overflow():
+    """What inverts a distribution with several maxima; each exponential may be far below the other."""
+    def mixture(r):
+        return -mpmath.mpf("0.02") * mpmath.log(mpmath.exp(-((r - mpmath.mpf("1.3")) ** 2) / mpmath.mpf("0.01"))
+                                                + 2 * mpmath.exp(-((r - mpmath.mpf("1.6")) ** 2) / mpmath.mpf("0.005")))
+    r = [1.1, 1.3, 1.5, 2.0, 2.8]
+    energy, force = kernel_values(["-0.02*log(exp(-(r-1.3)^2/0.01)+2*exp(-(r-1.6)^2/0.005))"], r)[0].T
+    with mpmath.workdps(40):
+        assert energy == pytest.approx([float(mixture(mpmath.mpf(x))) for x in r], rel=1e-12, abs=1e-15)
+        assert force == pytest.approx([float(-mpmath.diff(mixture, mpmath.mpf(x))) for x in r], rel=1e-12, abs=1e-13)
