@@ -113,7 +113,7 @@ def unknown(category: str, name: str) -> InputError:
         return InputError(f"unknown command {name!r}{nearest(name, COMMANDS)}")
     said = "min_style" if category == "minimize" else f"{category} style"
     if (category, plain_name(name)) not in registry.REFUSED and is_of_lammps(category, name):
-        return InputError(f"{said} {name} of LAMMPS is not supported yet")
+        return InputError(f"{said} {name} of LAMMPS is not supported yet: run this script with LAMMPS")
     if category in FORCE_FIELD:
         return registry.unknown(category, name)
     there = f"; there are {' '.join(names(category))}" if category == "minimize" else ""
