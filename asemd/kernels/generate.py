@@ -143,8 +143,7 @@ def plain_source(function: Callable, name: str | None = None, real: bool = False
         Names whose truth is known: ``if NAME:`` keeps one branch only, so that a variant holds nothing it does not need.
     """
     tree = ast.parse(text_of(function))
-    tree = ast.fix_missing_locations(_Plain(real, vector, constants).visit(tree))
-    node = tree.body[0]
+    node = _Plain(real, vector, constants).visit(tree).body[0]
     if name:
         node.name = name
     return ast.unparse(node)

@@ -44,9 +44,11 @@ def machine() -> dict:
 
 
 def environment() -> dict[str, str]:
-    """Of the workers: this checkout, the libraries of wheels; a processor named in NUMBA_CPU_NAME gets a cache of its own."""
+    """Of the workers: this checkout, the libraries of wheels; a processor named in NUMBA_CPU_NAME gets a cache of its own. Bytecode is
+    kept, as that of an installed package is, even where the shell forbids it."""
     env = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_PROC_BIND": os.environ.get("OMP_PROC_BIND", "false")}
     env["LD_LIBRARY_PATH"] = os.pathsep.join(filter(None, [str(Path(sys.prefix) / "lib"), env.get("LD_LIBRARY_PATH")]))
+    env.pop("PYTHONDONTWRITEBYTECODE", None)
     if env.get("NUMBA_CPU_NAME") and not env.get("ASEMD_CACHE_DIR"):
         env["ASEMD_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"asemd-{env['NUMBA_CPU_NAME']}")
     return env
