@@ -126,6 +126,7 @@ def run(context: typer.Context,
         quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing; the log is written all the same.")] = False,
         compat: Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")] = None,
         dry: Annotated[bool, typer.Option("--dry", help="Read and bind all commands, report all problems, compute nothing.")] = False,
+        no_watchdog: Annotated[bool, typer.Option("--no-watchdog", help="Go on also when a run has come apart.")] = False,
         safe: Annotated[bool, typer.Option("--safe", help="For scripts from strangers: no shell, no python, no writing outside.")] = False,
         import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
         html: Annotated[str | None, typer.Option(help="Write a page to look at: curves, timing, plan and a molecule that turns.")] = None,
@@ -144,6 +145,7 @@ def run(context: typer.Context,
     if path is None and not options.convert:
         raise InputError("asemd run needs a script: asemd run in.file, or - for standard input (give it before -var, or with -in)")
     options.safe = safe
+    options.watchdog = options.watchdog and not no_watchdog
     if safe:
         from asemd.lammps.safety import guard
         guard(os.getcwd())

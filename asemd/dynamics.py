@@ -30,6 +30,8 @@ class MolecularDynamics(ASEMolecularDynamics):
         By default constant energy, `asemd.fix.NVE`. Their numbers are in the units of the force field (``atoms.calc.units``).
     groups : mapping, optional
         Name -> (n,) bool, for fixes that act on some atoms.
+    watchdog : bool
+        Stop a run that has come apart (`asemd.watchdog`).
     trajectory, logfile, loginterval, **kwargs
         As in ``ase.md``.
 
@@ -50,13 +52,13 @@ class MolecularDynamics(ASEMolecularDynamics):
     """
 
     def __init__(self, atoms, timestep: float, fixes: Sequence[Fix] | None = None, groups=None, trajectory=None, logfile=None,
-                 loginterval: int = 1, **kwargs):
+                 loginterval: int = 1, watchdog: bool = True, **kwargs):
         if not isinstance(atoms.calc, ForceField):
             raise InputError("asemd.MolecularDynamics needs atoms whose calculator is asemd.ForceField; other calculators run under ase.md")
         if fixes is None:
             from asemd.fix.nve import NVE
             fixes = [NVE()]
-        self.fixes, self.groups = list(fixes), dict(groups or {})
+        self.fixes, self.groups, self.watchdog = list(fixes), dict(groups or {}), watchdog
         self._held(atoms)
         named = [os.fspath(f) for f in (logfile, trajectory) if isinstance(f, (str, os.PathLike)) and f != "-"]
         self._last_good = f"{named[0]}.last_good.extxyz" if named else ""
@@ -105,6 +107,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._given = (calc, self.dt, list(self.fixes), dict(self.groups), held)
         self._loop = Loop(system, calc.interactions, calc.neighbor_settings(atoms), fixes, groups, self.dt / u["time"], self.nsteps)
         self._forces_are_own = not any("post_force" in fix.hooks() for fix in fixes)
+        self._loop.watchdog.on = self.watchdog
         self._loop.watchdog.path, self._loop.watchdog.save = self._last_good, self._save
         self._loop.setup(self.nsteps, self.nsteps + steps)
         self._from = atoms.get_positions(), system.box.unwrap(system.x, system.image)

@@ -89,6 +89,8 @@ class Watchdog:
         Where the last good frame is written when a run fails; empty: nowhere.
     explains : bool
         False: it stops runs, but keeps no frames and adds nothing to errors (for runs that are meant to find out where they break).
+    on : bool
+        False: it does not look at all; to be set before the set-up of a run.
     save : callable
         Writes a system to a path; by default a text dump with all digits.
     seconds : float
@@ -96,17 +98,19 @@ class Watchdog:
     """
 
     def __init__(self, loop):
-        self.loop, self.path, self.explains = loop, "", True
+        self.loop, self.path, self.explains, self.on = loop, "", True, True
         self.save = self._dump
         self.frames: list[Frame] = []
         self._energies: tuple[float, float] | None = None       # total and kinetic, of the start
         self.seconds, self._next, self._next_energy = 0.0, 0.0, 0.0
         self._spare, self.reach = 0, np.inf
-        self._limit = np.inf
+        self._limit, self._free = np.inf, False
 
     # ---- before the run -----------------------------------------------------------------------------------------------------------------
     def begin(self) -> None:
         """A run begins: its first frame is good, its energy is what later ones are compared with."""
+        if not self.on:
+            return
         loop, e = self.loop, self.loop.engine
         self.width = max(e.reach, *(1.0 / np.linalg.norm(np.linalg.inv(e.vectors), axis=0)))
         bond = _longest_bond(e.system)
@@ -119,6 +123,8 @@ class Watchdog:
 
     def again(self) -> None:
         """A run goes on, perhaps with other velocities."""
+        if not self.on:
+            return
         loop = self.loop
         self.first = self._built = self._since = loop.step
         self._atoms = loop.system.n
@@ -136,7 +142,7 @@ class Watchdog:
         SimulationError
         """
         e = self.loop.engine
-        if not e.terms:
+        if not e.terms or not self.on:
             return
         if compiled and e.farthest[0] <= self._limit:      # the loop has measured it
             return
@@ -152,6 +158,8 @@ class Watchdog:
 
     def after_build(self) -> None:
         """After a list was built: this is a good frame."""
+        if not self.on:
+            return
         self._built = self.loop.step
         if self._atoms != self.loop.system.n:       # some were lost, with their energy
             self._atoms, self._energies = self.loop.system.n, None
@@ -165,7 +173,7 @@ class Watchdog:
         ------
         SimulationError
         """
-        if time.perf_counter() > self._next:
+        if self.on and time.perf_counter() > self._next:
             self._timed(self._look)
 
     def energy(self, result) -> None:
@@ -281,7 +289,7 @@ class Watchdog:
         return self
 
     def __exit__(self, kind, error, trace) -> None:
-        if isinstance(error, SimulationError) and self.explains and not hasattr(error, "verdict"):
+        if isinstance(error, SimulationError) and self.on and self.explains and not hasattr(error, "verdict"):
             self.explain(error)
 
     def good_frame(self) -> Frame | None:
@@ -308,7 +316,7 @@ class Watchdog:
                 parts.append(f"strongest pull at step {frame.step}: {verdict.item}")
             parts += self._write(verdict)
             if not isinstance(error, LostAtoms) or verdict.item is not None:
-                verdict.advice = advice(verdict.item, loop.dt, loop.step - self.first)
+                verdict.advice = advice(verdict.item, loop.dt, loop.step - self.first, _kinetic(verdict.good, loop.units))
                 parts.append(f"try {', or '.join(verdict.advice)}")
             text = "; ".join([text, *parts])
         error.args = (text,)
@@ -335,6 +343,11 @@ class Watchdog:
         dump.formats["float"] = "%.17g"
         dump.write(Snapshot(system, None, {"all": np.ones(system.n, bool)}, self.loop.dt, system.step), system.step)
         dump.close()
+
+
+def _kinetic(system, units) -> float:
+    """Mean kinetic energy of an atom."""
+    return 0.5 * units.mvv2e * float(np.mean(system.atom_masses() * (system.v**2).sum(axis=1)))
 
 
 def _longest_bond(system) -> float:

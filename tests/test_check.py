@@ -57,7 +57,10 @@ def edit(text: str, *edits: tuple[str, str]) -> str:
     return text
 
 
-@pytest.mark.parametrize("text", [LJ, CHAIN, BUTANE], ids=["lj", "chain", "butane"])
+SWITCHED = BUTANE.replace("lj/cut/coul/cut 10.0", "lj/charmm/coul/charmm 8.0 10.0")
+
+
+@pytest.mark.parametrize("text", [LJ, CHAIN, SWITCHED], ids=["lj", "chain", "butane"])
 def test_healthy_scenes_raise_no_alarm(folder, text):
     report = check(text)
     assert not report.at_least("note"), report
@@ -83,6 +86,9 @@ BROKEN = {
     "large force": (edit(LJ, ("run 10", MOVED.format("0.3") + "run 10")), "first step", "error", None, "in a single step"),
     "atom outside": (edit(LJ, ("units lj", "units lj\nboundary p p f"), ("run 10", "set atom 7 z -0.5\nrun 10")), "atoms in the box",
                      "error", (7,), "outside the fixed faces along z"),
+    "cutoff in the well": (edit(LJ, ("lj/cut 2.5", "lj/cut 1.3")), "jump at the cutoff", "warning", (), "pair_modify shift yes"),
+    "shifted in the well": (edit(LJ, ("lj/cut 2.5", "lj/cut 1.3"), ("run 10", "pair_modify shift yes\nrun 10")), "jump at the cutoff",
+                            "note", (), "energy of types 1 and 1 does not jump"),
     "small box": (edit(LJ, ("0 4 0 4 0 4", "0 2 0 2 0 2"), ("lj/cut 2.5", "lj/cut 3.5")), "box and cutoff", "warning", (), "and itself"),
     "short damping": (edit(BUTANE, ("300.0 100.0", "300.0 5.0")), "damping", "warning", (), "5 steps"),
     "no damping time": (edit(BUTANE, ("300.0 100.0", "300.0 1.0")), "damping", "error", (), "too short"),
@@ -214,6 +220,26 @@ def test_force_turns_the_error_into_a_warning(folder):
     assert report.of("time step")[0].severity == "warning" and report.ok
 
 
+def test_jumps_are_those_of_the_formulas(folder):
+    """Of energy and force, and of charges, which count with the dielectric constant."""
+    text = edit(LJ, ("lj/cut 2.5", "lj/cut 1.3"))
+    found = check(text).of("jump at the cutoff")[0]
+    assert float(found.value.split()[0]) == pytest.approx(4 * (1.3**-6 - 1.3**-12) / 1.44, rel=0.02)
+    charged = edit(LJ, ("units lj", "units lj\natom_style charge\ndielectric 4.0"), ("lj/cut 2.5", "lj/cut/coul/cut 2.5"),
+                   ("run 10", "set type 1 charge 2.0\nrun 10"))
+    found = check(charged).of("jump at the cutoff")[0]
+    assert float(found.value.split()[0]) == pytest.approx((4.0 / 4.0 / 2.5 - 0.0163) / 1.44, rel=0.02)
+    assert found.severity == "warning" and "charges that end at a cutoff" in found.advice
+    smooth = edit(charged, ("lj/cut/coul/cut 2.5", "lj/charmm/coul/charmm 2.0 2.5"))
+    assert check(smooth).of("jump at the cutoff")[0].severity == "ok"
+
+
+def test_causes_come_first(folder):
+    """A bond near its limit is stiff: the timestep is not what is wrong."""
+    report = check(edit(LJ, ("create 1.44", "create 300.0"), ("timestep 0.005", "timestep 0.02")))
+    assert report.at_least("note")[0].name == "units" and report.worst == "error"
+
+
 def test_the_frequency_is_right(folder):
     """A dimer: omega = sqrt(k / mu), by the force constant and by Lanczos; the limit is 2 / omega."""
     report = check(DIMER)
@@ -264,6 +290,9 @@ def test_command(folder, capsys):
     data = json.loads(capsys.readouterr().out)
     assert data["worst"] == "error" and {f["name"] for f in data["findings"]} >= {"time step", "overlaps"}
     assert cli.main(["check", "in.x", "--force"]) == 0
+    Path("in.x").write_text(edit(LJ, ("run 10", MOVED.format("0.0") + "run 10")))
+    for more in ([], ["--json"], ["--force"], ["--run", "--budget", "1"]):
+        assert cli.main(["check", "in.x", *more]) == 2
     capsys.readouterr()
     Path("in.x").write_text(LJ.replace("units lj", "units l"))
     assert cli.main(["check", "in.x"]) == 1 and "in.x:1" in capsys.readouterr().err

@@ -80,8 +80,9 @@ def test_overlapping_atoms(tmp_path):
     assert v.item.kind == "pair" and v.item.distance < 0.3 and v.item.energy > 1e6
     assert v.good.step == 0 and v.path == str(tmp_path / "log.run.last_good.dump")
     for words in ("step ", f"pair between atoms {v.item.ids[0]} {v.item.ids[1]} (pair_style lj/cut, r = ", "log.run.last_good.dump",
-                  "try minimize", "nve/limit", "timestep "):
+                  "try minimize", "overlap", "pair_style soft", "nve/limit"):
         assert words in str(error), words
+    assert "timestep" not in str(error)     # no timestep helps there
     assert "\n" not in str(error)
 
 
@@ -311,8 +312,25 @@ def test_quiet_without_an_explanation():
 
 def test_advice():
     bond = Item("bond", "bond_style harmonic", 1, (1, 2), 1.0, 5.0, 100.0, 0.01, period=0.4)
-    assert advice(bond, 0.1, 5000) == ["timestep 0.02 (this bond vibrates with a period of 0.4, 4 steps)"]
+    assert advice(bond, 0.1, 5000, 1.0) == ["timestep 0.02 (this bond vibrates with a period of 0.4, 4 steps)"]
     pair = Item("pair", "pair_style lj/cut", 0, (1, 2), 0.1, 1e9, 1e11, 1e6, period=1e-6)
-    near, far = advice(pair, 0.004, 3), advice(pair, 0.004, 10**6)
-    assert near[0].startswith("minimize") and near[1] == "timestep 0.001" and far == ["timestep 0.001"]
-    assert advice(None, 1.0, 0) == ["timestep 0.25"]
+    near, far = advice(pair, 0.004, 3, 1.0), advice(pair, 0.004, 10**6, 1.0)
+    assert near[0].startswith("minimize") and "overlap" in near[0] and not any("timestep" in a for a in near) and far == ["timestep 0.001"]
+    assert advice(None, 1.0, 0, 1.0) == ["timestep 0.25"]
+
+
+def test_switched_off(tmp_path):
+    """Nothing is stopped, kept or written: the same run ends by itself, or where numbers are none."""
+    from asemd.cli import main
+    script = tmp_path / "in.fast"
+    script.write_text(MELT.format(n=4, dt=0.05) + "run 400\n")
+    log = tmp_path / "log"
+    assert main(["run", str(script), "--quiet", "--log", str(log)]) == 1 and (tmp_path / "log.last_good.dump").exists()
+    assert "run has come apart" in log.read_text() or "since the neighbour list" in log.read_text()
+    (tmp_path / "log.last_good.dump").unlink()
+    main(["run", str(script), "--quiet", "--log", str(log), "--no-watchdog"])
+    assert "come apart" not in log.read_text() and not (tmp_path / "log.last_good.dump").exists()
+    with Lammps(cmdargs=["-screen", "none", "-log", "none", "-watchdog", "no"]) as lmp:
+        lmp.commands_string(MELT.format(n=3, dt=0.004) + "run 10")
+        dog = lmp.session.loop.watchdog
+        assert not dog.on and not dog.frames and dog.seconds == 0.0

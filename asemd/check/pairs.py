@@ -14,19 +14,21 @@ INNERMOST = 1e-3    # of the cutoff
 TYPES = 60          # of more types than this only pairs of the same type are looked at
 
 
-def interaction(case, i: int, j: int, kind: int = 0) -> Callable[[float], tuple[float, float]]:
-    """The pair energy of types `i` and `j` without their charges, and its slope: functions of the distance, ``inf`` where there is none.
+def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callable[[float], tuple[float, float]]:
+    """The pair energy of types `i` and `j`, and its slope: functions of the distance, ``inf`` where there is none.
 
     Parameters
     ----------
     kind : int
         1, 2, 3: with the weights of 1-2, 1-3, 1-4 pairs.
+    qq : float
+        Product of the charges and the Coulomb constant, energy times distance; 0: without what depends on charges.
     """
     pieces = []
     rules = case.engine.exclusions
     for term in tabled(case):
-        weight = float(term.weights(rules.weight_lj, rules.weight_coul)[0][kind])
-        if weight == 0.0 or term.molecules == ("other" if kind else "same"):
+        weight, coulomb = (float(w[kind]) for w in term.weights(rules.weight_lj, rules.weight_coul))
+        if weight == coulomb == 0.0 or term.molecules == ("other" if kind else "same"):
             continue
         row = constant = array = 0
         for part in term.style.parts:
@@ -34,8 +36,9 @@ def interaction(case, i: int, j: int, kind: int = 0) -> Callable[[float], tuple[
             cut2, offset = float(table[row, i, j]), float(table[row + 1, i, j])
             values = [float(table[row + 2 + k, i, j]) for k in range(len(part.rows))]
             values += [float(c) for c in numbers[constant:constant + len(part.constants)]] + list(arrays[array:array + len(part.arrays)])
-            if cut2 > 0.0 and not part.charged:
-                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values, weight))
+            if cut2 > 0.0 and (qq or not part.charged):
+                values = [qq] * part.charged + values
+                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values, coulomb if part.charged else weight))
             row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
     def of(r: float) -> tuple[float, float]:
@@ -83,7 +86,12 @@ def wall(case, energies, kind: int = 0) -> dict[tuple[int, int], tuple[float, ..
 
 
 def _cut(case, i: int, j: int) -> float:
-    return max((math.sqrt(float(t.tables.rows[t.cut_rows, i, j].max())) for t in tabled(case)), default=0.0)
+    return max(cutoffs(case, i, j), default=0.0)
+
+
+def cutoffs(case, i: int, j: int) -> list[float]:
+    """Where parts of the interaction of two types end, in ascending order."""
+    return sorted({math.sqrt(float(c)) for t in tabled(case) for c in np.ravel(t.tables.rows[t.cut_rows, i, j]) if c > 0.0})
 
 
 def _wall(of: Callable[[float], tuple[float, float]], cut: float, energies) -> tuple[float, ...]:

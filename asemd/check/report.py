@@ -12,6 +12,7 @@ from asemd.finding import SEVERITIES, Finding
 from asemd.text_table import Table
 
 FAILED = 2
+CAUSES = ("units", "bond limits", "exclusions", "rest lengths")      # other findings, errors too, may follow from these
 WIDTH = 100
 
 
@@ -58,9 +59,13 @@ class Report:
         return [f for f in self.findings if f.severity == severity]
 
     def at_least(self, severity: str) -> list[Finding]:
-        """Findings of this severity or a worse one, the worst first."""
-        rank = SEVERITIES.index(severity)
-        return sorted((f for f in self.findings if f.rank >= rank), key=lambda f: -f.rank)
+        """Findings of this severity or a worse one, the worst first; before them warnings of what may have caused them."""
+        rank, worst = SEVERITIES.index(severity), max((f.rank for f in self.findings), default=0)
+
+        def order(f: Finding) -> tuple[int, bool]:
+            cause = f.name in CAUSES and f.severity == "warning"
+            return -worst if cause else -f.rank, not cause
+        return sorted((f for f in self.findings if f.rank >= rank), key=order)
 
     @property
     def worst(self) -> str:

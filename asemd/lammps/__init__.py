@@ -28,7 +28,7 @@ class Lammps(AtomArrays, Library):
     name : str
         Not used; there for compatibility.
     cmdargs : sequence of str, optional
-        LAMMPS's switches: ``-screen -log -echo -nocite -var -in -sf -pk`` and short forms, and ``-compat lammps``.
+        LAMMPS's switches: ``-screen -log -echo -nocite -var -in -sf -pk`` and short forms, ``-compat lammps`` and ``-watchdog no``.
     ptr, comm
         Must be None.
 

@@ -171,6 +171,7 @@ class Driver:
                      scene.groups, scene.dt)
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
             loop.warn = session.warn
+            loop.watchdog.on = session.switches.watchdog
             loop.watchdog.path = f"{session.log.path}.last_good.dump" if session.log.path else ""
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:

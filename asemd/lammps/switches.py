@@ -14,7 +14,7 @@ KNOWN: dict[str, tuple[int, int | None]] = {
     "var": (2, None), "log": (1, 1), "screen": (1, 1), "echo": (1, 1), "nocite": (0, 0), "cite": (1, 1), "in": (1, 1), "suffix": (1, 3),
     "package": (1, None), "kokkos": (1, None), "nonbuf": (0, 0), "partition": (1, None), "plog": (1, 1), "pscreen": (1, 1),
     "skiprun": (0, 0), "restart2data": (2, None), "restart2dump": (4, None),
-    "compat": (1, 1), "threads": (1, 1), "precision": (1, 1), "cap": (1, 1)}
+    "compat": (1, 1), "threads": (1, 1), "precision": (1, 1), "cap": (1, 1), "watchdog": (1, 1)}
 
 
 @dataclass
@@ -45,6 +45,7 @@ class Switches:
     threads: int = 1
     precision: str = "double"
     cap: int | None = None         # limit on the steps of every run and minimisation
+    watchdog: bool = True          # stop runs that have come apart, see docs/check.md
     nocite: bool = False
     nonbuf: bool = False
     convert: list[str] = field(default_factory=list)    # commands that -restart2data and -restart2dump stand for
@@ -105,6 +106,8 @@ def _apply(out: Switches, name: str, word: str, values: list[str]) -> None:
         out.threads = whole(values[0], word)
     elif name == "cap":
         out.cap = whole(values[0], word)
+    elif name == "watchdog":
+        out.watchdog = one_of(values[0], ("yes", "no"), word) == "yes"
     elif name == "precision":
         out.precision = one_of(values[0], ("double", "mixed"), word)
     elif name == "compat":
