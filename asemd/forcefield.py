@@ -51,6 +51,10 @@ class Interactions:
     compat : str
         ``"lammps"``: LAMMPS's forces also where they are not minus the gradient of its energy.
     dielectric : float
+    kspace : str
+        Words of ``kspace_style``.
+    kspace_modify : dict
+        Keyword -> value of `asemd.kspace_settings`, those that were given since the style was chosen.
     """
 
     uses: dict[str, list[Use]] = field(default_factory=lambda: {c: [] for c in CATEGORIES})
@@ -67,6 +71,8 @@ class Interactions:
     table: dict[str, float] = field(default_factory=dict)
     compat: str = ""
     dielectric: float = 1.0
+    kspace: str = "none"
+    kspace_modify: dict[str, Any] = field(default_factory=dict)
 
     bond, angle, dihedral, improper, pair = map(_property, CATEGORIES)
 

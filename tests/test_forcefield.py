@@ -363,7 +363,7 @@ def test_commands():
     scene.system = None
     for name, text, message in (("kspace_style", "pppm 1e-4", "periodic.*p p fs"), ("kspace_style", "msm 1e-4", "not supported"),
                                 ("kspace_style", "pppn", "did you mean pppm"), ("kspace_style", "", "name"),
-                                ("kspace_modify", "order 5", "kspace_style"),
+                                ("kspace_modify", "order 5", "before a kspace_style"), ("kspace_modify", "ordr 5", "did you mean order"),
                                 ("dielectric", "0", "must not be 0"), ("dielectric", "x", "number"), ("dielectric", "", "one value"),
                                 ("improper_coeff", "1 1 1", "before improper_style")):
         with pytest.raises(InputError, match=message):

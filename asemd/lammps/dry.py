@@ -23,6 +23,7 @@ KINDS = ("pair", "bond", "angle", "dihedral", "improper")
 # what an error says -> commands of which one that failed before explains it
 CONSEQUENCES = {**{f"(before|must define) {k}_style": (f"{k}_style",) for k in KINDS},
                 **{f"All {k} coeffs are not set": (f"{k}_style", f"{k}_coeff", *BOX, "include", "jump") for k in KINDS},
+                "before a kspace_style": ("kspace_style",),
                 "no mass for atom type": ("mass", "pair_style", *BOX, "include", "jump")}
 ROUNDS = 2      # how often a jump is followed from one line
 

@@ -18,6 +18,7 @@ def run(session, args):
     if name == "none":
         if len(args) > 1:
             raise InputError(f"kspace_style none takes no arguments, got {' '.join(args[1:])}")
+        session.scene.interactions.kspace, session.scene.interactions.kspace_modify = "none", {}
         return
     scene = session.scene
     raise refusal(name, scene.system.box.boundary if scene.system is not None else scene.boundary)
