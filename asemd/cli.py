@@ -13,6 +13,7 @@ import typer
 
 from asemd import __version__
 from asemd.errors import AsemdError, InputError, InputWarning
+from asemd.lammps import command_line
 from asemd.lammps import switches as lammps_switches
 from asemd.lammps.switches import Switches
 
@@ -41,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         # LAMMPS's switches have one dash and several values, which typer cannot read: they are taken out first
-        words, taken = take_switches(words)
+        words, taken = command_line.split(words, COMMANDS)
         return int(application(words)(words, standalone_mode=False, obj=taken) or 0)
     except KeyboardInterrupt:
         return complain("interrupted", INTERRUPTED)
@@ -73,24 +74,6 @@ def complain(message: str, status: int = 1) -> int:
     sys.stdout.flush()
     print(f"ERROR: {message}", file=sys.stderr, flush=True)
     return status
-
-
-def take_switches(words: list[str]) -> tuple[list[str], Switches]:
-    """Split a command line into what typer reads and LAMMPS's own switches."""
-    rest: list[str] = []
-    taken: list[str] = []
-    names = {*lammps_switches.SHORT, *lammps_switches.KNOWN}
-    i = 0
-    while i < len(words):
-        end = i + 1
-        if words[i].startswith("-") and not words[i].startswith("--") and words[i][1:] in names:
-            while end < len(words) and not lammps_switches.is_switch(words[end]):
-                end += 1
-            taken += words[i:end]
-        else:
-            rest.append(words[i])
-        i = end
-    return rest, lammps_switches.parse(taken)
 
 
 def application(words: list[str]) -> typer.Typer:
@@ -143,7 +126,8 @@ def run(context: typer.Context,
     import_files(import_)
     path = script or options.input
     if path is None and not options.convert:
-        raise InputError("asemd run needs a script: asemd run in.file, or - for standard input (give it before -var, or with -in)")
+        raise InputError("asemd run needs a script: asemd run in.file, or - for standard input (before -var, which takes all words behind "
+                         "it that are no file, or with -in)")
     options.safe = safe
     options.watchdog = options.watchdog and not no_watchdog
     if safe:

@@ -12,6 +12,7 @@ from lj_cell import BASE
 
 import asemd
 from asemd import cli
+from asemd.lammps import command_line
 
 
 @pytest.fixture
@@ -40,6 +41,10 @@ def test_switches_and_options(script, capsys):
     (["run", "nofile"], "cannot open input script nofile"), (["run"], "needs a script"),
     (["run", "in.x", "--precision", "half"], "--precision"),
     (["run", "in.x", "--thread", "2"], "--thread"), (["run", "in.x", "-foo"], "-f"), (["frobnicate"], "frobnicate"), ([], "command"),
+    (["rnu", "in.x"], "did you mean run"), (["in.typo"], "neither a command nor a file"), (["in.typo", "-var", "n", "2"], "in.typo"),
+    (["run", "-var", "n", "1", "in.typo"], "before -var"), (["-var", "n", "1"], "needs a script"),
+    (["-vra", "n", "1", "in.x"], "did you mean var"),
+    (["in.x", "-var", "n"], "needs a name"), (["run", "in.x", "bad"], "bad"),
     (["run", "bad"], "bad:2: run x"),
 ])
 def test_failures_end_with_one_message(script, capsys, arguments, message):
@@ -47,6 +52,33 @@ def test_failures_end_with_one_message(script, capsys, arguments, message):
     assert cli.main(arguments) == 1
     last = capsys.readouterr().err.strip().splitlines()[-1]
     assert last.startswith("ERROR: ") and message in last
+
+
+@pytest.mark.parametrize("line", [
+    "-var n 6 run in.x", "run -var n 6 in.x", "run in.x -var n 6", "-in in.x -var n 6", "-var n 6 -in in.x",
+    "in.x -v n 6", "-v n 6 in.x", "--in in.x --var n 6", "run -var n 6 -echo screen in.x", "run -nocite in.x -var n 6",
+    "-sf opt -v n 6 -i in.x", "-sf hybrid gpu omp in.x -v n 6", "run -pk omp 2 -v n 6 in.x",
+    "run -var n 6 --threads 1 in.x", "run in.x --html page.html -var n 6", "run --html page.html -var n 6 in.x",
+    "run --import styles.py -var n 6 in.x", "-v n 6 run --log none in.x", "-threads 1 in.x -v n 6",
+    "run -var n 6 --html=page.html in.x"])
+def test_switches_in_any_order(script, capsys, line):
+    """As people type them: LAMMPS's own order without a command, the script before, between and behind the switches."""
+    for name in ("styles.py", "page.html"):
+        (script / name).write_text("")
+    assert cli.main(line.split()) == 0
+    assert "for 6 steps" in capsys.readouterr().out
+
+
+def test_values_stay_with_their_switch(script):
+    """A file or a command's name may be a value where the script stands elsewhere."""
+    (script / "data").write_text("")
+    words, switches = command_line.split("-in in.x -var list in.x run data".split(), cli.COMMANDS)
+    assert words == ["run"] and switches.input == "in.x" and switches.variables == [("list", ["in.x", "run", "data"])]
+    words, switches = command_line.split("run in.x -var list in.x data -var x -0.5 -v e -1".split(), cli.COMMANDS)
+    assert words == ["run", "in.x"]
+    assert switches.variables == [("list", ["in.x", "data"]), ("x", ["-0.5"]), ("e", ["-1"])]
+    assert command_line.split("-var x in.x".split(), cli.COMMANDS)[1].variables == [("x", ["in.x"])]
+    assert command_line.split(["-h"], cli.COMMANDS)[0] == ["--help"]
 
 
 def test_every_unknown_name_is_reported(script, capsys):

@@ -64,7 +64,7 @@ def parse(words: Sequence[str]) -> Switches:
     words = [str(w) for w in words]
     while i < len(words):
         word = words[i]
-        name = word.lstrip("-")
+        name = word[2:] if word.startswith("--") else word[1:]
         name = SHORT.get(name, name)
         if not word.startswith("-") or name not in KNOWN:
             raise InputError(f"unknown switch {word!r}{nearest(name, KNOWN)}")
