@@ -20,6 +20,9 @@ CASES = {
     "langevin tally": ([NVE, "fix 2 some langevin 0 0 50 77 tally yes scale 1 2.0 zero yes"], ["f_2", "ecouple"]),
     "langevin gjf vfull": (["fix 2 all langevin 0 0 50 77 gjf vfull", NVE], []),
     "langevin gjf strong": (["fix 2 all langevin 0 0 0.3 77 zero yes gjf vfull", NVE], []),
+    **{f"gjf method {m} {v}": ([f"fix 1 all gjf 0 0 {damp} 77 vel {v} method {m}"], [])
+       for m, v, damp in (("1", "vhalf", 1.5), ("2", "vfull", 1.5), ("3", "vhalf", 3.0), ("4", "vfull", 50), ("5", "vhalf", 0.5),
+                          ("6", "vfull", 0.5), ("7 0.3", "vhalf", 0.9), ("8", "vhalf", 2.0))},
     "temp/rescale": ([NVE, "fix 2 all temp/rescale 1 300 400 10 0.5"], ["f_2"]),
     "temp/rescale every": ([NVE, "fix 2 some temp/rescale 3 300 400 10 1.0"], ["f_2"]),
     "temp/rescale variable": ([NVE, "fix 2 some temp/rescale 3 v_warm 400 10 1.0"], ["f_2"]),

@@ -27,7 +27,8 @@ def session():
 @pytest.mark.parametrize("line", [
     "nve", "nve/limit 0.1", "nvt temp 300.0 310.0 100.0 tchain 3 tloop 1", "nvt temp 1.0 1.0 1.0 tchain 1 tloop 2 drag 0.5",
     "langevin 1.0 2.0 0.5 77", "langevin v_e 1.0 0.5 77 scale 2 3.0 tally yes zero yes", "langevin 1.0 1.0 0.5 77 gjf vhalf",
-    "langevin 1.0 1.0 0.5 77 tally yes gjf vfull", "baoab 1.0 2.0 0.5 77", "baoab v_a 2.0 0.5 77", "temp/rescale 5 1.0 2.0 0.1 0.5",
+    "langevin 1.0 1.0 0.5 77 tally yes gjf vfull", "baoab 1.0 2.0 0.5 77", "baoab v_a 2.0 0.5 77",
+    "gjf 1.0 2.0 0.5 77 vel vhalf method 1", "gjf v_a 2.0 0.5 77 vel vfull method 7 0.4", "temp/rescale 5 1.0 2.0 0.1 0.5",
     "temp/berendsen v_a 2.0 0.5", "setforce NULL 0.0 v_a region box", "addforce 0.0 v_e v_a every 2 region box energy v_a",
     "addforce 1.0 0.0 0.0", "enforce2d", "momentum 10 linear 1 0 1 angular rescale", "momentum 1 angular",
 ])
@@ -53,6 +54,9 @@ def test_compute_round_trip(line, session):
     ("langevin 1 1 1 0", "seed"),
     ("langevin 1 1 1 1.5", "whole"), ("langevin 1 1 1 1 gjf vhal", "did you mean vhalf"), ("langevin 1 1 1 1 gjf", "1 value"),
     ("baoab 1 1 1", "needs Tstart"), ("baoab 1 1 0 1", "damping"), ("baoab 1 1 1 0", "seed"), ("baoab 1 1 1 1 tally yes", "needs Tstart"),
+    ("gjf 1 1 1", "needs Tstart"), ("gjf 1 1 0 1", "damping"), ("gjf 1 1 1 0", "seed"), ("gjf 1 1 1 1 vel vhal", "did you mean vhalf"),
+    ("gjf 1 1 1 1 method 9", "from 1 to 8"), ("gjf 1 1 1 1 method 7", "2 values"), ("gjf 1 1 1 1 method 7 1.0", "between 0 and 1"),
+    ("gjf 1 1 1 1 method x", "whole"), ("gjf 1 1 1 1 vel", "1 value"), ("gjf 1 1 1 1 zero yes", "unknown keyword"),
     ("baoab -1 1 1 1", "negative"), ("langevin 1 1 1 1 omega yes", "omega"),
     ("langevin -1 1 1 1", "negative"), ("langevin 1 1 1 1 talli yes", "did you mean tally"), ("langevin 1 1 1 1 scale 1", "2 values"),
     ("langevin 1 1 1 1 tally maybe", "yes or no"), ("langevin v_b 1 1 1", "undefined variable b"), ("temp/rescale 0 1 1 1 1", "at least 1"),

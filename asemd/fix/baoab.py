@@ -24,6 +24,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.fix import hook
 from asemd.fix.formula import write
+from asemd.fix.nve import NVE
 from asemd.fix.thermostat import Thermostat
 from asemd.kernels.random import normal
 from asemd.kernels.threads import reduce_sum
@@ -120,15 +121,7 @@ class BAOAB(Thermostat):
         if th.tid == 0:
             p[8] += p[7] * given
 
-    @hook
-    def final_integrate(th, s, p, a):
-        bit, half, mine = np.int32(np.int64(p[0])), 0.5 * th.dt, slice(th.lo, th.hi)
-        mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
-        for d in range(3):
-            v, f = s.v[d, mine], s.f[d, mine]
-            for i in range(v.size):
-                if mask[i] & bit != 0:
-                    v[i] += half * inverse_mass[i] * f[i]
+    final_integrate = staticmethod(NVE.final_integrate)     # the last B
 
     def scalar(self) -> float:
         """Energy given to the heat bath so far, energy units."""

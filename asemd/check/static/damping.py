@@ -45,7 +45,7 @@ def _judge(case: Case, fix, word: str, time: float) -> Finding:
     usual = 1000.0 if word == "pressure" else 100.0
     text = f"Fix {fix.id} ({fix.style}) couples the {word} with a damping time of {time:g}, {steps:.3g} steps"
     advice = f"usual are {usual:g} steps: {usual * dt:g}"
-    if frictional and steps < low and (fix.style == "baoab" or getattr(fix, "gjf", "no") != "no"):
+    if frictional and steps < low and (fix.style in ("baoab", "gjf") or getattr(fix, "gjf", "no") != "no"):
         severity = "note" if steps < 1.0 else "ok"
         return Finding(severity, name, f"{text}: motion is diffusive, its positions are right for any friction.", value=time, limit=dt)
     if steps < least:
@@ -60,5 +60,5 @@ def _judge(case: Case, fix, word: str, time: float) -> Finding:
     else:
         return Finding("ok", name, f"{text}.", value=time, limit=low * dt)
     if frictional and word == "temperature":
-        advice += "; fix baoab, and the keyword gjf of fix langevin, stay right at any friction"
+        advice += "; fix baoab, fix gjf and the keyword gjf of fix langevin stay right at any friction"
     return Finding(severity, name, f"{text}: {end}.", value=time, limit=limit * dt, advice=advice)
