@@ -130,8 +130,9 @@ class GJF(Thermostat):
         if self.method == OWN:
             c3 = c1 * (math.log(c2) / g) ** 2
         ramp = (0.0, 0.0) if variable else (self.start, self.stop)
-        return np.array([loop.group_bit(self.group), self.seed, variable, *ramp, 0.5 * (1.0 - c2) / c3 * loop.units.boltz / loop.units.mvv2e,
-                         math.sqrt(c1), math.sqrt(c3), c2 / math.sqrt(c1), math.sqrt(c3 / c1), self.velocity == "vhalf"], dtype=float)
+        impulse = 0.5 * (1.0 - c2) / c3 * loop.units.boltz / loop.units.mvv2e
+        return np.array([loop.group_bit(self.group), self.seed, variable, *ramp, impulse, math.sqrt(c1), math.sqrt(c3), c2 / math.sqrt(c1),
+                         math.sqrt(c3 / c1), self.velocity == "vhalf"], dtype=float)
 
     def atom_arrays(self, loop) -> np.ndarray:
         """Columns: the impulse / 2 m (3), the velocity at the position (3), that of the half step (3), the root of a variable's target."""
