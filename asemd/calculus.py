@@ -20,6 +20,9 @@ from typing import Any, NamedTuple
 from asemd.cache_folder import cache_folder
 
 
+LARGE, DEEP = 60, 9       # operations and nested functions of a formula that sympy still differentiates as a whole
+
+
 class Source(NamedTuple):
     """Statements that set names from ``x`` and ``p0``, ``p1``, ..., energy and slope thereafter, and each ``p`` from ``c0``, ``c1``, ...;
     the second derivative after statements of its own."""
@@ -62,13 +65,15 @@ def differentiated(program: tuple[str, ...]) -> Source:
             return values[int(word[1:])]
         return x if word == "x" else sympy.Symbol(word, real=True) if word[0] == "c" else sympy.sympify(word)
 
+    if large(program):
+        return stepwise(program)
     for line in program:
         name, *words = line.split()
         values.append(functions[name](*map(operand, words)))
     near_one = ReplaceOptim(lambda e: isinstance(e, sympy.log) and e.args[0].is_Add and 1 in e.args[0].args, lambda e: log1p(e.args[0] - 1))
     complement = ReplaceOptim(a - a * sympy.erf(b), a * sympy.erfc(b))
     # not log1p_opt: it takes sums of exponentials apart into pieces that overflow
-    energy = optimize(values[-1], [near_one, complement, expm1_opt, cosm1_opt])
+    energy = optimize(values[-1], [near_one, *[complement] * values[-1].has(sympy.erf), expm1_opt, cosm1_opt])
     constants: dict[Any, Any] = {}
 
     def fold(e):
@@ -102,6 +107,88 @@ def differentiated(program: tuple[str, ...]) -> Source:
     bend_lines, (bend,) = written(fold(sympy.diff(slope, x)))
     write = printer()[0]
     return Source(tuple(lines), *texts, tuple(write(e).replace("numpy.", "np.") for e in constants), tuple(bend_lines), bend)
+
+
+def large(program: tuple[str, ...]) -> bool:
+    """Whether sympy would take long over the formula as a whole: many operations with all definitions put in, or deeply nested ones."""
+    size, depth = {}, {}
+    for k, line in enumerate(program):
+        name, *words = line.split()
+        parts = [w for w in words if w in size]
+        size[f"t{k}"] = 1 + sum(size[w] for w in parts)
+        depth[f"t{k}"] = max((depth[w] for w in parts), default=0) + (name not in ("add", "sub", "neg", "mul", "same"))
+    return size[f"t{len(program) - 1}"] > LARGE or max(depth.values()) > DEEP
+
+
+def stepwise(program: tuple[str, ...]) -> Source:
+    """Value, derivative and second derivative by the chain rule, operation by operation; the time grows with the length of the formula."""
+    import sympy
+
+    x, functions = sympy.Symbol("x", real=True), operations()
+    constants: dict[Any, str] = {}
+    steps: list[tuple[Any, Any, int]] = []         # a symbol, what it stands for, and which derivative of an operation it is
+    values: list[tuple] = []        # value, derivative and second derivative of each operation
+    moving = {x}
+
+    def operand(word: str) -> tuple:
+        if word[0] == "t":
+            return values[int(word[1:])]
+        if word == "x":
+            return x, sympy.Integer(1), sympy.Integer(0)
+        return sympy.Symbol(word, real=True) if word[0] == "c" else sympy.sympify(word), sympy.Integer(0), sympy.Integer(0)
+
+    def named(e, order: int):
+        """A symbol for the value of an expression that is not one."""
+        if not (e.free_symbols & moving) or e.is_Symbol:
+            return e
+        symbol = sympy.Symbol(f"{'uvw'[order]}{len(steps)}", real=True)
+        steps.append((symbol, e, order))
+        moving.add(symbol)
+        return symbol
+
+    for line in program:
+        name, *words = line.split()
+        operands = [operand(w) for w in words]
+        if not any(v.free_symbols & moving for v, *_ in operands):
+            values.append((functions[name](*(v for v, *_ in operands)), sympy.Integer(0), sympy.Integer(0)))
+            continue
+        if name in ("add", "sub", "neg", "same"):
+            values.append(tuple(functions[name](*parts) for parts in zip(*operands)))
+            continue
+        operands = [tuple(named(e, order) for order, e in enumerate(triple)) for triple in operands]
+        dummies = [sympy.Dummy(real=True) for _ in operands]
+        f, back = functions[name](*dummies), {d: v for d, (v, *_) in zip(dummies, operands)}
+        whole, bend = functions[name](*(v for v, *_ in operands)), sympy.Integer(0)
+        slope = sympy.Add(*(f.diff(d).xreplace(back) * a[1] for d, a in zip(dummies, operands)))
+        for d, a in zip(dummies, operands):
+            bend += f.diff(d).xreplace(back) * a[2]
+            bend += sum(f.diff(d, d2).xreplace(back) * a[1] * b[1] for d2, b in zip(dummies, operands))
+        values.append(tuple(named(e, order) for order, e in enumerate((whole, slope, bend))))
+
+    def fold(e):
+        """What does not hold x becomes one constant; whole powers become products."""
+        if e.is_number or e in (sympy.true, sympy.false) or e in moving:
+            return e
+        if isinstance(e, sympy.Expr) and not e.free_symbols & moving:
+            return sympy.Symbol(constants.setdefault(e, f"p{len(constants)}"), real=True)
+        if e.is_Pow and e.exp.is_Integer and e.exp != -1:
+            base = fold(e.base)
+            return functions["whole"](base if e.exp > 0 else functions["recip"](base), abs(e.exp.p))
+        return e.func(*map(fold, e.args))
+
+    def written(highest: int, *results) -> tuple[list[str], list[str]]:
+        write, lines = printer()
+        for symbol, e, order in steps:
+            if order <= highest:
+                text = write(fold(e))
+                lines.append(f"{symbol} = {text}")
+        texts = [write(fold(e)) for e in results]
+        return [line.replace("numpy.", "np.") for line in lines], [text.replace("numpy.", "np.") for text in texts]
+
+    lines, (energy, slope) = written(1, *values[-1][:2])
+    bend_lines, (bend,) = written(2, values[-1][2])
+    write = printer()[0]
+    return Source(tuple(lines), energy, slope, tuple(write(e).replace("numpy.", "np.") for e in constants), tuple(bend_lines), bend)
 
 
 def divided(energy, x):

@@ -19,7 +19,7 @@ import numpy as np
 from asemd.calculus import source_of
 from asemd.errors import InputError, nearest
 
-TOKEN = re.compile(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])")
+TOKEN = re.compile(r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/^(),])", re.ASCII)
 VARIABLE = re.compile(r"(?<![A-Za-z0-9_])v_(\w+)")
 ZBL = ("zbl energy", "zbl length")     # constants of the function zbl; it exists where they are given
 ARGUMENT = "x"      # the variable in the written source

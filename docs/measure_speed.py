@@ -411,6 +411,9 @@ def measure(category: str, name: str) -> dict:
 
 
 def main() -> int:
+    if any(word.startswith("-") for word in sys.argv[1:]):
+        print(__doc__)
+        return 0 if {"-h", "--help"} & set(sys.argv) else 2
     given = [tuple(name.split(" ", 1)) for name in sys.argv[1:] if " " in name]
     families = [name for name in sys.argv[1:] if " " not in name]
     given += [(c, n) for c, n in measured() if c in families]

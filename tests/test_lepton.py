@@ -306,6 +306,7 @@ def test_pair_text_and_refusals():
     ("min(r)", "min needs 2 arguments, got 1"), ("sin(r,1)", "sin needs 1 argument, got 2"), ("sin()", r"value is missing before '\)'"),
     ("r%2", "'%' has no meaning at character 2"), ("1e400*r", "too large"), ("k*r;v=3;k=v*2", "v is used after its definition"),
     ("r;3", "after a semicolon comes a definition"), ("r*k;k=", "value is missing at character 7"), ("(" * 3000 + "r", "nested too deeply"),
+    ("r²", "'²' has no meaning at character 2"), ("٣*r", "'٣' has no meaning at character 1"),
     ("min(r,1", r"'\(' without a '\)' at character 4"), ("zbl(6,6,r)", "unknown function zbl"),
 ])
 def test_messages(text, message):
@@ -359,3 +360,22 @@ def test_logarithm_of_a_sum_of_gaussians_does_not_overflow():
     with mpmath.workdps(40):
         assert energy == pytest.approx([float(mixture(mpmath.mpf(x))) for x in r], rel=1e-12, abs=1e-15)
         assert force == pytest.approx([float(-mpmath.diff(mixture, mpmath.mpf(x))) for x in r], rel=1e-12, abs=1e-13)
+
+
+@pytest.mark.parametrize("text", [
+    "+".join(f"exp(-{k}*(r-0.{k})^2)" for k in range(30)), "sin(" * 60 + "r" + ")" * 60, "abs(" * 40 + "r" + ")" * 40,
+    "r" + "/(1+r" * 30 + ")" * 30, "a0;" + ";".join(f"a{k}=sin(a{k + 1})*a{k + 1}" for k in range(12)) + ";a12=r+2"])
+def test_large_and_deep_formulas_take_the_chain_rule(text):
+    """Whole, they would keep sympy for minutes; value, slope and second derivative are those of small differences."""
+    made = differentiate(text, "r")
+    names = {"np": np, "math": math, **{f"p{k}": np.float64(v) for k, v in enumerate(made.constants)}}
+
+    def evaluate(x, lines, *results):
+        here = {**names, "x": np.float64(x)}
+        exec("\n".join(lines), here)
+        return [float(eval(result, here)) for result in results]
+    h = 1e-5
+    (low, low_slope), (_, slope), (high, high_slope) = (evaluate(0.7 + d, made.lines, made.energy, made.slope) for d in (-h, 0.0, h))
+    bend, = evaluate(0.7, made.bend_lines, made.bend)
+    assert slope == pytest.approx((high - low) / (2 * h), rel=1e-7, abs=1e-8)
+    assert bend == pytest.approx((high_slope - low_slope) / (2 * h), rel=1e-7, abs=1e-8)
