@@ -2,8 +2,17 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+
+LINE = 300       # characters of a line of the user's that a message repeats
+
+
+def readable(text: str, longest: int) -> str:
+    """Text for a terminal: control characters as Python writes them, cut when it is long."""
+    text = text if len(text) <= longest else f"{text[:longest]}..."
+    return "".join(c if c.isprintable() or c in "\n\t\u00a0" else repr(c)[1:-1] for c in text)
 
 
 @dataclass(frozen=True)
@@ -16,7 +25,7 @@ class Where:
 
     def __str__(self) -> str:
         place = f"{self.file}:{self.line}" if self.file else f"line {self.line}"
-        return f"{place}: {self.text.strip()}" if self.text.strip() else place
+        return f"{place}: {readable(self.text.strip(), LINE)}" if self.text.strip() else place
 
 
 class AsemdError(Exception):
@@ -39,7 +48,9 @@ class InputError(AsemdError):
         self.message, self.where = message, where
 
     def __str__(self) -> str:
-        return f"{self.message} ({self.where})" if self.where else self.message
+        # a word that goes on and on is no name
+        message = re.sub(rf"\S{{{LINE},}}", lambda word: readable(word[0], LINE), self.message)
+        return f"{message} ({self.where})" if self.where else message
 
     def at(self, where: Where) -> InputError:
         """The same error with a place; a place that is already there stays."""

@@ -27,7 +27,7 @@ KEPT = ("index", "loop", "world", "universe", "uloop", "file", "atomfile")      
 UNIVERSE = ("universe", "uloop")
 STEPPED = ("index", "loop", *UNIVERSE, "file", "atomfile")                      # `next` moves them on
 FORMULAS = ("equal", "atom", "vector")
-FORMAT = r"%[-0 ]*\d*(\.\d+)?[eEfFgG]"
+FORMAT = r"%[-0 ]*\d{0,3}(\.\d{1,3})?[eEfFgG]"
 
 
 @dataclass

@@ -32,7 +32,7 @@ def whole(word: str, what: str) -> int:
     """A whole number."""
     if not re.fullmatch(r"[+-]?[0-9]+", word):
         raise InputError(f"{what}: expected a whole number, got {word!r}")
-    if abs(int(word)) > LARGEST:
+    if len(word) > 4000 or abs(int(word)) > LARGEST:      # Python refuses to read numbers of more than 4300 digits
         raise InputError(f"{what}: {word} is too large")
     return int(word)
 

@@ -6,6 +6,7 @@ import signal
 from pathlib import Path
 
 import bad_scenes_bonded  # noqa: F401  adds its scenes to CASES
+import bad_scenes_files  # noqa: F401
 import bad_scenes_loops  # noqa: F401
 import bad_scenes_mistakes  # noqa: F401
 import pytest

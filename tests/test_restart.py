@@ -310,3 +310,14 @@ def test_interrupted_run_writes_a_restart(here):
     assert process.returncode == 130
     with session(f"read_restart r.*\n{FIXES['nve']}\nrun 1") as lmp:
         assert lmp.scene.step > 300
+
+
+def test_links_and_devices_stay_what_they_are(tmp_path):
+    from asemd.lammps.restart_file import load, save
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "latest").symlink_to("run.restart")
+    save(str(tmp_path / "latest"), {"step": 3})
+    assert (tmp_path / "latest").is_symlink() and load(str(tmp_path / "run.restart"))["step"] == 3
+    reader = subprocess.Popen([sys.executable, "-c", "print(len(open('pipe', 'rb').read()))"], cwd=tmp_path, stdout=subprocess.PIPE)
+    save(str(tmp_path / "pipe"), {"step": 3})
+    assert int(reader.communicate(timeout=60)[0]) > 100 and (tmp_path / "pipe").is_fifo()

@@ -6,6 +6,7 @@ Atoms come in order of id unless ``dump_modify sort`` says otherwise. Boxes that
 """
 from __future__ import annotations
 
+import contextlib
 import copy
 import operator
 import re
@@ -288,6 +289,10 @@ class Dump(Modify):
             elif self.flush:
                 self._file.flush()
         except OSError as e:
+            file, self._file = self._file, None         # what is left in its buffer cannot be written either
+            if file is not None:
+                with contextlib.suppress(OSError):
+                    file.close()
             raise self.cannot_write(path, e) from None
 
     def open(self, path: str) -> IO[bytes]:
@@ -300,7 +305,10 @@ class Dump(Modify):
     def close(self) -> None:
         """Close the file; a later snapshot is appended to it."""
         if self._file is not None:
-            self._file.close()
+            try:
+                self._file.close()
+            except OSError as e:
+                raise self.cannot_write(self.path, e) from None
             self._file, self.append = None, self.append or not self.files.is_many
 
 

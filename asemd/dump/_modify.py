@@ -7,7 +7,7 @@ from typing import ClassVar
 from asemd.errors import InputError, nearest
 from asemd.words import number, take, whole, yes_no
 
-CONVERSION = re.compile(r"%(?:%|[-+ 0#]*\d*(?:\.\d+)?l*[diueEfFgGsxX])")
+CONVERSION = re.compile(r"%(?:%|[-+ 0#]*\d{0,3}(?:\.\d{1,3})?l*[diueEfFgGsxX])")
 RELATIONS = ("<", "<=", ">", ">=", "==", "!=", "|^")
 FITS = {"integer": "diuxX", "float": "eEfFgG", "string": "s"}
 SELECT = {"element": 0, "refresh": 1, "region": 1, "thresh": 3, "triclinic/general": 1}

@@ -264,7 +264,7 @@ class Image(Dump):
                  (end[last], thick[last], paint[last])]
         centre, size, colour = (np.concatenate(parts) for parts in zip(*balls))
         objects = Objects(place(centre), 0.5 * scale * size, colour, place(start), place(end), 0.5 * scale * thick, paint, flat)
-        fading = 0.4 if np.mean(self.background) < 0.5 else 0.2     # a bright background swallows more
+        fading = 0.4 if np.mean(self.background) < 0.5 else 0.06     # mixed as light, where white outweighs colours
         look = Look(np.array(self.background), self.shiny, self.occlusion, fading, self.samples)
         return render(self.width, self.height, objects, look)
 

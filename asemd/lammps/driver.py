@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 import warnings
 from dataclasses import dataclass
@@ -172,7 +173,7 @@ class Driver:
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
             loop.warn = session.warn
             loop.watchdog.on = session.switches.watchdog
-            loop.watchdog.path = f"{session.log.path}.last_good.dump" if session.log.path else ""
+            loop.watchdog.path = f"{session.log.path}.last_good.dump" if os.path.isfile(session.log.path or "") else ""
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
                 checkpoint.resume(loop, state)

@@ -4,6 +4,7 @@ Source: the LAMMPS manual, "Parsing rules for input scripts".
 """
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -152,6 +153,8 @@ def _immediate(content: str, formula: Callable[[str], float]) -> str:
     form = "%" + form
     if form[-1:] not in "eEfFgG":
         raise InputError(f"format {form} of $({content}) must be one of %e, %f, %g")
+    if not re.fullmatch(r"%[-+ 0#]*\d{0,3}(\.\d{0,3})?.", form):
+        raise InputError(f"format {form} of $({content}) is not a number format")
     try:
         return form % formula(expression)
     except (TypeError, ValueError):

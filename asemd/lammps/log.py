@@ -1,6 +1,7 @@
 """What a run writes: the log file, the terminal, the echo of commands, warnings, and the block of timings after a run."""
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 import warnings
@@ -75,9 +76,12 @@ class Log:
 
     def to_file(self, text: str) -> None:
         if self.file:
-            self.file.write(text)
-            if self.unbuffered:
-                self.file.flush()
+            try:
+                self.file.write(text)
+                if self.unbuffered:
+                    self.file.flush()
+            except OSError as e:
+                raise self.cannot_write(e) from None
 
     def to_screen(self, text: str) -> None:
         if self.screen:
@@ -85,7 +89,10 @@ class Log:
 
     def flush(self) -> None:
         if self.file:
-            self.file.flush()
+            try:
+                self.file.flush()
+            except OSError as e:
+                raise self.cannot_write(e) from None
 
     def warn(self, message: str) -> None:
         """One line ``WARNING: ...`` here, and a Python warning."""
@@ -100,9 +107,20 @@ class Log:
 
     def close(self) -> None:
         """Finish the log file."""
-        if self.file:
-            self.file.close()
-            self.file = None
+        file, self.file = self.file, None
+        if file:
+            try:
+                file.close()
+            except OSError as e:
+                raise self.cannot_write(e) from None
+
+    def cannot_write(self, e: OSError) -> InputError:
+        """The error for a full disk; nothing more is written, so that what is buffered does not raise it again."""
+        file, self.file = self.file, None
+        if file:
+            with contextlib.suppress(OSError):
+                file.close()
+        return InputError(f"cannot write log file {self.path}: {e.strerror or e}")
 
     def total_time(self) -> str:
         seconds = int(time.time() - self.started)

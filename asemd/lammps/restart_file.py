@@ -64,7 +64,7 @@ def unpack(value: Any, arrays: dict[str, np.ndarray]) -> Any:
 
 
 def save(path: str, document: dict[str, Any]) -> None:
-    """Write a restart file in one step.
+    """Write a restart file in one step; what is no file, as /dev/null, is written to as it is.
 
     Raises
     ------
@@ -74,7 +74,9 @@ def save(path: str, document: dict[str, Any]) -> None:
     arrays: dict[str, np.ndarray] = {}
     packed = {"format": FORMAT, "version": VERSION, "arrays": [], **pack(document, arrays)}
     packed["arrays"] = list(arrays)
-    part = f"{path}.part"
+    real = os.path.realpath(path)       # a link stays one
+    device = os.path.exists(real) and not os.path.isfile(real)      # /dev/null must not become a file
+    part = real if device else f"{real}.part"
     try:
         try:
             with open(part, "wb") as f:
@@ -84,13 +86,16 @@ def save(path: str, document: dict[str, Any]) -> None:
                         with z.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
                             np.lib.format.write_array(member, np.ascontiguousarray(array), allow_pickle=False)
                 f.flush()
-                os.fsync(f.fileno())
-            os.replace(part, path)
+                if not device:
+                    os.fsync(f.fileno())
+            if not device:
+                os.replace(part, real)
         except BaseException:
-            with contextlib.suppress(OSError):
-                os.remove(part)
+            if not device:
+                with contextlib.suppress(OSError):
+                    os.remove(part)
             raise
-        sync_folder(path)
+        sync_folder(real)
     except OSError as e:
         raise InputError(f"cannot write restart file {path}: {e.strerror or e}; restart files written before are whole: make room there or "
                          "choose another place, and go on from the last one") from None

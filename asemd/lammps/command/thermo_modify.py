@@ -9,7 +9,7 @@ from asemd.thermo import known
 from asemd.words import choice, take, whole, yes_no
 
 KEYWORDS = ("lost", "lost/bond", "warn", "norm", "flush", "line", "format", "temp", "press", "colname", "triclinic/general")
-FORMAT = re.compile(r"[^%]*%[-+ 0#]*\d*(\.\d+)?(ll|l|h|z|j)*[diugGeEfF][^%]*")
+FORMAT = re.compile(r"[^%]*%[-+ 0#]*\d{0,3}(\.\d{1,3})?(ll|l|h|z|j)*[diugGeEfF][^%]*")
 
 
 def run(session, args):
@@ -64,7 +64,7 @@ def set_format(thermo, words: list[str]) -> int:
             _check(form)
         return 2
     _check(text)
-    if kind == "int" and not re.search(r"%[-+ 0#]*\d*(\.\d+)?(ll|l|h|z|j)*[diu]", text):
+    if kind == "int" and not re.search(r"%[-+ 0#]*\d{0,3}(\.\d{1,3})?(ll|l|h|z|j)*[diu]", text):
         raise InputError(f"thermo_modify format int: {text!r} is not a format of a whole number such as %8d")
     if kind in ("int", "float"):
         thermo.format_kind[kind] = text
