@@ -234,6 +234,13 @@ def test_jumps_are_those_of_the_formulas(folder):
     assert check(smooth).of("jump at the cutoff")[0].severity == "ok"
 
 
+@pytest.mark.parametrize(("part", "severity"), [(1.0, "ok"), (1.06, "note")])
+def test_the_step_that_is_advised_is_fine(folder, part, severity):
+    """Its digits are rounded up here and down there."""
+    dt = part * float(f"{2 * np.pi / (2 * 50.0) ** 0.5 / 20:.2g}")
+    assert check(edit(DIMER, ("timestep 0.19", f"timestep {dt}"))).of("time step")[0].severity == severity
+
+
 def test_causes_come_first(folder):
     """A bond near its limit is stiff: the timestep is not what is wrong."""
     report = check(edit(LJ, ("create 1.44", "create 300.0"), ("timestep 0.005", "timestep 0.02")))

@@ -48,7 +48,7 @@ def _verdict(steps: float, period: float) -> tuple[str, str, float]:
     if steps < COARSE:
         return (f"{here}: its frequency is off by {_error(steps):.1f} %, and energy drifts as soon as the motion gets stiffer", "warning",
                 period / COARSE)
-    if steps < RECOMMENDED:
+    if period / steps > max(float(f"{period / RECOMMENDED:.2g}"), period / RECOMMENDED) * (1.0 + 1e-9):     # the step that is advised
         return f"{here}: it runs, with frequencies off by {_error(steps):.1f} %", "note", period / RECOMMENDED
     if steps > FINE:
         return f"{here}: far more steps than the motion needs", "note", period / RECOMMENDED
