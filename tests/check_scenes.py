@@ -1,4 +1,4 @@
-"""Healthy scenes for the checks, as scripts, and small edits that break them in one way each."""
+"""Healthy scenes for checks and reports, as scripts, and small edits that break them in one way each."""
 from __future__ import annotations
 
 import numpy as np

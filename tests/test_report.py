@@ -5,6 +5,7 @@ import csv
 import dataclasses
 import json
 import math
+import signal
 from types import SimpleNamespace
 
 import pytest
@@ -181,6 +182,48 @@ def test_interrupted_late(melt, stopped):
         assert report.gain > 1.0 and "faster" in report.recommendation
 
 
+@pytest.mark.parametrize("at", [1, 3, 5])
+def test_ctrl_c_anywhere(melt, tmp_path, stopped, monkeypatch, at):
+    """Before anything is measured, between and within runs: the files are there, and say what they are."""
+    count, run = [0], nve.run
+
+    def hit(*args, **options):
+        count[0] += 1
+        if count[0] == at:
+            raise KeyboardInterrupt
+        return run(*args, **options)
+    monkeypatch.setattr(nve, "run", hit)
+    report = asemd.report(melt, ENDLESS, folder=tmp_path / "out", only=["skin"], lammps=False)
+    assert report.interrupted and json.loads((tmp_path / "out" / "report.json").read_text())["interrupted"] is True
+    assert "Interrupted" in (tmp_path / "out" / "report.md").read_text() and (tmp_path / "out" / "report.html").exists()
+    if at < 5:
+        assert report.recommendation == "Nothing was measured."
+
+
+def test_ctrl_c_while_files_are_written():
+    """The first one waits until they are complete, the second one does not."""
+    with course.undisturbed() as asked:
+        signal.raise_signal(signal.SIGINT)
+    assert asked
+    with pytest.raises(KeyboardInterrupt), course.undisturbed():
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_compilation_is_bounded(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr(clock, "time", SimpleNamespace(perf_counter=lambda: now[0]))
+    for budget, bound in ((10.0, clock.COMPILING), (100.0, clock.PATIENCE * 100.0)):
+        now[0] = 0.0
+        watch = clock.Clock(budget)
+        watch.besides = now[0] = bound
+        assert watch.used == 0.0
+        watch.besides = now[0] = bound + 5.0
+        assert watch.used == 5.0
+        watch.reserve = 2.0
+        assert watch.left() == budget - 7.0
+
+
 def test_a_script_that_comes_apart(melt, tmp_path):
     """Nothing is recommended, nor is the script."""
     (tmp_path / "in.long").write_text(MELT.replace("timestep 0.004", "timestep 0.06"))
@@ -231,6 +274,19 @@ def test_styles_and_fixes_bring_knobs(melt):
     scene.fixes["1"].knobs = (Tolerance,)
     brought = next(k for k in knob.all_knobs(scene) if k.name == "tolerance")
     assert brought.needs(scene) is None and brought.label(1e-4) == "0.0001" and brought.commands(scene, 1e-6, "") == []
+
+
+@pytest.mark.parametrize("lacks", ["values", "current", "name"])
+def test_a_class_that_is_no_knob(melt, lacks):
+    """It fails when the knobs are looked for, not after minutes of measuring."""
+    whole = {"name": "tolerance", "values": lambda self, scene: [1.0], "current": lambda self, scene: 1.0}
+    scene = load(melt)
+    scene.fixes["1"].knobs = (type("Wrong", (), {k: v for k, v in whole.items() if k != lacks}),)
+    with pytest.raises(InputError, match=f"class Wrong is no knob: it lacks .*{lacks}"):
+        knob.all_knobs(scene)
+    if lacks != "name":
+        with pytest.raises(TypeError, match="abstract"):
+            type("Wrong", (knob.Knob,), {k: v for k, v in whole.items() if k != lacks})()
 
 
 def test_runs_of_a_script(melt):
@@ -285,6 +341,11 @@ def test_choice_and_sentence(melt):
     assert advice.sentence(best, script, knobs, 2.3) == (
         "Timestep 2, mixed precision, skin 0.9: 2.3x faster than the script's settings at the same error.")
     assert "between 1.2x and 4.0x" in advice.sentence(best, script, knobs, 2.3, (1.2, 4.0))
+    short = point("short", 4.0, steps=40)
+    short.settings, short.dt = {"timestep": 0.01}, 0.01
+    assert any("too short" in fault for fault in advice.faults(short, script, knobs))
+    rough = point("rough", 4.0, relative_fluctuation=0.08)
+    assert "within the limits below; the conserved quantity" in advice.sentence(rough, script, knobs, 2.3)
     assert advice.sentence(None, script, knobs, math.nan).startswith("Keep the script's settings")
     assert advice.together({"timestep": 2.0}, {"integrator": 2}, knobs) is None
     assert advice.together({"timestep": 2.0}, {"skin": 2.0}, knobs) == {"timestep": 2.0, "skin": 2.0}

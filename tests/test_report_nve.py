@@ -3,29 +3,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from check_scenes import LJ
 
 from asemd.errors import InputError
 from asemd.report import nve
 from asemd.report.copies import load
 
-MELT = """units lj
-lattice fcc 0.8442
-region box block 0 4 0 4 0 4
-create_box 1 box
-create_atoms 1 box
-mass 1 1.0
-velocity all create 1.44 87287 loop geom
-pair_style lj/cut 2.5
-pair_coeff 1 1 1.0 1.0
-fix 1 all nve
-run 100
-"""
-
 
 @pytest.fixture(scope="module")
 def melt(tmp_path_factory):
     path = tmp_path_factory.mktemp("melt") / "in.melt"
-    path.write_text(MELT)
+    path.write_text(LJ)
     return load(path)
 
 

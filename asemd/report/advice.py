@@ -12,10 +12,13 @@ SCATTER = 1.5           # ratio of quartiles above which a gain is told with the
 FORCE = 1e-5            # relative force error that no run notices beside that of its timestep
 DRIFT = 0.05            # kT per degree of freedom and ns (1000 tau), below which a drift does not matter
 FLUCTUATION = 0.1       # of the conserved quantity, relative to that of the kinetic energy
+SHORTEST = 100          # steps of a run that may judge another timestep
 FASTER = 1.03           # what is gained must be more than this, for some knobs more than their `worth`
 NOISE = {"drift": "drift_error", "relative_fluctuation": "relative_fluctuation_error", "temperature": "temperature_error",
          "configurational": "configurational_error", "temperature_offset": "offset_error",
          "configurational_offset": "configurational_offset_error"}
+
+OFF = ("drift", "temperature_offset", "configurational_offset")     # errors with a sign, zero if nothing is wrong
 
 
 def tied(a: Point, b: Point, name: str) -> bool:
@@ -25,9 +28,12 @@ def tied(a: Point, b: Point, name: str) -> bool:
 
 
 def mark_ties(points: Sequence[Point], script: Point) -> None:
-    """Fill `Point.ties`."""
+    """Fill `Point.ties`: with the script's point, for runs with the script's own fixes with no error at all."""
     for p in points:
-        p.ties = [name for name in NOISE if not p.own and not p.failed and tied(p, script, name)]
+        if p.fixes == "own":
+            p.ties = [name for name in OFF if not p.failed and abs(getattr(p, name)) <= SIGMA * _finite(getattr(p, NOISE[name]))]
+        else:
+            p.ties = [name for name in NOISE if not p.own and not p.failed and tied(p, script, name)]
 
 
 def objections(point: Point, script: Point, force: float = FORCE) -> list[str]:
@@ -111,6 +117,9 @@ def together(base: Mapping[str, object], more: Mapping[str, object], knobs: Mapp
 def faults(point: Point, script: Point, knobs: Mapping[str, Knob], force: float = FORCE) -> list[str]:
     """Why a point is not recommended: its `objections`, another model, a risk."""
     out = objections(point, script, force)
+    steps = min(point.steps, script.steps)
+    if point.dt != script.dt and steps < SHORTEST:
+        out.append(f"runs of {steps} steps are too short to judge another timestep")
     for name, value in point.settings.items():
         if knobs[name].model:
             out.append(f"{knobs[name].title}: another model")
@@ -130,13 +139,17 @@ def sentence(best: Point | None, script: Point, knobs: Mapping[str, Knob], times
     """The recommendation; `times` faster, with quartiles, which are told where they are far apart."""
     if script.failed:
         return f"The script's own settings fail: {script.failed}. Mend that first; asemd check tells what is wrong."
+    if not math.isfinite(script.seconds_per_span):
+        return "Nothing was measured."
     if best is None:
         return "Keep the script's settings: nothing that was tried is faster at the same error."
     words = ", ".join(knobs[name].phrase(value) for name, value in sorted(best.settings.items(), key=lambda kv: knobs[kv[0]].order))
-    out = f"{words[0].upper()}{words[1:]}: {times:.1f}x faster than the script's settings at the same error"
+    out = f"{words[0].upper()}{words[1:]}: {times:.1f}x faster than the script's settings"
+    rougher = best.relative_fluctuation > 1.05 * script.relative_fluctuation and "relative_fluctuation" not in best.ties
+    out += " with errors within the limits below" if rougher else " at the same error"
     if quartiles[1] > SCATTER * quartiles[0]:
         out += f" (half of the comparisons between {quartiles[0]:.1f}x and {quartiles[1]:.1f}x: other work disturbed them)"
-    if best.relative_fluctuation > 1.05 * script.relative_fluctuation and "relative_fluctuation" not in best.ties:
+    if rougher:
         out += (f"; the conserved quantity fluctuates by {best.relative_fluctuation:.2g} of the kinetic energy's fluctuation, it was "
                 f"{script.relative_fluctuation:.2g}")
     return f"{out}."

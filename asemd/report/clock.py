@@ -1,10 +1,14 @@
-"""Wall time against a budget, compilation left out."""
+"""Wall time against a budget; compilation is counted apart, up to a bound."""
 from __future__ import annotations
 
 import time
 from contextlib import contextmanager
 
 from numba.core import event
+
+COMPILING, PATIENCE = 60.0, 2.0     # compilation counts as used time from so many seconds on, or so many times the budget if that is more
+
+WRITING, PART = 3.0, 0.25   # processor seconds that plots and pages take; part of the budget that they get at most
 
 
 class Clock(event.TimingListener):
@@ -14,13 +18,18 @@ class Clock(event.TimingListener):
     ----------
     budget : float
         Seconds.
+
+    Attributes
+    ----------
+    reserve : float
+        Seconds of the budget that are kept for what comes after measuring: plots and pages.
     """
 
     KIND = "numba:compile"
 
     def __init__(self, budget: float):
         super().__init__()
-        self.began, self.budget, self.besides = time.perf_counter(), budget, 0.0
+        self.began, self.whole, self.besides, self.reserve = time.perf_counter(), budget, 0.0, 0.0
 
     def __enter__(self) -> Clock:
         event.register(self.KIND, self)
@@ -28,6 +37,15 @@ class Clock(event.TimingListener):
 
     def __exit__(self, *error) -> None:
         event.unregister(self.KIND, self)
+
+    @property
+    def budget(self) -> float:
+        """Seconds for measuring."""
+        return self.whole - self.reserve
+
+    def keep(self, share: float) -> None:
+        """Keep time for writing on a machine on which this program has that share of a core."""
+        self.reserve = min(WRITING / max(share, 0.1), PART * self.whole)
 
     @property
     def compiled(self) -> float:
@@ -45,8 +63,8 @@ class Clock(event.TimingListener):
 
     @property
     def used(self) -> float:
-        """Seconds since the start, without compilation."""
-        return time.perf_counter() - self.began - self.compiled
+        """Seconds since the start, without compilation up to its bound."""
+        return time.perf_counter() - self.began - min(self.compiled, max(COMPILING, PATIENCE * self.whole))
 
     def left(self, part: float = 1.0) -> float:
         """Seconds until that part of the budget is used."""

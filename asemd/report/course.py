@@ -3,7 +3,11 @@ from __future__ import annotations
 
 import os
 import platform
+import signal
+import threading
+import time
 import warnings
+from contextlib import contextmanager
 from pathlib import Path
 
 from asemd import __version__
@@ -17,7 +21,6 @@ from asemd.report.study import Study
 from asemd.scene import Scene
 
 SHORTEST = 1.0      # seconds of a budget
-WRITING = 3.0       # seconds that plots and pages take
 
 
 def machine() -> dict[str, str]:
@@ -43,7 +46,7 @@ def carry_out(source, budget, at, folder, apply, only, seed, tolerance, lammps, 
         raise InputError(f"report: runs are counted from 1, got {at}")
     if not tolerance > 0.0:
         raise InputError(f"report: the tolerance must be positive, got {tolerance:g}")
-    clock = Clock(float(budget) - (min(WRITING, 0.2 * budget) if folder is not None else 0.0))
+    clock = Clock(float(budget))
     with warnings.catch_warnings(), clock:
         warnings.simplefilter("ignore", InputWarning)
         warnings.simplefilter("ignore", RuntimeWarning)     # of numpy, in runs that end in numbers that are not finite
@@ -58,13 +61,36 @@ def carry_out(source, budget, at, folder, apply, only, seed, tolerance, lammps, 
             if reader.stopped:
                 found.notes.append(f"The script was read until: {reader.stopped}")
         study = Study(scene, found, clock, tell or (lambda done, total, what: None), tolerance, only, lammps)
-        study.run()
         if folder is not None:
-            from asemd.report.write import write
-            write(found, folder, study.scene.system)
-        if apply is not None:
-            apply_to(found, scene, reader, apply)
+            clock.keep(1.0)
+        study.run()
+        with undisturbed() as asked:
+            if folder is not None:
+                from asemd.report.write import write
+                write(found, folder, study.scene.system, time.perf_counter() + clock.left() + clock.reserve)
+            if apply is not None:
+                apply_to(found, scene, reader, apply)
+        found.interrupted |= bool(asked)
     return found
+
+
+@contextmanager
+def undisturbed():
+    """A block that Ctrl-C does not end, so that what was measured is written; a second Ctrl-C does."""
+    asked: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield asked
+        return
+
+    def note(number, frame):
+        if asked:
+            raise KeyboardInterrupt
+        asked.append(number)
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield asked
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _place(reader: copies.Reader) -> str:

@@ -17,8 +17,24 @@ A knob is a subclass of `Knob` with LAMMPS commands as its means, so what is mea
         def commands(self, scene, value, folder):
             return [f"neighbor {value!r} bin"]
 
-A module of `asemd.report.knobs` defines one such class and is found by itself. A style or fix brings knobs as the attribute ``knobs``: a
-tuple of classes with these methods, which need not be derived from `Knob`; what they do not say is taken from it.
+A module of `asemd.report.knobs` defines one such class and is found by itself. A style, fix or long-range solver brings knobs as the
+attribute ``knobs``: a tuple of classes with these methods, which need not be derived from `Knob`; what they do not say is taken from it.
+A fix with constraints, for example, says ``knobs = (Tolerance,)``, its method ``constraint_error(loop)`` gives the error, and::
+
+    class Tolerance:
+        name, title, order, metric = "tolerance", "tolerance of constraints", 80, "constraint_error"
+
+        def values(self, scene):
+            return [1e-3, 1e-5, 1e-6]
+
+        def current(self, scene):
+            return next(f.tolerance for f in scene.fixes.values() if f.style == "shake")
+
+        def commands(self, scene, value, folder):
+            ...     # the same fix with that tolerance
+
+An accuracy of long-range forces has ``metric = "force_error"`` and a method ``reference`` that gives the tightest value worth computing:
+its forces are then the exact ones for this knob. A class without ``values`` or ``current`` is refused at once.
 """
 from __future__ import annotations
 
@@ -27,14 +43,15 @@ import inspect
 import os
 import pkgutil
 import warnings
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from asemd.errors import InputWarning
+from asemd.errors import InputError, InputWarning
 from asemd.scene import Scene
 
 
-class Knob:
+class Knob(ABC):
     """Something that can be set in several ways.
 
     Attributes
@@ -73,13 +90,17 @@ class Knob:
         """Why this scene has no such knob, or None if it has."""
         return None
 
+    @abstractmethod
     def values(self, scene: Scene) -> list[Any]:
         """The values to try, the most telling ones first; the present one need not be among them."""
-        raise NotImplementedError(f"knob {self.name}")
 
+    @abstractmethod
     def current(self, scene: Scene) -> Any:
-        """The value that the scene has."""
-        raise NotImplementedError(f"knob {self.name}")
+        """The value that the scene has; None if it has none of these."""
+
+    def duration(self, scene: Scene, value: Any) -> float:
+        """Time units that a run must cover to tell something about this value, if the budget allows it; 0: as long as the others."""
+        return 0.0
 
     def reference(self, scene: Scene) -> Any:
         """The value whose forces are the exact ones for this knob; None: those of the scene itself, in double precision."""
@@ -161,8 +182,18 @@ def owners(scene: Scene) -> list:
 
 
 def adopt(cls: type) -> Knob:
-    """A knob of that class; what it does not define comes from `Knob`."""
-    return (cls if issubclass(cls, Knob) else type(cls.__name__, (cls, Knob), {}))()
+    """A knob of that class; what it does not define comes from `Knob`.
+
+    Raises
+    ------
+    InputError
+        It has no name, or no method ``values`` or ``current``.
+    """
+    made = cls if issubclass(cls, Knob) else type(cls.__name__, (cls, Knob), {})
+    missing = sorted(made.__abstractmethods__)
+    if missing or not made.name:
+        raise InputError(f"report: class {cls.__name__} is no knob: it lacks {', '.join(missing) or 'a name'}")
+    return made()
 
 
 def nice(x: float) -> float:

@@ -357,6 +357,12 @@ def constant_energy(scene: Scene) -> list:
     return [NVE("moving atoms"), *own]
 
 
+def left_out(scene: Scene) -> list[str]:
+    """Fixes that act on the motion but have no place in a run at constant energy, in words."""
+    return [f"fix {f.id} ({f.style})" for f in scene.fixes.values()
+            if not f.minimizes and f.style != "nve" and set(f.hooks()) - {"end_of_step"}]
+
+
 def movers(scene: Scene, fixes) -> str:
     """The group that moves: that of the only fix that integrates, else all."""
     groups = {f.group for f in fixes if f.integrates}

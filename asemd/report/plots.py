@@ -3,7 +3,9 @@ from __future__ import annotations
 
 import math
 import textwrap
+import time
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +64,7 @@ KINDS = {"force_error": ("force-error", "Force error against run time", "relativ
          "relative_fluctuation": ("fluctuation", "Fluctuation of the conserved quantity against run time",
                                   "fluctuation relative to that of the kinetic energy"),
          "drift": ("drift", "Drift of the conserved quantity against run time", "drift, {drift}"),
+         "constraint_error": ("constraints", "Error of constraints against run time", "largest error of constraints"),
          "configurational_offset": ("configurational", "Configurational temperature against run time",
                                     "relative error of the configurational temperature"),
          "temperature_offset": ("temperature", "Error of the temperature against run time", "relative error of the temperature")}
@@ -74,16 +77,27 @@ def pictures(report: Report) -> list[Picture]:
         lines = [line for curve in report.curves if (line := _line(curve, metric, report)) is not None]
         if not lines:
             continue
-        if report.combined and (line := _line(Curve("", "together", "", metric, False, points=report.combined), metric, report)):
+        own = metric.endswith("_offset")        # of runs with the script's own fixes, whose error is that against the target
+        several = Curve("", "together", "", metric, False, points=report.combined)
+        if report.combined and not own and (line := _line(several, metric, report)):
             lines.append(line)
         tie = None
-        if metric in advice.NOISE and math.isfinite(value := abs(getattr(report.script, metric))):
+        if own:
+            found = [getattr(p, advice.NOISE[metric]) for p in report.points if p.fixes == "own" and not p.failed]
+            found = [e for e in found if math.isfinite(e)]
+            tie = (LEAST, advice.SIGMA * float(np.median(found))) if found else None
+        elif metric in advice.NOISE and math.isfinite(value := abs(getattr(report.script, metric))):
             found = [getattr(p, advice.NOISE[metric]) for p in report.points if not p.failed]
             noise = advice.SIGMA * math.sqrt(2.0) * float(np.median([e for e in found if math.isfinite(e)] or [0.0]))
             tie = (max(value - noise, LEAST), value + noise) if noise > 0.0 else None
         out.append(Picture(name, title, time_label(report), ylabel.format(drift=drift_unit(report.units)), lines, tie,
-                           _spot(report.script, metric), _spot(report.best, metric)))
+                           None if own else _spot(report.script, metric), None if own else _spot(report.best, metric)))
     return out
+
+
+def _axis(metric: str) -> str:
+    """Of the axis of an error, those that have no picture of their own too."""
+    return KINDS[metric][2] if metric in KINDS else metric.replace("_", " ")
 
 
 def time_label(report: Report) -> str:
@@ -119,8 +133,8 @@ def _line(curve: Curve, metric: str, report: Report) -> Line | None:
 
 # --------------------------------------------------------------------------------------------------------------------- drawing ---
 
-def draw(report: Report, folder: Path) -> list[str]:
-    """Write all plots as PNG and SVG; returns their names without ending.
+def draw(report: Report, folder: Path, until: float = math.inf) -> tuple[list[str], list[str]]:
+    """Write plots as PNG and SVG until a reading of ``time.perf_counter``: names without ending of those written, and of those not.
 
     Raises
     ------
@@ -128,13 +142,14 @@ def draw(report: Report, folder: Path) -> list[str]:
         matplotlib is not installed.
     """
     plt = _pyplot()
-    names = []
-    for picture in pictures(report):
-        names.append(_save(plt, _draw_picture(plt, picture), folder, f"time-{picture.name}"))
-    for curve in report.curves:
-        if sum(not p.failed for p in curve.points) > 1:
-            names.append(_save(plt, _draw_curve(plt, curve, report), folder, f"knob-{curve.name}"))
-    return names
+    todo = [(f"time-{p.name}", partial(_draw_picture, plt, p)) for p in pictures(report)]
+    todo += [(f"knob-{c.name}", partial(_draw_curve, plt, c, report)) for c in report.curves if sum(not p.failed for p in c.points) > 1]
+    names: list[str] = []
+    for name, figure in todo:
+        if names and time.perf_counter() > until:
+            break
+        names.append(_save(plt, figure(), folder, name))
+    return names, [name for name, _ in todo[len(names):]]
 
 
 def _pyplot():
@@ -159,7 +174,7 @@ def _save(plt, figure, folder: Path, name: str) -> str:
 
 def _draw_picture(plt, picture: Picture):
     figure, ax = plt.subplots(figsize=(7.6, 4.6))
-    figure.subplots_adjust(0.1, 0.11, 0.7, 0.93)
+    figure.subplots_adjust(0.13, 0.11, 0.71, 0.93)
     for k, line in enumerate(picture.lines):
         order = np.argsort(line.x)
         x, y = np.array(line.x)[order], np.array(line.y)[order]
@@ -178,7 +193,8 @@ def _draw_picture(plt, picture: Picture):
     ax.set(xscale="log", yscale="log", xlabel=picture.xlabel, ylabel=picture.ylabel, title=picture.title)
     if picture.tie:
         low = min(ax.get_ylim()[0], 0.5 * picture.tie[1])
-        ax.axhspan(max(picture.tie[0], low), picture.tie[1], color="0.5", alpha=0.15, linewidth=0, label="tie with the script")
+        ax.axhspan(max(picture.tie[0], low), picture.tie[1], color="0.5", alpha=0.15, linewidth=0,
+                   label="tie with the script" if picture.script else "no error beyond the noise")
         ax.set_ylim(bottom=low)
     _plain_numbers(ax.xaxis)
     ax.grid(True, which="major", alpha=0.25)
@@ -219,7 +235,7 @@ def _draw_curve(plt, curve: Curve, report: Report):
         if p.own:
             for ax, y in ((top, values), (bottom, times)):
                 ax.plot(x[k], y[k], "*", color="#d62728", markersize=13, markeredgecolor="white", zorder=5)
-    ylabel = textwrap.fill(KINDS[curve.metric][2].format(drift=drift_unit(report.units)), 30)
+    ylabel = textwrap.fill(_axis(curve.metric).format(drift=drift_unit(report.units)), 30)
     top.set(yscale="log", ylabel=ylabel, title=f"{curve.title[0].upper()}{curve.title[1:]} (star: script)")
     bottom.set(yscale="log", ylabel=time_label(report))
     _plain_numbers(bottom.yaxis)

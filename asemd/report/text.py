@@ -9,6 +9,7 @@ from asemd.report.result import Curve, Point, Report
 from asemd.text_table import Table
 
 BRIEF = (0, 1, 3, 4, 5, 8, 9, 12)        # columns on a terminal
+WARM = (0, 1, 3, 8, 10, 11)              # of runs with the script's own fixes
 COLUMNS = ("setting", "us/step", "quartiles", "s per {span}", "speed-up", "force error", "energy error", "pressure error", "drift",
            "fluctuation", "T kinetic", "T configurational", "front")
 
@@ -57,8 +58,16 @@ def row(p: Point, report: Report, label: str | None = None) -> list[str]:
     return [label or p.label, cost(p), f"{micro(low)} to {micro(high)}", whole(p.seconds_per_span),
             value(advice.gain(p, report.script)), value(p.force_error, 2), value(p.energy_error, 2), value(p.pressure_error, 2),
             with_error(p.drift, p.drift_error) + ties["drift"], value(p.relative_fluctuation, 2) + ties["relative_fluctuation"],
-            with_error(p.temperature, p.temperature_error), with_error(p.configurational, p.configurational_error),
+            with_error(p.temperature, p.temperature_error) + off(p, "temperature_offset"),
+            with_error(p.configurational, p.configurational_error) + off(p, "configurational_offset"),
             "yes" if p.pareto else ""]
+
+
+def off(p: Point, name: str) -> str:
+    """How far a temperature is from the target of a thermostat, with the noise; empty at constant energy."""
+    if p.fixes != "own" or not math.isfinite(getattr(p, name)):
+        return ""
+    return (f", {100.0 * getattr(p, name):+.2g} ± {100.0 * getattr(p, advice.NOISE[name]):.1g} % off" + " (tie)" * (name in p.ties))
 
 
 def columns(report: Report) -> list[str]:
@@ -70,12 +79,13 @@ def curve_table(curve: Curve, report: Report, brief: bool = False) -> Table:
     """All points of a knob."""
     rows = [row(p, report, f"{curve.script_label} (script)" if p.own else None) for p in curve.points]
     title = f"{curve.title[0].upper()}{curve.title[1:]}" + (f" ({curve.remark}: measured, not recommended)" if curve.model else "")
-    return cut(Table(title, columns(report), rows), brief)
+    own = any(p.fixes == "own" for p in curve.points)
+    return cut(Table(title, columns(report), rows), brief, WARM if own else BRIEF)
 
 
-def cut(table: Table, brief: bool) -> Table:
+def cut(table: Table, brief: bool, keep: tuple[int, ...] = BRIEF) -> Table:
     """The columns that a terminal has room for, or all."""
-    return Table(table.title, [table.columns[k] for k in BRIEF], [[r[k] for k in BRIEF] for r in table.rows]) if brief else table
+    return Table(table.title, [table.columns[k] for k in keep], [[r[k] for k in keep] for r in table.rows]) if brief else table
 
 
 def explanations(report: Report) -> list[str]:
@@ -92,6 +102,9 @@ def explanations(report: Report) -> list[str]:
         f"The same error: force error below {advice.FORCE:g}, drift below {advice.DRIFT:g}, fluctuation below {advice.FLUCTUATION:g}, "
         "kinetic and configurational temperature alike, no list that may have come too late; or not worse than the script, the noise "
         "considered.",
+        *(["% off: difference of a temperature to the target of the thermostat, in runs with the script's own fixes; its noise is at least "
+           "what the thermostat's damping time allows in a run of that length; a tie there is no difference beyond the noise."]
+          if any(p.fixes == "own" for p in report.points) else []),
         f"tie: the difference to the script is below {advice.SIGMA:g} standard errors of the sampling, which are estimated by blocks; "
         "front: nothing that was tried is faster without a larger error."]
 
@@ -135,7 +148,8 @@ def parts(report: Report, brief: bool = True) -> list[Table | str]:
             out.append(curve_table(curve, report, brief))
     if report.combined:
         out.append(cut(Table("Together", columns(report), [row(p, report) for p in [report.script, *report.combined]]), brief))
-    out += explanations(report)
+    if math.isfinite(report.script.seconds_per_span):
+        out += explanations(report)
     failed = [f"{p.knob} {p.label}: {p.failed}" for p in report.points if p.failed]
     if failed:
         out.append(Table("Failed", ("setting", "why"), [f.split(": ", 1) for f in failed]))

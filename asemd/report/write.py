@@ -1,6 +1,7 @@
 """A report as a folder: Markdown, HTML, CSV, JSON, plots."""
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from asemd.errors import InputError
@@ -9,7 +10,7 @@ from asemd.report.result import Report
 from asemd.text_table import Table
 
 
-def write(report: Report, folder: str | Path, system=None) -> Path:
+def write(report: Report, folder: str | Path, system=None, until: float = math.inf) -> Path:
     """Write everything into a folder, which is made if it is not there.
 
     Parameters
@@ -18,6 +19,8 @@ def write(report: Report, folder: str | Path, system=None) -> Path:
     folder : path
     system : asemd.system.System, optional
         Shown on the page.
+    until : float
+        Reading of ``time.perf_counter`` from which on no more plots are drawn; the report then says which are missing.
 
     Returns
     -------
@@ -35,7 +38,10 @@ def write(report: Report, folder: str | Path, system=None) -> Path:
         report.folder = str(folder)
         report.write_json(folder / "report.json")
         report.write_csv(folder / "report.csv")
-        names = plots.draw(report, folder)
+        names, missing = plots.draw(report, folder, until)
+        if missing:
+            report.notes.append(f"Not drawn, for the budget was used: {', '.join(missing)}.")
+            report.write_json(folder / "report.json")
         (folder / "report.md").write_text(markdown(report, names), encoding="utf-8")
     except OSError as e:
         raise InputError(f"cannot write {folder}: {e.strerror or e}") from None

@@ -7,6 +7,7 @@ from asemd.report.knob import Knob, nice
 
 FACTORS = (0.8, 1.2, 0.7, 1.4, 0.9)
 LONGEST = 1.8       # the reference, relative to the script's own
+ENDS = 0.01         # of the force at 0.8 of the cutoff: it ends there (the repulsive half cut at 1.12 has 0.001, 2.5 sigma has 0.2)
 
 
 def lengths(values: dict) -> list[str]:
@@ -59,7 +60,7 @@ class Cutoff(Knob):
                 for part, cut in zip(term.style.parts, term.style.cutoffs(c, term.use.settings), strict=True):
                     rest = [c[n] for n in part.rows] + [float(constants[n]) for n in part.constants]
                     at, near = (abs(part.function(r * r if part.coordinate == "r2" else r, *rest)[1]) for r in (cut, 0.8 * cut))
-                    if at > 1e-4 * near:
+                    if at > ENDS * near:
                         return False
         return bool(terms)
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from asemd.report.knob import Knob, nice
+from asemd.report.knobs.thermostat import TIMES
 
 KINDS = {"langevin": "fix langevin", "gjf": "gjf", "baoab": "BAOAB"}
 
@@ -33,10 +34,13 @@ class Splitting(Knob):
         return "fix langevin scale" if bath.scale else "run_style respa" if scene.respa is not None else None
 
     def values(self, scene):
-        return [(kind, factor) for factor in (1.0, 2.0) for kind in KINDS]
+        return [("langevin", 2.0), ("baoab", 2.0), ("gjf", 2.0), *((kind, 1.0) for kind in KINDS)]
 
     def current(self, scene):
         return None
+
+    def duration(self, scene, value):
+        return TIMES * self._pair(scene)[0].damping
 
     def commands(self, scene, value, folder):
         kind, factor = value

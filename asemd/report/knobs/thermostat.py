@@ -6,6 +6,7 @@ import copy
 from asemd.report.knob import Knob, nice
 
 FACTORS = (0.1, 10.0, 0.3, 3.0)
+TIMES = 20.0        # damping times that a run should cover: a temperature forgets in one of them where it started
 
 
 def baths(scene) -> list:
@@ -39,6 +40,9 @@ class Thermostat(Knob):
 
     def current(self, scene):
         return None         # with the script's own damping too it is another run than that at constant energy
+
+    def duration(self, scene, value):
+        return TIMES * value * max(fix.damping for fix in baths(scene))
 
     def commands(self, scene, value, folder):
         out = []
