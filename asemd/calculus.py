@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 
 from asemd.cache_folder import cache_folder
 
-
 LARGE, DEEP = 60, 9       # operations and nested functions of a formula that sympy still differentiates as a whole
 
 
