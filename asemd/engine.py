@@ -14,7 +14,7 @@ from asemd.exclusions import Exclusions
 from asemd.kernels.state import aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
-from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, kernels
+from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
 from asemd.result import Result, Settings, Snapshot
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
 
@@ -79,6 +79,7 @@ class Engine:
         width = lanes(s.precision == "mixed")
         marked = s.outdated or self.sparse
         self.list = ClusterList(self.threads, self.reach, width, marked) if self.mode == "cluster" else PlainList(self.reach)
+        self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
         self.state = None
         self._offset = None
         self.ns = 0
@@ -96,14 +97,15 @@ class Engine:
             self.mode, self.why = "plain", "a periodic cell width is below twice cutoff plus skin"
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
-        chosen = not all(t.is_plain for t in self.pair_terms)
-        self.expanded = self.mode == "cluster" and chosen
+        self.expanded = self.mode == "cluster" and any(np.ndim(t.use.factor) > 0 for t in self.pair_terms)
         volume = abs(float(np.linalg.det(self.vectors)))
         few = 2.1 * self.reach**3 * n < SPARSE * volume
         rules = bool(len(self.exclusions.rules))
-        self.sparse = self.mode == "cluster" and not self.expanded and (few or table or rules)
+        chosen = any(t.molecules for t in self.pair_terms)
+        self.sparse = self.mode == "cluster" and not self.expanded and (few or table or rules or chosen)
         if self.sparse:
-            reason = "tables" if table else "neigh_modify exclude" if rules else f"fewer than {SPARSE} neighbours per atom"
+            reason = ("tables" if table else "neigh_modify exclude" if rules else "pairs are chosen by molecule" if chosen else
+                      f"fewer than {SPARSE} neighbours per atom")
             self.why = f"{reason}: rows of single atoms"
 
     def _make_terms(self) -> list:
@@ -213,8 +215,8 @@ class Engine:
             self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel)
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
-            if self.sparse:
-                self.rows = self.list.rows(k, s, self.ns, self._partners(), self.exclusions.rule_arrays, self.parallel)
+            for molecules, rows in self.rows.items():
+                self.list.fill(rows, k, s, self.ns, self._partners(), self.exclusions.rules_within(molecules), self.parallel)
             weighted, kinds = self.exclusions.weighted, self.exclusions.weighted_kinds
             self.special = [np.empty(len(weighted), np.int32) for _ in range(3)]
             if len(weighted) and not self.expanded:
@@ -271,7 +273,8 @@ class Engine:
         if self.mode == "cluster" and not self.expanded:
             i, j, code = self.special
             d = self.held[:, i] - self.held[:, j] - self.shifts27[code >> 2].T
-            others = self.list.row_entries() if self.sparse else self.list.count(self.k, self.state, self.held, self._partners())
+            others = (sum(rows.entries for rows in self.rows.values()) if self.sparse else
+                      self.list.count(self.k, self.state, self.held, self._partners()))
             return others + int(((d * d).sum(axis=0) <= self.reach**2).sum())
         return len(self.plain[0]) if self.mode != "none" else 0
 

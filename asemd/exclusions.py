@@ -6,6 +6,7 @@ import numpy as np
 from asemd.neighbor import partner_table
 
 RULES = {"group": 0, "molecule/intra": 1, "molecule/inter": 2}
+EVERYWHERE = 1 << 62        # the bit of all atoms
 
 
 class Exclusions:
@@ -82,6 +83,13 @@ class Exclusions:
     def rule_arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What compiled code needs of the rules: bits and molecules of the atoms, rules."""
         return self.rule_mask, self.molecule, self.rules
+
+    def rules_within(self, molecules: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The same, and only pairs of atoms of the ``same`` molecule or of an ``other`` one remain; empty: both."""
+        if not molecules:
+            return self.rule_arrays
+        rule = (RULES["molecule/inter" if molecules == "same" else "molecule/intra"], EVERYWHERE, 0)
+        return self.rule_mask | EVERYWHERE, self.molecule, np.concatenate([self.rules, np.array([rule], np.int64)])
 
     def mark(self, k, x, row, i, j, code, shifts, cell, periodic) -> list[np.ndarray]:
         """The pairs (i, j, code) of a plain list without those that a rule forbids, the partners among them marked by their kind.

@@ -86,6 +86,27 @@ def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tup
     return np.array(cells, float) @ vectors, opposite
 
 
+class Rows:
+    """Neighbours of single atoms, made of a cluster list.
+
+    Attributes
+    ----------
+    start (nth, nslots+1), neighbors (nth, m)
+        See `asemd.kernels.cluster_rows.rows`.
+    edges (nth+1,)
+        Slots of each thread.
+    """
+
+    def __init__(self, threads: int):
+        self.start, self.neighbors = np.zeros((threads, 0), np.int32), np.zeros((threads, 0), np.int32)
+        self.edges = np.zeros(threads + 1, np.int64)
+
+    @property
+    def entries(self) -> int:
+        """Pairs in the rows."""
+        return sum(int(start[end]) for start, end in zip(self.start, self.edges[1:]))
+
+
 class ClusterList:
     """Half list of single atoms near clusters of `CLUSTER` consecutive atoms, built by several threads.
 
@@ -108,7 +129,6 @@ class ClusterList:
         self.shares = None
         self.row_length = np.zeros((threads, 1), np.int64)
         self.bins, self.n = None, -1
-        self.row_start, self.neighbors = np.zeros((threads, 0), np.int32), np.zeros((threads, 0), np.int32)
 
     def shape(self, bins: BinCell, n: int) -> bool:
         """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
@@ -200,25 +220,25 @@ class ClusterList:
                     return
                 again = False
 
-    def rows(self, k, state, ns: int, partners, rules, parallel) -> tuple[np.ndarray, np.ndarray]:
-        """The list as rows of single atoms without the special pairs: start (nth, ns+1) and neighbors (nth, m).
+    def fill(self, rows: Rows, k, state, ns: int, partners, rules, parallel) -> None:
+        """The list as rows of single atoms without the special pairs.
 
         `partners` and `rules` are what `asemd.exclusions.Exclusions` says, as arrays.
         """
-        if self.row_start.shape[1] < ns + 1:
-            self.row_start = np.zeros((self.threads, ns + 1 + ns // 8), np.int32)
+        rows.edges = CLUSTER * self.bounds
+        if rows.start.shape[1] < ns + 1:
+            rows.start = np.zeros((self.threads, ns + 1 + ns // 8), np.int32)
         results = [0] * self.threads
 
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
             results[t] = k.rows(state.row, self.first[t], self.entries[t], self.hide[t], self.own, self.span, c0, c1, *partners, *rules,
-                                self.row_start[t], self.neighbors[t])
+                                rows.start[t], rows.neighbors[t])
         while True:
             parallel(work)
-            if -1 in results:
-                self.neighbors = np.zeros((self.threads, 2 * self.neighbors.shape[1] + 16 * ns), np.int32)
-            else:
-                return self.row_start, self.neighbors
+            if -1 not in results:
+                return
+            rows.neighbors = np.zeros((self.threads, 2 * rows.neighbors.shape[1] + 16 * ns), np.int32)
 
     def _split(self, ncl: int) -> None:
         shares = self.shares if self.shares is not None else np.arange(self.threads + 1) / self.threads
@@ -235,10 +255,6 @@ class ClusterList:
         weights = np.array(lengths, float) + 16.0 * np.diff(self.bounds)
         total = np.concatenate([[0.0], np.cumsum(weights)])
         self.shares = np.interp(np.linspace(0, total[-1], self.threads + 1), total, edges)
-
-    def row_entries(self) -> int:
-        """Pairs in the rows."""
-        return sum(int(self.row_start[t, CLUSTER * int(self.bounds[t + 1])]) for t in range(self.threads))
 
     def longest(self) -> int:
         """Most neighbours of one cluster."""

@@ -43,8 +43,8 @@ class PairTerm:
 
     @property
     def is_plain(self) -> bool:
-        """Whether all pairs of the list count, with the same weight."""
-        return not self.molecules and not isinstance(self.use.scale, str) and self.use.scale == 1.0
+        """Whether there is no factor."""
+        return not isinstance(self.use.scale, str) and self.use.scale == 1.0
 
     def weights(self, lj: np.ndarray, coul: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The weights of kinds of pairs, (5,) each, as they are for this style."""

@@ -8,6 +8,7 @@ import numpy as np
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels.cluster import CLUSTER
+from asemd.kernels.pair_scaled import scaled
 from asemd.kernels.state import aligned
 from asemd.pairing import NO_REPULSION
 
@@ -114,7 +115,36 @@ def store_torques(terms: list, system) -> None:
             torque[t.row[t.row >= 0]] += t.torque.sum(axis=0)[:, t.row >= 0].T
 
 
-class PairTerm:
+class FactorTerm:
+    """What pair terms with one factor for all their forces have in common: their kernel writes to arrays of its own, see `scaled`."""
+
+    owner = None
+    factor: np.ndarray | None = None
+
+    def _scaled(self, kernel, energy: bool):
+        return kernel if self.owner.is_plain else scaled(kernel, energy)
+
+    def _sums(self, engine, tid: int) -> tuple[np.ndarray, np.ndarray]:
+        """Where the kernel adds its forces, energies and virial."""
+        if self.owner.is_plain:
+            return engine.buffers[tid], engine.acc[tid, self.index]
+        if self.factor is None or self.own.shape != engine.buffers.shape:
+            self.own, self.own_acc = aligned(engine.buffers.shape), np.zeros((engine.threads, 8))
+            self.factor = np.array([float(self.owner.use.factor)])
+        return self.own[tid], self.own_acc[tid]
+
+    def _with_factor(self, engine, tid: int, arguments: tuple) -> tuple:
+        if self.owner.is_plain:
+            return arguments
+        return engine.buffers[tid], engine.acc[tid, self.index], self.factor, *self._sums(engine, tid), arguments
+
+    def scale(self, engine) -> None:
+        """Take up the present factor of the pair style."""
+        if self.factor is not None:
+            self.factor[0] = self.owner.use.factor
+
+
+class PairTerm(FactorTerm):
     """A pair style over the cluster list; `piece` of any pair term: only this part of a force that is split (`asemd.kernels.pair`)."""
 
     category = "pair"
@@ -127,8 +157,8 @@ class PairTerm:
         self.tables4 = np.zeros((1, 2, 0, 4))
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude, single=self.single,
-                                           outdated=self.outdated, piece=self.piece)[0]
+        return self._scaled(pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude,
+                                                        single=self.single, outdated=self.outdated, piece=self.piece)[0], energy)
 
     def clusters(self, engine):
         """The `asemd.neighbor.ClusterList` it runs over."""
@@ -155,17 +185,20 @@ class PairTerm:
 
     def arguments(self, engine, tid):
         s, c = engine.state, self.clusters(engine)
-        return (s.x, engine.buffers[tid], s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, self.shifts4,
-                c.excluded_first[tid], c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach,
-                engine.qqr2e, self.buffer[tid], self.types[tid], self.saved[tid], *self.tables4[tid], engine.acc[tid, self.index],
-                c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1])
+        f, acc = self._sums(engine, tid)
+        return self._with_factor(engine, tid, (
+            s.x, f, s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, self.shifts4, c.excluded_first[tid],
+            c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, self.buffer[tid],
+            self.types[tid], self.saved[tid], *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved,
+            engine.farthest[tid:tid + 1]))
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
 
 
-class PairRowsTerm:
-    """A pair style over rows of single atoms: where an atom has so few neighbours that packing clusters does not pay, and for tables."""
+class PairRowsTerm(FactorTerm):
+    """A pair style over rows of single atoms: where an atom has so few neighbours that packing clusters does not pay, for tables, and for
+    pairs that are chosen by molecule."""
 
     category = "pair"
     piece = ""
@@ -176,17 +209,19 @@ class PairRowsTerm:
         self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.rows_kernel(self.style, self.uniform, energy=energy, piece=self.piece)[0]
+        return self._scaled(pair_kernels.rows_kernel(self.style, self.uniform, energy=energy, piece=self.piece)[0], energy)
 
     def rebuild(self, engine):
         """Nothing of its own: the rows are the engine's."""
 
     def arguments(self, engine, tid):
         s, c = engine.state, engine.list
-        start, neighbors = engine.rows
-        return (s.x, engine.buffers[tid], s.q, s.type, start[tid], neighbors[tid], c.shifts, CLUSTER * int(c.bounds[tid]),
-                CLUSTER * int(c.bounds[tid + 1]), self.p, self.tables.rows, self.tables.arrays, engine.qqr2e,
-                engine.acc[tid, self.index], engine.bad[tid, self.index])
+        rows = engine.rows[self.owner.molecules]
+        f, acc = self._sums(engine, tid)
+        return self._with_factor(engine, tid, (
+            s.x, f, s.q, s.type, rows.start[tid], rows.neighbors[tid], c.shifts, CLUSTER * int(c.bounds[tid]),
+            CLUSTER * int(c.bounds[tid + 1]), self.p, self.tables.rows, self.tables.arrays, engine.qqr2e, acc,
+            engine.bad[tid, self.index]))
 
     def describe(self, engine, item, value):
         j, i = divmod(int(item), 1 << 26)

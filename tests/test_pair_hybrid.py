@@ -108,11 +108,41 @@ def test_shares_of_atoms_add_up(name):
 
 def test_large_systems_are_the_same():
     """The lists of many atoms, whose special pairs are one by one, give what the plain list of few gives."""
-    for name in ("lj and coul", "numbers", "molecules"):
+    for name in ("lj and coul", "numbers", "molecules", "special and scaled", "molecules, twice"):
         small, large = (asemd(chain() + VARIABLES + CASES[name] + f"\n{more}\nrun 0") for more in ("print x", "replicate 4 4 4"))
         assert large.loop.engine.mode == "cluster" and small.loop.engine.mode == "plain"
         sums = [s.variables.evaluate("evdwl+ecoul") for s in (small, large)]
         assert 64 * sums[0] == pytest.approx(sums[1], rel=1e-11)
+
+
+@pytest.mark.parametrize("name", ["numbers", "special and scaled", "molecules", "molecules, twice", "scaled respa", "by atom"])
+def test_large_systems_move_like_lammps(name):
+    """Factors and molecules over the lists of many atoms, on the way too: positions after some steps, and the last row."""
+    script = chain() + VARIABLES + CASES[name] + "\nreplicate 3 3 3\nvelocity all create 300 77 loop geom\nneigh_modify delay 0 every 1"
+    session = asemd(script)
+    theirs = ask(THEIRS, cases={name: lines_of(script)}, columns=COLUMNS)[name]
+    for run, expected in zip(("run 0", "run 3"), theirs):
+        session.execute(run)
+        system = session.scene.system
+        x = np.reshape(expected["x"], (-1, 3))
+        np.testing.assert_allclose(system.x[np.argsort(system.id)], x, rtol=0, atol=1e-11 * np.abs(x).max())
+        count = len(COLUMNS) if name != "by atom" else 4
+        row = [session.variables.evaluate(c) for c in COLUMNS]
+        np.testing.assert_allclose(row[:count], expected["thermo"][:count], rtol=1e-9, atol=1e-9)
+    assert session.loop.engine.mode == "cluster" and session.loop.engine.expanded == (name == "by atom")
+
+
+def test_factors_that_follow_positions_see_atoms_inside_the_box():
+    """Runs that follow one another begin with atoms inside the periodic box, and so do their factors."""
+    text = ("variable p atom 0.3+0.05*x\npair_style hybrid/scaled v_p lj/cut 6 1 coul/cut 5\n" + COEFF
+            + "displace_atoms all move -3.1 0 0 units box\nvelocity all set -0.02 0 0")
+    session = asemd(chain() + text)
+    theirs = ask(THEIRS.replace('"run 0", "run 3"', '"run 2", "run 9", "run 4"'), cases={"x": lines_of(chain() + text)},
+                 columns=COLUMNS)["x"]
+    for run, expected in zip(("run 2", "run 9", "run 4"), theirs):
+        session.execute(run)
+        x = np.reshape(expected["x"], (-1, 3))
+        np.testing.assert_allclose(session.scene.system.x[np.argsort(session.scene.system.id)], x, rtol=0, atol=1e-10)
 
 
 def test_written_and_read_again(tmp_path):

@@ -12,7 +12,7 @@ from asemd.expression_style import ExpressionStyle, fill_variables
 from asemd.fix import Fix
 from asemd.formula import CONSTANTS
 from asemd.formula_functions import MATH
-from asemd.term import PairListTerm
+from asemd.term import FactorTerm, PairListTerm
 
 if TYPE_CHECKING:
     from asemd.lammps.session import Session
@@ -44,6 +44,8 @@ def scale(session: Session) -> list[str]:
         if style in ("equal", "internal"):
             use.factor = float(session.variables.number(name))
         elif style in ("atom", "atomfile"):
+            if not session.running:      # the first forces of a run are those of atoms inside the box
+                session.scene.system.box.wrap(session.scene.system.x, session.scene.system.image)
             use.factor = np.asarray(session.variables.per_atom(name, session.scene.system.n), float)
         else:
             raise InputError(f"pair_style hybrid/scaled: variable {name} has style {style}, it must be equal or atom")
@@ -78,7 +80,7 @@ class LiveCoefficients(Fix):
         fill(self.session)
         scale(self.session)
         for term in loop.engine.terms:
-            if isinstance(term, PairListTerm):
+            if isinstance(term, (PairListTerm, FactorTerm)):
                 term.scale(loop.engine)
             use = getattr(term, "use", None)
             if use is not None and isinstance(use.style, ExpressionStyle):

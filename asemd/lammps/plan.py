@@ -172,7 +172,7 @@ def _list(e: Engine) -> list[Item]:
         what = [" ".join(map(str, x)) if x[0] == "type" else x[0] for x in settings.exclude]
         out.append(Item("exclusions", ", ".join(what), "neigh_modify exclude"))
     if e.expanded:
-        out.append(Item("expansion", "after each build", "sub-styles with factors, or chosen by molecule"))
+        out.append(Item("expansion", "after each build", "a sub-style with a factor for each atom"))
     return out
 
 
@@ -182,16 +182,19 @@ def _term(e: Engine, t) -> Item:
         function = "minimum image" if e.periodic.any() else "no images: nothing is periodic"
         return Item(f"{t.category} {style.name}", f"{len(t.items)} {t.category}s of {len(np.unique(t.types))} types, {function}",
                     f"{t.category}_style and {t.category}_coeff")
+    owner = getattr(t, "owner", None)
+    times = ", times a factor" if owner is not None and not owner.is_plain else ""
     charged = "with charges" if style.charged and getattr(t, "pairs", "") not in ("one_four", "ends") else "without charges"
     if isinstance(t, PairTerm):
         varying = sum(not u for u in t.uniform)
         rows = f"{varying} of {len(t.uniform)} coefficients by type pair" if varying else "coefficients the same for all pairs of types"
         hidden = "excluded partners moved away" if e.exclusions.partners is not None else "no exclusions"
         precision = "single" if t.single else "double"
-        return Item(f"pair {style.name}", f"cluster kernel, {precision} precision, {charged}, {rows}, {hidden}", "pair_style")
+        return Item(f"pair {style.name}", f"cluster kernel, {precision} precision, {charged}, {rows}, {hidden}{times}", "pair_style")
     if isinstance(t, PairRowsTerm):
         hidden = "excluded partners left out of the rows" if e.exclusions.partners is not None else "no exclusions"
-        return Item(f"pair {style.name}", f"rows of single atoms, double precision, {charged}, {hidden}", e.why)
+        which = {"same": ", pairs within molecules", "other": ", pairs between molecules"}.get(t.owner.molecules, "")
+        return Item(f"pair {style.name}", f"rows of single atoms{which}, double precision, {charged}, {hidden}{times}", e.why)
     assert isinstance(t, PairListTerm)
     if t.pairs == "special":
         return Item(f"pair {style.name} (special)", f"{len(e.exclusions.weighted)} weighted pairs, one by one",

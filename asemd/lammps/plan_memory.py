@@ -78,11 +78,12 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         entries = (cap / CLUSTER * (1.5 * around + 64) + 1024 * threads) * (5 if marked else 4)
         out.append(Holding("neighbour list", entries + cap * (62 + 5 * threads), f"about {pairs:.3g} pairs, in clusters", "pair_style"))
     if e.mode == "plain" or e.expanded or e.sparse:
-        held = 8.0 * pairs if e.sparse else 12.0 * pairs if e.expanded else 12.0 * _power(pairs)
+        held = 4.0 * pairs * (1 + len(e.rows)) if e.sparse else 12.0 * pairs if e.expanded else 12.0 * _power(pairs)
         out.append(Holding("pairs one by one", held, f"about {pairs:.3g} pairs", e.why if e.mode == "plain" else "pair_style"))
     for t in e.terms:
         if isinstance(t, (PairTerm, PairRowsTerm)):
-            out.append(Holding(f"pair {t.style.name}", 64.0 * threads * cap, "positions and forces by cluster", "pair_style"))
+            out.append(Holding(f"pair {t.style.name}", (64.0 if t.owner.is_plain else 88.0) * threads * cap,
+                               "positions and forces by cluster", "pair_style"))
         elif isinstance(t, BondedTerm):
             k = ATOMS[t.category]
             m = len(t.items)
