@@ -126,9 +126,12 @@ def set_special(interactions: Interactions, words: list[str]) -> None:
         elif keyword == "extra":       # room for bonds made later; lists grow by themselves here
             read.whole(read.take(words, 1, what)[0], what)
             words = words[1:]
-        elif keyword in ("one/five", "hybrid"):
-            raise InputError(f"{what} is not supported")
+        elif keyword == "one/five":
+            if read.yes_no(read.take(words, 1, what)[0], what):
+                raise InputError(f"{what} yes needs atom_style amoeba, the only one with lists of 1-5 pairs, which does not exist here")
+            words = words[1:]
         else:
-            raise InputError(f"unknown special_bonds keyword {keyword!r}{nearest(keyword, (*FACTORS, 'lj', 'coul', 'lj/coul', *flags))}")
+            known = *FACTORS, "lj", "coul", "lj/coul", "one/five", *flags
+            raise InputError(f"unknown special_bonds keyword {keyword!r}{nearest(keyword, known)}")
     interactions.special_lj, interactions.special_coul = lj, coul
     interactions.special_angle, interactions.special_dihedral = flags["angle"], flags["dihedral"]

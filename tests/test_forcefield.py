@@ -204,12 +204,12 @@ def test_special_bonds(words, lj, coul):
 
 def test_special_bonds_angle_and_dihedral():
     i = Interactions()
-    i.set_special("fene angle yes dihedral on".split())
+    i.set_special("fene one/five no angle yes dihedral on".split())
     assert i.special_angle and i.special_dihedral
     top = Topology(bonds=[[0, 1], [1, 2], [2, 3]], angles=[[0, 1, 2]])
     pairs, kinds = i.special_pairs(system(topology=top))
     assert [(*p, k) for p, k in zip(pairs.tolist(), kinds.tolist(), strict=True)] == [(0, 1, 1), (0, 2, 2), (1, 2, 1), (2, 3, 1)]
-    for words in ("", "foo", "lj 0 0", "lj 0 0 2", "lj 0 0 x", "angle", "angle maybe", "one/five yes"):
+    for words in ("", "foo", "lj 0 0", "lj 0 0 2", "lj 0 0 x", "angle", "angle maybe", "one/five yes", "one/five", "hybrid x"):
         with pytest.raises(InputError, match="special_bonds"):
             i.set_special(words.split())
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 from both import asemd
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 
 BOX = "region b block 0 4 0 4 0 4\ncreate_box 1 b\nmass 1 1\n"
 
@@ -57,3 +57,24 @@ def test_plugin():
 def test_wrong_plugin(words, message):
     with pytest.raises(InputError, match=message):
         asemd(f"plugin {words}")
+
+
+def test_atoms_without_ids():
+    """Ids stay, which is told; where LAMMPS refuses the command, so does this."""
+    with pytest.warns(InputWarning, match="atoms keep their ids"):
+        assert asemd("atom_modify id no\n" + BOX + "create_atoms 1 single 1 1 1").scene.system.id.tolist() == [1]
+    asemd("atom_style full\natom_modify id yes map hash")
+    for text, message in (("atom_style full\natom_modify id no", "needs atom ids"), (BOX + "atom_modify id no", "before the box"),
+                          (BOX + "atom_modify map hash", "before the box"), ("atom_modify id x", "yes or no")):
+        with pytest.raises(InputError, match=message):
+            asemd(text)
+
+
+def test_momentum_of_no_atoms():
+    """Refused where a run or minimisation starts; a dynamic group may be empty."""
+    scene = BOX + ("create_atoms 1 single 1 1 1\npair_style lj/cut 1.0\npair_coeff 1 1 1 1\ngroup none empty\nfix 1 all nve\n"
+                   "variable no atom 0\n")
+    for action in ("run 1", "minimize 0 0 1 1"):
+        with pytest.raises(InputError, match="fix 2 .style momentum.: group none has no atoms"):
+            asemd(scene + f"fix 2 none momentum 1 linear 1 1 1\n{action}")
+    asemd(scene + "group d dynamic all every 1 var no\nfix 2 d momentum 1 linear 1 1 1\nrun 1")

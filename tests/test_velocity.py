@@ -91,12 +91,16 @@ def test_temperature_compute():
     ("velocity all creat 1 1", "did you mean create"), ("velocity nope set 0 0 0", "unknown group"),
     ("velocity all create 1 5 distt gaussian", "did you mean dist"), ("velocity all create 1 5 dist gauss", "gaussian"),
     ("velocity all create 1 5 loop some", "all local geom"), ("velocity all create 1 5 temp nope", "no compute"),
-    ("velocity all create 1 5 rigid f", "not supported"), ("velocity all ramp vx 0 1 x 2 2", "differ"),
+    ("velocity all create 1 5 rigid f", "no fix f"), ("velocity all zero linear rigid f", "no fix f"),
+    ("velocity all create 1 5 bias", "1 value"),
+    ("velocity all create 1 5 bias yes", "needs temp"), ("velocity all create 1 5 temp thermo_temp bias yes", "no bias off"),
+    ("velocity all zero linear bias yes", "needs temp"), ("velocity all create 1 5 bias x", "yes or no"),
+    ("velocity all zero angular rigid n", "has no rigid bodies"), ("velocity all ramp vx 0 1 x 2 2", "differ"),
     ("velocity all scale 1.0", "temperature of group all is 0"), ("velocity all zero all", "linear angular"),
     ("velocity none create 1 5", "no atoms"), ("velocity all create 1 5 mom", "1 value"),
 ])
 def test_mistakes(line, message):
-    session = asemd(ATOMS + "group none empty\nvariable bad atom 1/0")
+    session = asemd(ATOMS + "group none empty\nvariable bad atom 1/0\nfix n all nve")
     with pytest.raises(InputError, match=message):
         session.execute(line)
 

