@@ -129,3 +129,14 @@ def test_import_is_light():
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
                          env={**os.environ, "PYTHONPATH": os.path.dirname(os.path.dirname(asemd.__file__))})
     assert out.stdout.strip() == "[]"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_full_disk(script, capsys):
+    """The log file and dumps, large ones and those that are flushed at the end only: one line that names the file."""
+    assert cli.main(["run", "in.x", "-log", "/dev/full"]) == 1
+    assert capsys.readouterr().err.splitlines()[-1].startswith("ERROR: cannot write log file /dev/full: No space left")
+    for line in ("dump 1 all xyz 1 /dev/full", "dump 1 all custom 1 /dev/full id x"):
+        (script / "in.full").write_text(BASE + line + "\nrun 20\n")
+        assert cli.main(["run", "in.full"]) == 1, line
+        assert "cannot write /dev/full: No space left" in capsys.readouterr().err

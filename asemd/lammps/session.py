@@ -303,7 +303,10 @@ class Session:
 
     def close_dumps(self) -> None:
         for dump in self.scene.dumps.values():
-            dump.close()
+            try:
+                dump.close()
+            except OSError as e:        # what was kept back until now found no room
+                raise InputError(f"dump {dump.id}: cannot write {dump.path}: {e.strerror or e}") from None
 
     def close(self) -> None:
         """Close dumps and the log."""
