@@ -280,10 +280,10 @@ class PairListTerm:
 
     def arguments(self, engine, tid):
         s, m, nth = engine.state, len(self.i), engine.threads
+        arrays = (*self.tables.arrays, self.factor) if self.by_atom else self.tables.arrays
         return (s.x, engine.buffers[tid], s.q, s.type, self.i, self.j, self.code, self.shifts, self.lj, self.coul, m * tid // nth,
-                m * (tid + 1) // nth, self.tables.rows, self.tables.constants, self.tables.arrays, engine.qqr2e,
-                engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index],
-                *([self.factor] if self.by_atom else []))
+                m * (tid + 1) // nth, self.tables.rows, self.tables.constants, arrays, engine.qqr2e,
+                engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
 
     def describe(self, engine, item, value):
         return not_finite(engine, self.style, self.i[item], self.j[item], value)

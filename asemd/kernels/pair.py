@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_factor, pair_list, pair_sums
+from asemd.kernels import bond_history, pair_cluster, pair_list, pair_sums
 from asemd.kernels.generate import Builder, text_of
 from asemd.kernels.target import lanes
 from asemd.pairstyle import PairStyle
@@ -164,14 +164,14 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
 def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, factor: bool = False,
                 piece: str = ""):
     """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`;
-    `factor`: atoms have a factor each, see `pair_factor`.
+    `factor`: atoms have a factor each, the last of `arrays`.
 
     `piece` as in `cluster_kernel`.
     """
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
     charged = any(p.charged for p in parts)
-    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, CHARGED=charged).items():
+    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, CHARGED=charged, FACTOR=factor).items():
         b.constant(name, value)
     names = _paste_style(b, parts, False, False)
     lines = ["def pair_energy_one(r2, qq, lj, coul, rows, constants, arrays, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
@@ -201,10 +201,6 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     b.text("\n".join(lines))
     for f in (pair_sums.eight, pair_sums.add):
         b.function(f)
-    if factor:
-        b.function(pair_factor.factor_forces)
-        module = b.build()
-        return module.factor_forces, module
     b.function(pair_list.list_forces)
     if broken:
         b.function(bond_history.broken_pairs)

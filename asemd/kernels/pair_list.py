@@ -3,9 +3,9 @@
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
 partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
 
-Constants of the generated module: ENERGY, PER_ATOM, CHARGED, CHECK. From the style: `pair_energy_one(r2, qq, lj, coul, rows, constants,
-arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients from tuple or
-table, as `uniform` says).
+Constants of the generated module: ENERGY, PER_ATOM, CHARGED, CHECK, FACTOR. From the style: `pair_energy_one(r2, qq, lj, coul, rows,
+constants, arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
+from tuple or table, as `uniform` says).
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from asemd.kernels.pair_sums import add, eight
 
-ENERGY = PER_ATOM = CHARGED = CHECK = False
+ENERGY = PER_ATOM = CHARGED = CHECK = FACTOR = False
 pair_energy_one = furthest = pair_of = None
 
 
@@ -21,7 +21,9 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
                 atom_energy, atom_virial, bad):
     """Pairs lo..hi-1: forces added to `f`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and `atom_virial (6, cap)`.
 
-    `bad (4,)`: 1, the first pair whose energy is not finite, its distance.
+    `bad (4,)`: 1, the first pair whose energy is not finite, its distance. If FACTOR, `arrays` ends with a factor for each atom, by which
+    the force on it is multiplied. Such forces have no energy, and those on the two atoms of a pair are not opposite; their virial is that
+    of the mean force, which does not depend on where the origin is, and no atom's in particular.
     """
     for m in range(lo, hi):
         i = pair_i[m]
@@ -36,6 +38,8 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         if CHARGED:
             qq = qqr2e * q[i] * q[j]
         fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], rows, constants, arrays, type_of[i], type_of[j])
+        if FACTOR:
+            ev = ec = 0.0
         if not abs(ev + ec) < np.inf or not abs(fp) < np.inf:
             if bad[0] == 0.0:
                 bad[0] = 1.0
@@ -45,15 +49,18 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         gx = dx * fp
         gy = dy * fp
         gz = dz * fp
-        f[0, i] += gx
-        f[1, i] += gy
-        f[2, i] += gz
-        f[0, j] -= gx
-        f[1, j] -= gy
-        f[2, j] -= gz
+        a = arrays[-1][i] if FACTOR else 1.0
+        b = arrays[-1][j] if FACTOR else 1.0
+        f[0, i] += a * gx
+        f[1, i] += a * gy
+        f[2, i] += a * gz
+        f[0, j] -= b * gx
+        f[1, j] -= b * gy
+        f[2, j] -= b * gz
         if ENERGY:
-            add(acc, eight(ev, ec, dx, dy, dz, gx, gy, gz))
-        if PER_ATOM:
+            mean = 0.5 * (a + b)
+            add(acc, eight(ev, ec, dx, dy, dz, mean * gx, mean * gy, mean * gz))
+        if PER_ATOM and not FACTOR:
             h = 0.5 * (ev + ec)
             atom_energy[i] += h
             atom_energy[j] += h
