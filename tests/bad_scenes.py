@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from four_beads import COUNTS, ITEMS, TYPES
+
 SCRIPT = """\
 units lj
 atom_style full
@@ -25,19 +27,12 @@ thermo_style custom step temp pe ke etotal press
 run 2
 """
 
-DATA = """\
+DATA = f"""\
 chain of four atoms
 
-4 atoms
-3 bonds
-2 angles
-1 dihedrals
-1 impropers
+{COUNTS}1 impropers
 1 atom types
-1 bond types
-1 angle types
-1 dihedral types
-1 improper types
+{TYPES}1 improper types
 0.0 10.0 xlo xhi
 0.0 10.1 ylo yhi
 0.0 10.2 zlo zhi
@@ -60,21 +55,7 @@ Velocities
 3 0.0 0.0 0.1
 4 -0.1 -0.1 -0.1
 
-Bonds
-
-1 1 1 2
-2 1 2 3
-3 1 3 4
-
-Angles
-
-1 1 1 2 3
-2 1 2 3 4
-
-Dihedrals
-
-1 1 1 2 3 4
-
+{ITEMS}
 Impropers
 
 1 1 4 3 2 1

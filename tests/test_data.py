@@ -7,6 +7,7 @@ import warnings
 
 import numpy as np
 import pytest
+from four_beads import COUNTS, ITEMS, TYPES
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from wheel import ask
@@ -18,18 +19,11 @@ from asemd.lammps.data_write import write_data
 from asemd.system import System
 from asemd.topology import Topology
 
-GOOD = """a chain of four beads
+GOOD = f"""a chain of four beads
 
-4 atoms
-3 bonds
-2 angles
-1 dihedrals
-1 impropers
+{COUNTS}1 impropers
 2 atom types
-1 bond types
-1 angle types
-1 dihedral types
-1 improper types
+{TYPES}1 improper types
 0.0 10.0 xlo xhi
 0.0 10.0 ylo yhi   # a comment
 0.0 10.0 zlo zhi
@@ -57,21 +51,7 @@ Velocities
 2 1 2 3
 4 -1 -2 -3
 
-Bonds
-
-1 1 1 2
-2 1 2 3
-3 1 3 4
-
-Angles
-
-1 1 1 2 3
-2 1 2 3 4
-
-Dihedrals
-
-1 1 1 2 3 4
-
+{ITEMS}
 Impropers
 
 1 1 2 1 3 4

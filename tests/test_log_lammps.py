@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from both import asemd, lines_of
+from four_beads import COUNTS, ITEMS, TYPES
 from wheel import ask
 
 from asemd import __version__
@@ -183,17 +184,10 @@ run 30
     assert len(found[0]) == 2 and found[0] == found[1]
 
 
-CHAIN = """4-chain
+CHAIN = f"""4-chain
 
-4 atoms
-3 bonds
-2 angles
-1 dihedrals
-2 atom types
-1 bond types
-1 angle types
-1 dihedral types
-0 10 xlo xhi
+{COUNTS}2 atom types
+{TYPES}0 10 xlo xhi
 0 10 ylo yhi
 0 10 zlo zhi
 
@@ -216,21 +210,7 @@ Velocities
 3 0 0 0
 4 0 0 0
 
-Bonds
-
-1 1 1 2
-2 1 2 3
-3 1 3 4
-
-Angles
-
-1 1 1 2 3
-2 1 2 3 4
-
-Dihedrals
-
-1 1 1 2 3 4
-"""
+{ITEMS}"""
 MADE_READY = """
 units real
 atom_style full
