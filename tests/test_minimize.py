@@ -238,7 +238,6 @@ def test_not_a_number_stops():
 
 
 def test_from_ase():
-    pytest.importorskip("ase")
     from ase import Atoms
     from ase.calculators.lj import LennardJones
     atoms = Atoms("Ar13", positions=cluster(3, 13), calculator=LennardJones(rc=20.0, ro=20.0, smooth=False))

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import pytest
 from both import asemd, assert_same, lammps
+from wheel import ask
 
 from asemd.errors import InputError
 from asemd.topology import Topology
@@ -108,7 +109,6 @@ DISCS += "set atom 4* density/disc 0.7\n"
 
 @pytest.mark.parametrize("script", [SPHERES, DISCS])
 def test_spheres(script):
-    ask = pytest.importorskip("wheel").ask
     answer = ask("""
 lmp = start()
 for line in given["lines"]:

