@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import copy
 
+from asemd import units as unit_styles
+from asemd.lammps.command.pair_write import pair_value
 from asemd.report.knob import Knob, nice
 
 FACTORS = (0.8, 1.2, 0.7, 1.4, 0.9)
@@ -51,16 +53,16 @@ class Cutoff(Knob):
 
     def _designed(self, scene) -> bool:
         """Whether all forces vanish at their cutoffs without a switch that makes them: the repulsive half of a potential, a soft bump."""
-        terms = scene.interactions.pair_terms(scene.system.counts["ntypes"], None)
+        ntypes = scene.system.counts["ntypes"]
+        terms = scene.interactions.pair_terms(ntypes, unit_styles.get(scene.units))
         for term in terms:
             if term.style.charged or any(name.startswith("inner") for name in term.use.settings):
                 return False
-            constants = term.style.constants(term.use.settings)
-            for c in term.filled.values():
-                for part, cut in zip(term.style.parts, term.style.cutoffs(c, term.use.settings), strict=True):
-                    rest = [c[n] for n in part.rows] + [float(constants[n]) for n in part.constants]
-                    at, near = (abs(part.function(r * r if part.coordinate == "r2" else r, *rest)[1]) for r in (cut, 0.8 * cut))
-                    if at > ENDS * near:
+            for i in range(1, ntypes + 1):
+                for j in range(i, ntypes + 1):
+                    cut = float(term.tables.rows[term.cut_rows, i, j].max()) ** 0.5
+                    at, near = (abs(pair_value([term], i, j, (part * cut) ** 2, 0.0)[1]) for part in (1.0 - 1e-9, 0.8))
+                    if cut > 0.0 and at > ENDS * near:
                         return False
         return bool(terms)
 
