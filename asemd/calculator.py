@@ -208,12 +208,16 @@ class ForceField(Calculator):
             raise SimulationError(f"position of atom {atoms.arrays['id'][k] if 'id' in atoms.arrays else k + 1} is not finite")
         if "type" not in atoms.arrays:
             if self.like is not None:
-                raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements")
+                raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements; "
+                                 "use atoms that asemd.read gave, or atoms.set_array('type', ...)")
             named = {k for style in self.arguments["pair"].values() for key in coefficients(style)
                      for k in (key if isinstance(key, tuple) else (key,)) if isinstance(k, str)}
             symbols = set(atoms.get_chemical_symbols())
             self.types += sorted((symbols | (named if not self.types else set())) - set(self.types))
             types = self.types
+        elif self.like is not None and len(nameless := np.flatnonzero(atoms.arrays["type"] < 1)):
+            k = int(nameless[0])        # ASE's append and extend fill up with zeros
+            raise InputError(f"atoms[{k}] has the type {atoms.arrays['type'][k]}: set atoms.arrays['type'], types count from 1")
         system = System.from_ase(atoms, types=types, units=self.units, like=self.like)
         system.topology = self._topology_of(atoms)
         if self.interactions is None:
@@ -313,7 +317,12 @@ class ForceField(Calculator):
         if not self._seen:
             system_changes = all_changes
         try:
-            self._prepare(atoms, system_changes)
+            try:
+                self._prepare(atoms, system_changes)
+            except InputError as e:
+                if self.types and "type pairs" in e.message:
+                    e.message += f"; the types are {', '.join(f'{t} {s}' for t, s in enumerate(self.types, 1))}"
+                raise
             distance = unit_styles.factor("distance", self.units)
             self._engine.move(atoms.positions if distance == 1.0 else atoms.positions / distance)
             result = self._engine.collect()

@@ -93,6 +93,8 @@ def with_keys(styles: Mapping) -> dict:
             return k
         words = [int(w) if w.isdigit() else w for w in k.split()]
         return words[0] if len(words) == 1 else tuple(words)
+    if not isinstance(styles, Mapping):
+        raise InputError(f"styles are given with their coefficients, as {{'harmonic': {{1: (13.0, 1.53)}}}}, got {styles!r}")
     out = {}
     for name, style in styles.items():
         coeff = {key(k): v for k, v in coefficients(style).items()}

@@ -561,3 +561,21 @@ def test_position_that_is_not_finite():
     atoms.calc = ForceField(pair=ARGON)
     with pytest.raises(SimulationError, match="position of atom 2 is not finite"):
         atoms.get_potential_energy()
+
+
+def test_mistakes_of_types_are_told_in_elements(tmp_path):
+    pair = PlainAtoms("OH", positions=[[0, 0, 0], [0, 0, 3.0]])
+    pair.calc = ForceField(pair={"lj/cut 8.0": {("O", "O"): (0.01, 3.0)}})
+    with pytest.raises(InputError, match="type pairs 1 1, 1 2 is missing; the types are 1 H, 2 O"):
+        pair.get_potential_energy()
+    with pytest.raises(InputError, match="styles are given with their coefficients.*got 'harmonic'"):
+        ForceField(bond="harmonic")
+
+
+def test_appended_atom_without_type(tmp_path):
+    (tmp_path / "in.lj").write_text("units metal\nlattice fcc 5.26\nregion b block 0 2 0 2 0 2\ncreate_box 1 b\ncreate_atoms 1 box\n"
+                                    "mass 1 39.948\npair_style lj/cut 5.0\npair_coeff 1 1 0.0104 3.40\nrun 0\n")
+    atoms = asemd.read(tmp_path / "in.lj")
+    atoms.append("Ar")
+    with pytest.raises(InputError, match=r"atoms\[32\] has the type 0: set atoms.arrays\['type'\]"):
+        atoms.get_potential_energy()
