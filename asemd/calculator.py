@@ -215,9 +215,6 @@ class ForceField(Calculator):
             symbols = set(atoms.get_chemical_symbols())
             self.types += sorted((symbols | (named if not self.types else set())) - set(self.types))
             types = self.types
-        elif self.like is not None and len(nameless := np.flatnonzero(atoms.arrays["type"] < 1)):
-            k = int(nameless[0])        # ASE's append and extend fill up with zeros
-            raise InputError(f"atoms[{k}] has the type {atoms.arrays['type'][k]}: set atoms.arrays['type'], types count from 1")
         system = System.from_ase(atoms, types=types, units=self.units, like=self.like)
         system.topology = self._topology_of(atoms)
         if self.interactions is None:
@@ -317,12 +314,7 @@ class ForceField(Calculator):
         if not self._seen:
             system_changes = all_changes
         try:
-            try:
-                self._prepare(atoms, system_changes)
-            except InputError as e:
-                if self.types and "type pairs" in e.message:
-                    e.message += f"; the types are {', '.join(f'{t} {s}' for t, s in enumerate(self.types, 1))}"
-                raise
+            self._prepare(atoms, system_changes)
             distance = unit_styles.factor("distance", self.units)
             self._engine.move(atoms.positions if distance == 1.0 else atoms.positions / distance)
             result = self._engine.collect()

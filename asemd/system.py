@@ -324,13 +324,14 @@ class System:
         symbols = atoms.get_chemical_symbols()
         if types is None and "type" in arrays:
             number = np.array(arrays["type"], np.int32)
+            if number.min(initial=1) < 1:       # ASE's append and extend fill up with zeros
+                raise InputError(f"atoms[{number.argmin()}] has the type {number.min()}: set atoms.arrays['type'], types count from 1")
             for t, s in zip(number, symbols):
                 labels.setdefault(int(t), s)
             labels = labels if len(set(labels.values())) == len(labels) else {}
         else:
             types = sorted(set(symbols)) if types is None else list(types)
-            unknown = sorted(set(symbols) - set(types))
-            if unknown:
+            if unknown := sorted(set(symbols) - set(types)):
                 raise InputError(f"element {unknown[0]} is not among the types {' '.join(types)}")
             labels = {t: s for t, s in enumerate(types, 1)}
             number = np.array([types.index(s) + 1 for s in symbols], np.int32)

@@ -563,11 +563,7 @@ def test_position_that_is_not_finite():
         atoms.get_potential_energy()
 
 
-def test_mistakes_of_types_are_told_in_elements(tmp_path):
-    pair = PlainAtoms("OH", positions=[[0, 0, 0], [0, 0, 3.0]])
-    pair.calc = ForceField(pair={"lj/cut 8.0": {("O", "O"): (0.01, 3.0)}})
-    with pytest.raises(InputError, match="type pairs 1 1, 1 2 is missing; the types are 1 H, 2 O"):
-        pair.get_potential_energy()
+def test_style_without_coefficients():
     with pytest.raises(InputError, match="styles are given with their coefficients.*got 'harmonic'"):
         ForceField(bond="harmonic")
 
