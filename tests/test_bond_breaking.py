@@ -304,3 +304,19 @@ def test_quartic_against_60_digits():
                 condition += abs((force(*moved, near) - f) * mp.mpf(10) ** 25)
             assert abs(function(r, *c, 1.0)[1] - f) <= 8 * mp.mpf(2) ** -53 * (condition + abs(f)), (r, c)
     assert math.isnan(function(1.4, 1200.0, -0.55, 0.25, 1.3, 34.7)[0])
+
+
+def test_style_chosen_again_after_restart_keeps_lengths(files, tmp_path):
+    """Reference lengths come from the restart file as long as no run was made; data files have no coefficients of bpm/spring."""
+    head = (BPM.format(special=OFF, words="", **files) + TAIL).splitlines()
+    lmp = engine()
+    for line in [*head, "thermo 10", "run 10", f"write_restart {tmp_path / 'r'}", f"write_data {tmp_path / 'd'}"]:
+        lmp.command(line)
+    want = lmp.get_thermo("ebond")
+    assert want > 0.0 and "Bond Coeffs" not in (tmp_path / "d").read_text()
+    again = engine()
+    for line in [f"read_restart {tmp_path / 'r'}", "bond_style bpm/spring", "bond_coeff 1 100 0.06 0.5"]:
+        again.command(line)
+    (new,), (old,) = (e.session.scene.interactions.uses["bond"] for e in (again, lmp))
+    for a, b in zip(new.memory["bonds"], old.memory["bonds"]):
+        np.testing.assert_array_equal(a, b)

@@ -112,7 +112,7 @@ def test_appending(tmp_path):
     ("bond_write 1 5 0.5 2.0 t", "needs 6 values"), ("bond_write 1 1 0.5 2.0 t K", "at least 2"), ("bond_write 4 5 0.5 2.0 t K", "type 4"),
     ("bond_write 1 5 2.0 0.5 t K", "outer above inner"), ("bond_write 1 5 0.0 0.5 t K", "above 0"), ("bond_write x 5 0.5 1 t K", "whole"),
     ("bond_write 1 5 0.5 1 nowhere/t K", "cannot write"), ("angle_write 1 5 t K", "before angle_style"),
-    ("bond_write 3 5 0.5 1.6 t K", "harmonic/restrain depends on more than a length"),
+    ("bond_write 3 5 0.5 1.6 t K", "harmonic/restrain depends on more than the length"),
     ("bond_write 2 5 0.5 1.6 t K", "1.6 is outside the domain of bond style fene"),
     ("pair_write 1 2 5 q 2 8 t K", "expected one of r rsq bitmap"), ("pair_write 1 2 5 r 2 8 t K 1", "two charges or none"),
     ("pair_write 1 9 5 r 2 8 t K", "type 9"), ("pair_write 1 2 3 bitmap 2 8 t K", "too few"), ("pair_write 1 2 5 r 0 8 t K", "above 0"),
@@ -123,3 +123,29 @@ def test_refused(line, message, tmp_path, monkeypatch):
         execute([*SCENE, *PAIRS, "bond_style hybrid harmonic fene harmonic/restrain", "bond_coeff 1 harmonic 300 1.1",
                  "bond_coeff 2 fene 30 1.5 1 1", "bond_coeff 3 harmonic/restrain 100", line])
     assert not (tmp_path / "t").exists()
+
+
+HYBRIDS = {
+    "scaled": ["pair_style hybrid/scaled v_half lj/cut 8.0 0.7 coul/cut 8.0"],
+    "molecular": ["pair_style hybrid/molecular lj/cut 8.0 coul/cut 8.0"],
+}
+
+
+@pytest.mark.parametrize("name", HYBRIDS)
+def test_parts_of_hybrid_pair_styles(name, tmp_path):
+    """Factors of hybrid/scaled count; of hybrid/molecular it is the style of the first two atoms. Expressions take present variables."""
+    lines = [*SCENE, "create_atoms 1 single 0 0 0", "create_atoms 2 single 4 0 0", "set atom 1*2 mol 1", "variable half equal 0.5",
+             *HYBRIDS[name],
+             "pair_coeff * * lj/cut 0.2 3.0", "pair_coeff * * coul/cut", "pair_write 1 2 9 r 2.0 7.5 FILE ONE 0.5 -0.25",
+             "bond_style lepton", "bond_coeff * 1.0 'v_half*r^2'", "variable half equal 0.8", "bond_write 1 9 0.8 1.5 FILE TWO",
+             "pair_write 1 2 9 r 2.0 7.5 FILE THREE 0.5 -0.25"]
+    ours, theirs = tmp_path / "ours", tmp_path / "theirs"
+    execute([c.replace("FILE", str(ours)) for c in lines])
+    ask("""
+l = start()
+l.commands_list(given["commands"])
+l.close()
+answer = 0
+""", commands=[c.replace("FILE", str(theirs)) for c in lines])
+    got, want = sections(ours.read_text())[1], sections(theirs.read_text())[1]
+    assert got == pytest.approx(want, rel=1e-12, abs=1e-12)

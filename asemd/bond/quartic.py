@@ -2,7 +2,9 @@ r"""$$E = K (r - R_c)^2 (r - R_c - B_1)(r - R_c - B_2) + U_0
     + \left\{ 4 \left[ r^{-12} - r^{-6} \right] + 1 \ \text{for}\ r < 2^{1/6} \right\}$$
 
 Bond of bead-spring polymers that breaks for good when it gets longer than $R_c$: from then on the atoms have the pair interaction that the
-bond replaces. Epsilon and sigma of the repulsion are 1 in the units of the scene.
+bond replaces. Epsilon and sigma of the repulsion are 1 in the units of the scene. LAMMPS takes the pair energy of bonded atoms out of
+``evdwl`` with its Coulomb part and out of ``engpot`` of compute bond/local once more; here each
+part is where it belongs, and sums are the same.
 Source: Stevens, Macromolecules 34, 2710 (2001); LAMMPS manual, bond_style quartic.
 """
 from __future__ import annotations

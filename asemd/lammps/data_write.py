@@ -233,6 +233,8 @@ def _coefficients(interactions: Interactions, s: System, pair: str) -> Iterator[
         style = interactions.style_name(category)
         if style == "none" or not _count(s, "atom" if category == "pair" else category):
             continue
+        if style == "bpm/spring":      # as in LAMMPS, whose scripts choose this style after read_data
+            continue
         if category == "pair":
             sections = _pair_sections(interactions, s, pair)
         else:

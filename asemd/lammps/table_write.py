@@ -13,6 +13,7 @@ import numpy as np
 from asemd import units as unit_styles
 from asemd.coordinates import pairs_of
 from asemd.errors import InputError
+from asemd.lammps import live_coefficients
 from asemd.lammps.setup_log import report_mixing
 from asemd.style import VECTORS, Style
 from asemd.words import exactly, whole
@@ -72,20 +73,22 @@ def style_of(session, category: str, t: int, command: str) -> tuple[Style, dict,
     interactions, system = session.scene.interactions, session.scene.need_system(command)
     if not interactions.uses[category]:
         raise InputError(f"{command} command before {category}_style is defined")
+    live_coefficients.fill(session, category)
     for use in interactions.uses[category]:
         if t in use.coeff:
             style = use.style.bind(use.settings, use.coeff, interactions.compat)
             beyond = [name for name in style.coordinates if name in ("rate", "reference", "gamma")]
             if beyond:
-                one = "length" if category == "bond" else "angle"
-                raise InputError(f"{command}: {category} style {style.name} depends on more than a {one}: it has no table")
+                one = "the length" if category == "bond" else "the angle"
+                raise InputError(f"{command}: {category} style {style.name} depends on more than {one}: it has no table")
             if style.function is None:
                 return style, use.coeff[t], lambda *q: (0.0,) * (1 + len(q))
             packed = style.pack(use.settings, {t: use.coeff[t]}, t, unit_styles.get(system.units))
             rows, arrays = iter(packed.coeff[:, t].tolist()), iter(packed.arrays)
             given = {name: next(arrays if name in style.arrays else rows) for name in style.arguments}
             return style, use.coeff[t], functools.partial(style.function, **given)
-    raise InputError(f"{command}: {category}_coeff {t} is not set")
+    raise InputError(f"{command}: {category} type {t} is none, it has no table" if t in interactions.none[category] else
+                     f"{command}: {category}_coeff {t} is not set")
 
 
 def run_bonded(session, args, category: str, words: int, points: Callable) -> None:

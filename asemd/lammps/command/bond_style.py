@@ -6,8 +6,11 @@ from asemd.errors import InputError
 
 def run(session, args):
     scene = session.scene
-    before = storing(scene)
+    before, old = storing(scene), list(scene.interactions.uses["bond"])
     scene.interactions.set_style("bond", args)
+    if session.loop is None:      # between read_restart and the first run: the file's reference lengths go to the style chosen again
+        for use in scene.interactions.uses["bond"]:
+            use.memory.update(next((o.memory for o in old if o.style is use.style and use.style.remembers == "bonds"), {}))
     after = storing(scene)
     if before or after:
         keep_broken(scene, after)

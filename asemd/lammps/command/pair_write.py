@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 
 from asemd import units as unit_styles
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
+from asemd.lammps import live_coefficients
 from asemd.lammps.table_write import append, one_type
 from asemd.pair.table import Grid
 from asemd.words import choice, number, whole
@@ -25,11 +27,28 @@ def squares(style: str, n: int, inner: float, outer: float) -> np.ndarray:
     return out
 
 
+def chosen(session, ntypes: int, units) -> list:
+    """The pair styles that act on the two atoms; of ``hybrid/molecular`` the one of the first two atoms, as in LAMMPS."""
+    system = session.scene.system
+    for fill in (live_coefficients.fill, live_coefficients.scale):
+        fill(session)
+    terms = session.scene.interactions.pair_terms(ntypes, units)
+    if not any(term.molecules for term in terms):
+        return terms
+    which = "other" if system.n > 1 and system.molecule[0] != system.molecule[1] else "same"
+    terms = [term for term in terms if term.molecules == which]
+    warnings.warn("pair_write: hybrid/molecular has two energies for each pair of types, the table is the one of atoms of "
+                  + ("one molecule" if which == "same" else "two molecules"), InputWarning, stacklevel=2)
+    return terms
+
+
 def pair_value(terms, i: int, j: int, r2: float, qq: float) -> tuple[float, float]:
-    """Energy and force of two atoms of types i and j, without special factors."""
+    """Energy and force of two atoms of types i and j, without special factors; factors per atom (``hybrid/scaled``) have no energy."""
     energy = force = 0.0
     r = math.sqrt(r2)
     for term in terms:
+        if np.ndim(term.use.factor):
+            continue
         row = constant = array = 0
         for part in term.style.parts:
             cut2, offset, *values = term.tables.rows[row:row + 2 + len(part.rows), i, j].tolist()
@@ -38,8 +57,8 @@ def pair_value(terms, i: int, j: int, r2: float, qq: float) -> tuple[float, floa
             row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
             if r2 < cut2:
                 e, slope = part.function(r2 if part.coordinate == "r2" else r, *[qq] * part.charged, *values)
-                energy += e - offset
-                force -= 2.0 * r * slope if part.coordinate == "r2" else slope
+                energy += term.use.factor * (e - offset)
+                force -= term.use.factor * (2.0 * r * slope if part.coordinate == "r2" else slope)
     return energy, force
 
 
@@ -61,7 +80,7 @@ def run(session, args):
     if not scene.interactions.uses["pair"]:
         raise InputError(f"{what} command before pair_style is defined")
     units = unit_styles.get(system.units)
-    terms = scene.interactions.pair_terms(system.counts["ntypes"], units)
+    terms = chosen(session, system.counts["ntypes"], units)
     qq = units.qqr2e / scene.interactions.dielectric * qi * qj
     r2 = squares(style, n, inner, outer)
     values = np.array([pair_value(terms, i, j, s, qq) for s in r2.tolist()])
