@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 from numba import config
@@ -11,7 +12,7 @@ from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
 from asemd.exclusions import Exclusions
-from asemd.kernels.state import aligned, cell_arrays, empty_state
+from asemd.kernels.state import BoxState, aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
@@ -19,6 +20,7 @@ from asemd.result import Result, Settings, Snapshot
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
+SLOTTED = 9           # the first fields of a `State`, those by slot
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
 
 
@@ -30,6 +32,8 @@ class Engine:
     system : asemd.system.System
     interactions : asemd.forcefield.Interactions
     settings : Settings
+    box_moves : str
+        Whether the box changes within a run: ``size`` (a box along the axes stays one), ``shape`` (it may be tilted), or empty.
 
     Attributes
     ----------
@@ -37,8 +41,8 @@ class Engine:
         ``cluster``, ``plain`` or ``none``: which neighbour list the scene needs; `why` says why.
     """
 
-    def __init__(self, system, interactions, settings: Settings | None = None):
-        self.system, self.interactions, self.settings = system, interactions, settings or Settings()
+    def __init__(self, system, interactions, settings: Settings | None = None, box_moves: str = ""):
+        self.system, self.interactions, self.settings, self.box_moves = system, interactions, settings or Settings(), box_moves
         self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
         self.sparse = False
@@ -129,7 +133,7 @@ class Engine:
         if self.system.dimension == 2:
             self.periodic[2] = False
         off = self.vectors - np.diag(np.diag(self.vectors))
-        self.ortho = not np.count_nonzero(off) and bool((np.diag(self.vectors) > 0).all())
+        self.ortho = not np.count_nonzero(off) and bool((np.diag(self.vectors) > 0).all()) and self.box_moves != "shape"
         self.inverse = np.ascontiguousarray(box.inverse)
         self.cell = cell_arrays(self.vectors, self.periodic)
         self.shifts27 = IMAGES @ self.cell.reduced
@@ -158,16 +162,34 @@ class Engine:
 
     def _allocate(self, capacity: int) -> None:
         old, capacity = self.state, -(-capacity // 8) * 8      # rows of whole cache lines
-        new = empty_state(capacity)
+        new = empty_state(capacity, self.slot_of, self.system.image, self.acc, self._live_box())
         if old is not None:
             m = self.ns
-            for a, b in zip(new, old):
+            for a, b in zip(new[:SLOTTED], old[:SLOTTED]):
                 a[..., :m] = b[..., :m]
         self.buffers = aligned((self.threads, 3, capacity))
         self.state = new._replace(f=self.buffers[0])
         self.held = aligned((3, capacity))
         self.moved = aligned((capacity,))      # squared displacement of each slot since the list was built, for lists that may be outdated
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
+
+    def _live_box(self) -> BoxState:
+        """The box as the loop has it, with the shifts of the present lists."""
+        shifts, shifts4 = np.zeros((0, 3)), np.zeros((0, 4))
+        if self.mode == "cluster" and hasattr(self.list, "shifts"):
+            shifts, shifts4 = self.list.shifts, self.list.shifts4
+        elif self.mode == "plain" and hasattr(self.list, "shifts"):
+            shifts = self.list.shifts
+        reduction = np.rint(self.cell.reduced @ np.linalg.inv(self.vectors))
+        return BoxState(self.vectors, self.origin, self.periodic.astype(float), self.cell, reduction,
+                        np.rint(shifts @ np.linalg.inv(self.vectors)), shifts, shifts4, IMAGES.copy(), self.shifts27,
+                        np.vstack([self.origin, self.vectors]))
+
+    def take_box(self) -> None:
+        """The box of the loop becomes that of the system."""
+        box = self.system.box
+        if self.state is not None and not (np.array_equal(box.cell, self.vectors) and np.array_equal(box.origin, self.origin)):
+            self.system.box = replace(box, origin=self.origin, cell=self.vectors)
 
     def __getstate__(self):
         raise TypeError("an Engine holds compiled code and is made anew from its scene")
@@ -193,6 +215,9 @@ class Engine:
         """Wrap, sort, list: the slots keep their atoms' data but change order."""
         began = time.perf_counter()
         self.bonds.release()
+        if self.box_moves:
+            self.take_box()
+            self._set_box()
         k, s = self.k, self.state
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
@@ -227,6 +252,7 @@ class Engine:
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
         self.moved[:] = 0.0
+        self.state = self.state._replace(slot=self.slot_of, image=self.system.image, box=self._live_box())
         for t in self.terms:
             t.rebuild(self)
         self.thread_arguments = None
@@ -287,6 +313,7 @@ class Engine:
     # ---- forces -------------------------------------------------------------------------------------------------------------------------
     def forces(self, energy: bool = True) -> None:
         """Forces of the present slots into ``state.f``; energies and virials into `acc`."""
+        self.state.virial[:] = 0.0
         if energy:
             self.acc[:] = 0.0
         if self.settings.outdated:
@@ -331,6 +358,8 @@ class Engine:
             else:
                 energy[BONDED_KEY[t.category]] += float(a[0] + a[1])
             virial_of[t.category] = virial_of.get(t.category, 0.0) + a[2:8]
+        if self.state.virial.any():
+            virial_of["fix"] = self.state.virial.sum(axis=0)
         virial = sum(virial_of.values(), np.zeros(6))
         if self.interactions.tail and self.pair_terms:
             energy["etail"], p = self.interactions.tail_correction(self.system, self.units)
@@ -359,6 +388,8 @@ class Engine:
     def store(self) -> None:
         """Slots back into the system: positions, velocities, forces."""
         s, y = self.state, self.system
+        if self.box_moves:
+            self.take_box()
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
         store_torques(self.terms, y)
         self.bonds.carry_back()

@@ -1,6 +1,7 @@
 """The time loop: fixes, forces and list builds over many steps, compiled where nothing needs Python."""
 from __future__ import annotations
 
+import math
 import signal
 import threading
 import time
@@ -12,8 +13,13 @@ from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import Fix
 from asemd.kernels import timeloop as tl
+from asemd.kernels.box import corner_moves
 from asemd.kernels.state import Thread
 from asemd.watchdog import Watchdog
+
+IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
+ABOUT_LISTS = ("pre_exchange", "pre_neighbor", "post_neighbor")
+NEVER = 2**62
 
 
 class Interrupt:
@@ -60,12 +66,14 @@ class Loop:
         self.system, self.interactions, self.settings = system, interactions, settings
         self.fixes, self.groups, self.dt, self.step = list(fixes), groups, float(dt), int(step)
         self.begin = self.end = self.step
-        self.engine = Engine(system, interactions, settings)
+        moves = {f.box_moves for f in self.fixes} - {""}
+        self.engine = Engine(system, interactions, settings, "shape" if "shape" in moves else "".join(moves))
         self.units = self.engine.units
         self.result: Result | None = None
         self.gone: dict[str, int] = {}        # atoms of each group lost since `setup`
         self.warn = warn
         self._fix_data: tuple = ()
+        self._collected = -1
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
@@ -111,38 +119,67 @@ class Loop:
         self._ago = 0
         self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
         self._make_module()
+        self._collect()
         for n, f in enumerate(self.fixes):
             f.setup(self)
             if "post_force" in self._kinds[n]:
                 self._call(n, "post_force")
-        self.result = e.collect()
+        self._collect()
         e.timings = dict.fromkeys(e.timings, 0.0)
         e.builds = e.dangerous = 0
         self.watchdog.begin()
         return self.result
 
-    def _arrays(self, fix: Fix) -> np.ndarray:
+    def _arrays(self, fix: Fix) -> np.ndarray | tuple[np.ndarray, ...]:
         a = fix.atom_arrays(self)
+        if isinstance(a, tuple):
+            return a
         return np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)
+
+    def _collect(self) -> Result:
+        """The result of this step, whose energies were computed."""
+        self.result, self._collected = self.engine.collect(), self.step
+        return self.result
 
     def _make_module(self) -> None:
         self.engine.changed = False
         self._kinds = [f.hooks() for f in self.fixes]
-        self._compiled = all(compiled for kinds in self._kinds for compiled in kinds.values())
+        self._sort_hooks()
         hooks = [{name: getattr(f, name) for name in tl.COMPILED if kinds.get(name)} for f, kinds in zip(self.fixes, self._kinds)]
         for f, compiled in zip(self.fixes, hooks):
             if {"initial_integrate", "final_integrate"} <= set(compiled) and hasattr(f, "final_initial"):
                 compiled["final_initial"] = f.final_initial
         terms = self.engine.terms
-        kernels = [(t.kernel(False, False), t.kernel(True, False)) for t in terms]
+        kernels = [(t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if self._virial_every else None) for t in terms]
         key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks),
-               self.settings.outdated)
+               self.settings.outdated, self.engine.box_moves, self._virial_every)
         if self._module is not None and self._module[0] == key:
             return
         self._module = (key, tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes],
-                                       self.settings.outdated))
-        if self._compiled:
+                                       self.settings.outdated, bool(self.engine.box_moves), self._virial_every))
+        if self._next_whole(self.step) > self.step + 1:
             self._enter(0, False)     # compiles, or loads from the cache, without moving anything
+
+    def _sort_hooks(self) -> None:
+        """Which fixes act in Python, and when; which of them want a virial."""
+        self._whole = [f for f, kinds in zip(self.fixes, self._kinds) if any(not kinds.get(name, True) for name in IN_A_STEP)]
+        self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
+        self._about_lists = any(name in kinds for kinds in self._kinds for name in ABOUT_LISTS)
+        self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
+
+    def _next_whole(self, step: int) -> int:
+        """The next step after `step` that is made by Python, hook by hook."""
+        forced = [f.next_reneighbor for f in self.fixes if f.next_reneighbor > step]
+        return min([NEVER, *forced, *(f.next_step(step) for f in self._whole)])
+
+    def _next_end(self, step: int) -> int:
+        """The next step after `step` with an `end_of_step` in Python."""
+        return min((self.fixes[n].next_end(step) for n in self._ends), default=NEVER)
+
+    def _needs(self, step: int) -> set[str]:
+        """What fixes that act in Python on a step want to see of it."""
+        return set().union(*(f.needs for f in self._whole if f.next_step(step - 1) == step),
+                           *(self.fixes[n].needs for n in self._ends if self.fixes[n].next_end(step - 1) == step))
 
     # ---- running ------------------------------------------------------------------------------------------------------------------------
     def advance(self, steps: int, virial: bool = True, energies: bool = False, virials: bool = False, progress=None) -> Result | None:
@@ -169,13 +206,18 @@ class Loop:
         self.engine.bonds.hold(False)
         with Interrupt() as interrupt, self.watchdog as watchdog:
             while self.step < last and not interrupt.asked:
-                if self._compiled:
-                    began, at = time.perf_counter(), self.step
-                    self._segment(min(last, self.step + self._chunk), want and self.step + self._chunk >= last)
-                    spent = time.perf_counter() - began
-                    self._chunk = max(20, int(0.2 * (self.step - at) / max(spent, 1e-9)))
+                whole, due = self._next_whole(self.step), self._next_end(self.step)
+                if whole == self.step + 1:
+                    self._python_step(want and whole == last)
                 else:
-                    self._python_step(want and self.step + 1 == last)
+                    began, at = time.perf_counter(), self.step
+                    stop = min(last, at + self._chunk, whole - 1, due)
+                    needs = self._needs(stop) if stop == due else set()
+                    self._segment(stop, bool(needs) or (want and stop == last))
+                    spent = time.perf_counter() - began
+                    self._chunk = max(20, int(0.2 * (stop - at) / max(spent, 1e-9)))
+                    if stop == due:
+                        self._end(needs)
                 watchdog.look()
                 if progress is not None:
                     progress(self.step)
@@ -187,12 +229,23 @@ class Loop:
             self.engine.store()
             return None
         with self.watchdog as watchdog:
-            result = self.engine.collect()
+            result = self._collect()
             watchdog.energy(result)
         if energies or virials:
             self.engine.per_atom(result)
-        self.result = result
         return result
+
+    def _end(self, needs: set[str]) -> None:
+        """The `end_of_step` hooks in Python that are due."""
+        began = time.perf_counter()
+        if needs:
+            self._collect()
+            if needs & {"energies", "virials"}:
+                self.engine.per_atom(self.result)
+        for n in self._ends:
+            if self.fixes[n].next_end(self.step - 1) == self.step:
+                self.fixes[n].end_of_step(self)
+        self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _segment(self, last: int, energy: bool) -> None:
         """Compiled steps up to `last`, with list builds in between."""
@@ -207,12 +260,17 @@ class Loop:
                     self.engine.check()
                 except SimulationError as error:
                     raise SimulationError(f"step {self.step}: {error}") from None
+            if self._about_lists:
+                self._hook("pre_exchange")
+                self._hook("pre_neighbor")
             self._rebuild()
+            if self._about_lists:
+                self._hook("post_neighbor")
             resume = True
 
     def _rebuild(self) -> None:
         try:
-            self.watchdog.before_build(self._compiled)
+            self.watchdog.before_build(not self._whole)
             self._with_lost(self.engine.rebuild)
         except SimulationError as error:
             self.engine.store()
@@ -265,7 +323,7 @@ class Loop:
 
     def _resize(self, fix: Fix, p: np.ndarray, old: np.ndarray, gone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         a = self._arrays(fix)
-        if len(old) == len(gone):
+        if isinstance(a, np.ndarray) and len(old) == len(gone):
             a[:] = old[~gone]
         fix.resize(self)
         return p, a
@@ -311,23 +369,29 @@ class Loop:
 
     def _hook(self, name: str) -> None:
         for n, fix in enumerate(self.fixes):
-            if name in self._kinds[n] and (name != "end_of_step" or self.step % fix.every == 0):
+            kind = self._kinds[n].get(name)
+            if kind is None or (not kind and name in IN_A_STEP and fix.next_step(self.step - 1) != self.step):
+                continue
+            if name != "end_of_step" or (self.step % fix.every == 0 if kind else fix.next_end(self.step - 1) == self.step):
                 self._call(n, name)
 
     def _python_step(self, energy: bool) -> None:
         e, s = self.engine, self.settings
         began = time.perf_counter()
         self.step += 1
+        needs = self._needs(self.step)
+        energy = energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0
         self._hook("initial_integrate")
         self._hook("post_integrate")
         self._ago += 1
         need = False
         if self._ago >= s.delay and self._ago % s.every == 0:
-            need = not s.check or not e.k.moved(e.state.x, e.held, e.ns) <= (0.5 * s.skin) ** 2
+            limit = max(0.0, 0.5 * (s.skin - corner_moves(e.state.box))) if e.box_moves else 0.5 * s.skin
+            need = not s.check or not e.k.moved(e.state.x, e.held, e.ns) <= limit**2
             if need and s.check and self._ago == max(s.every, s.delay):
                 e.dangerous += 1
         e.timings["Modify"] += time.perf_counter() - began
-        if need:
+        if need or any(f.next_reneighbor == self.step for f in self.fixes):
             self._hook("pre_exchange")
             self._hook("pre_neighbor")
             self._rebuild()
@@ -339,6 +403,10 @@ class Loop:
             e.store()
             raise SimulationError(f"step {self.step}: {error}") from None
         began = time.perf_counter()
+        if needs:
+            self._collect()
+            if needs & {"energies", "virials"}:
+                e.per_atom(self.result)
         for name in ("post_force", "final_integrate", "end_of_step"):
             self._hook(name)
         e.timings["Modify"] += time.perf_counter() - began
@@ -358,8 +426,7 @@ class Loop:
             self._make_module()
         e.forces(True)
         self._hook("post_force")
-        self.result = e.collect()
-        return self.result
+        return self._collect()
 
     def sync_in(self) -> None:
         """Positions and velocities of the system into the slots (the list stays)."""
@@ -378,7 +445,7 @@ class Loop:
 
     def snapshot(self) -> Snapshot:
         """What observers see now."""
-        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes, self.gone)
+        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes, self.gone, self._collected == self.step)
 
 
 __all__ = ["Loop"]

@@ -66,6 +66,8 @@ class Moment:
             if id not in self.scene.computes:
                 raise InputError(f"there is no compute {id}{nearest(id, self.scene.computes)}")
             compute, snapshot = self.scene.computes[id], self.snapshot
+            if compute.needs and not snapshot.fresh:
+                raise NotYet(f"compute {id}: energies and virial were not computed on step {snapshot.step}")
             for need in compute.needs & {"energies", "virials"}:
                 if getattr(snapshot.result, need) is None:
                     raise NotYet(f"compute {id} was not evaluated on step {snapshot.step}: run 0 first, or use it in thermo or a dump")

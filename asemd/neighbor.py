@@ -186,6 +186,7 @@ class ClusterList:
         """Build the list and its exclusions in the sorted slots."""
         ncl = ns // CLUSTER
         self.shifts = IMAGES @ cell_vectors
+        self.shifts4 = np.column_stack([self.shifts, np.zeros(len(self.shifts))])
         again = self.shares is None and self.threads > 1
         while True:
             if self.marked and self.hide.shape[1] < self.entries.shape[1]:

@@ -168,8 +168,7 @@ class RespaLoop(Loop):
         for level in range(1, self.levels.n + 1):
             self._forces(level, True)
         self._total()
-        self.result = self.engine.collect()
-        return self.result
+        return self._collect()
 
     def _total(self) -> None:
         """The sum of all levels, which everybody sees."""
@@ -178,8 +177,8 @@ class RespaLoop(Loop):
     def _make_module(self) -> None:
         """Hooks of the fixes, those of the inner levels too, and which terms are on which level."""
         self.engine.changed = False
-        self._compiled = False
         self._kinds = [f.hooks() for f in self.fixes]
+        self._sort_hooks()
         hooks = []
         for fix, kinds in zip(self.fixes, self._kinds):
             mine = {name: getattr(fix, name) for name in tl.COMPILED if kinds.get(name)}
@@ -190,6 +189,9 @@ class RespaLoop(Loop):
             hooks.append(mine)
         self._module = (None, tl.module([], [], hooks, [f.every for f in self.fixes]))
         self._make_levels()
+
+    def _next_whole(self, step: int) -> int:
+        return step + 1
 
     def _make_levels(self) -> None:
         """`_work`: the terms of each level; `_whole`: those that are computed for the energy only, because their force is split."""
@@ -250,8 +252,13 @@ class RespaLoop(Loop):
     def _python_step(self, energy: bool) -> None:
         self.step += 1
         self._times = self.levels.steps(self.dt)
-        self._recurse(self.levels.n, energy)
+        needs = self._needs(self.step)
+        self._recurse(self.levels.n, energy or bool(needs))
         self._total()
+        if needs:
+            self._collect()
+            if needs & {"energies", "virials"}:
+                self.engine.per_atom(self.result)
         self._hook("end_of_step")
 
     def _recurse(self, level: int, energy: bool) -> None:

@@ -85,7 +85,7 @@ class Result:
 class Snapshot:
     """What computes, thermo output and dumps see of a step.
 
-    `gone`: group -> how many of its atoms were lost since the run began.
+    `gone`: group -> how many of its atoms were lost since the run began; `fresh`: `result` is of this step.
     """
 
     system: object
@@ -95,6 +95,7 @@ class Snapshot:
     step: int = 0
     fixes: list = field(default_factory=list)
     gone: dict[str, int] = field(default_factory=dict)
+    fresh: bool = True
 
     @property
     def units(self):

@@ -211,7 +211,7 @@ class Scene:
     def box_changes(self) -> bool:
         """Whether the box can change during a run: shrink-wrapped faces, or a fix that changes it."""
         shrinks = self.system is not None and any(set(b) & set("sm") for b in self.system.box.boundary)
-        return shrinks or any(getattr(f, "box_change", False) for f in self.fixes.values())
+        return shrinks or any(f.box_moves for f in self.fixes.values())
 
     def settings(self) -> Settings:
         """The neighbour and threading settings in the form the engine takes."""

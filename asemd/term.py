@@ -26,6 +26,10 @@ class Term(Protocol):
 
     def kernel(self, energy: bool, per_atom: bool): ...
 
+    def virial_kernel(self):
+        """For steps of which only the virial is wanted besides the forces."""
+        return self.kernel(True, False)
+
     def rebuild(self, engine) -> None: ...
 
     def arguments(self, engine, tid: int) -> tuple: ...
@@ -33,7 +37,7 @@ class Term(Protocol):
     def describe(self, engine, item: int, value: float) -> SimulationError: ...
 
 
-class BondedTerm:
+class BondedTerm(Term):
     """All items of one bonded style."""
 
     def __init__(self, category: str, use, items: np.ndarray, types: np.ndarray, ntypes: int, units, compat: str = ""):
@@ -115,7 +119,7 @@ def store_torques(terms: list, system) -> None:
             torque[t.row[t.row >= 0]] += t.torque.sum(axis=0)[:, t.row >= 0].T
 
 
-class FactorTerm:
+class FactorTerm(Term):
     """What pair terms with one factor for all their forces have in common: their kernel writes to arrays of its own, see `scaled`."""
 
     owner = None
@@ -156,9 +160,13 @@ class PairTerm(FactorTerm):
         self.row = 0
         self.tables4 = np.zeros((1, 2, 0, 4))
 
-    def kernel(self, energy, per_atom):
+    def kernel(self, energy, per_atom, virial=False):
         return self._scaled(pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude,
-                                                        single=self.single, outdated=self.outdated, piece=self.piece)[0], energy)
+                                                        single=self.single, outdated=self.outdated, piece=self.piece, virial=virial)[0],
+                            energy or virial)
+
+    def virial_kernel(self):
+        return self.kernel(False, False, virial=True)
 
     def clusters(self, engine):
         """The `asemd.neighbor.ClusterList` it runs over."""
@@ -168,7 +176,6 @@ class PairTerm(FactorTerm):
         clusters, slots = self.clusters(engine), engine.state.x.shape[1]
         if self.tables4.shape[2] != slots:
             self.tables4 = aligned((engine.threads, 2, slots, 4))
-        self.shifts4 = np.column_stack([clusters.shifts, np.zeros(len(clusters.shifts))])
         self.outdated = engine.settings.outdated
         self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(clusters.longest())
@@ -187,7 +194,7 @@ class PairTerm(FactorTerm):
         s, c = engine.state, self.clusters(engine)
         f, acc = self._sums(engine, tid)
         return self._with_factor(engine, tid, (
-            s.x, f, s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, self.shifts4, c.excluded_first[tid],
+            s.x, f, s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, c.excluded_first[tid],
             c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, self.buffer[tid],
             self.types[tid], self.saved[tid], *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved,
             engine.farthest[tid:tid + 1]))
@@ -228,7 +235,7 @@ class PairRowsTerm(FactorTerm):
         return not_finite(engine, self.style, i, j, value)
 
 
-class PairListTerm:
+class PairListTerm(Term):
     """A pair style over plain pairs: all pairs, or the special pairs the cluster kernel leaves out.
 
     Parameters

@@ -85,6 +85,14 @@ class Fix:
         place of `initial_integrate` on the outermost of several levels and moves no atom (by default `final_integrate`).
     thermo_energy, thermo_virial : bool
         ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, ``virial(state)`` as virial.
+    box_moves : str
+        ``size`` or ``shape`` for a fix that changes the box during a run (shape: it may become tilted).
+    virial_every : int
+        Compiled hooks see the virial of the terms (``s.acc``) on multiples of this step; 0: never.
+    next_reneighbor : int
+        The step on which it asks for a list build, with its hook `pre_exchange` before it.
+    needs : set of str
+        What its Python hooks want to see of the steps on which they act: ``energy``, ``virial``, ``energies``, ``virials``.
     id : str
         Set by the session.
     """
@@ -95,6 +103,10 @@ class Fix:
     minimizes: ClassVar[bool] = False
     ecouple: ClassVar[bool] = False
     levels: ClassVar[str] = ""
+    box_moves: str = ""
+    virial_every: int = 0
+    next_reneighbor: int = -1
+    needs: frozenset[str] = frozenset()
     level: int = 0
     inner: ClassVar[type[Fix] | None] = None
     every: int = 1
@@ -124,9 +136,17 @@ class Fix:
         """The numbers ``p`` of the compiled hooks; called at the start of every run. ``p[0]`` is the group bit."""
         return np.array([float(loop.group_bit(self.group))])
 
-    def atom_arrays(self, loop: Loop) -> np.ndarray | None:
-        """Per-atom numbers ``a (m, n)`` by atom row, or None."""
+    def atom_arrays(self, loop: Loop) -> np.ndarray | tuple[np.ndarray, ...] | None:
+        """Per-atom numbers ``a (m, n)`` by atom row, or None; or several arrays of others, such as ``system.extra``, as a tuple."""
         return None
+
+    def next_step(self, step: int) -> int:
+        """The next step after `step` within which hooks in Python act. The steps between are compiled."""
+        return step + 1
+
+    def next_end(self, step: int) -> int:
+        """The next step after `step` at whose end `end_of_step`, in Python, acts."""
+        return (step // self.every + 1) * self.every
 
     def setup(self, loop: Loop) -> None:
         """Called at the start of every run, after the first forces; compiled post_force hooks are applied to those forces by the loop."""

@@ -61,6 +61,7 @@ class DynamicGroup(Fix):
     def post_integrate(self, loop):
         if loop.step % self.every == 0:
             loop.sync_out()
+            self.session.look(loop)
             self.choose(loop)
 
     def choose(self, loop) -> None:

@@ -39,7 +39,7 @@ class Formula:
         variables = self.session.variables
         loop.sync_out()
         loop.system.step = loop.step
-        self.session.moment.forget()
+        self.session.look(loop)
         if variables.find(self.name).style == "atom":
             return variables.per_atom(self.name, loop.system.n)
         return variables.number(self.name)

@@ -26,7 +26,7 @@ def closest_general(dx, dy, dz, cell):
     dy -= na * a[0, 1] + nb * a[1, 1] + nc * a[2, 1]
     dz -= na * a[0, 2] + nb * a[1, 2] + nc * a[2, 2]
     best = dx * dx + dy * dy + dz * dz
-    if best <= cell.safe2:
+    if best <= cell.safe2[0]:
         return dx, dy, dz
     pa = 1 if inverse[0, 0] != 0.0 or inverse[1, 0] != 0.0 or inverse[2, 0] != 0.0 else 0
     pb = 1 if inverse[0, 1] != 0.0 or inverse[1, 1] != 0.0 or inverse[2, 1] != 0.0 else 0

@@ -84,7 +84,7 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool,
 
 @cache
 def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool,
-                   outdated: bool = False, piece: str = ""):
+                   outdated: bool = False, piece: str = "", virial: bool = False):
     """The kernel over cluster lists.
 
     Parameters
@@ -99,6 +99,8 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         The list may be older than the skin allows; pairs beyond its reach when it was built do not interact.
     piece : str
         ``inner``, ``middle`` or ``outer``: only this part of the force; the constants end with the six numbers of `_share`.
+    virial : bool
+        The virial without the energy.
     """
     varying = [k for k, u in enumerate(uniform) if not u]
     b = Builder(f"pair {style.name}: cluster list")
@@ -107,8 +109,8 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(len(varying)), ENERGY=energy,
-                            CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude,
-                            OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
+                            VIRIAL=virial, CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying),
+                            EXCLUDE=exclude, OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
         b.constant(name, value)
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
         from asemd.kernels import vector_math

@@ -9,8 +9,11 @@ A list that may be outdated (``neigh_modify check no``, or a delay) still has LA
 built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
 then on they look at a mask of the row (`hide`, bit a for atom a of the cluster).
 
-Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, CHARGED, VARYING (some coefficient
-differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working
+Where only the virial is wanted (VIRIAL), it is the sum over the places of the buffer of position times force: six products for a place
+instead of six for a pair.
+
+Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, VIRIAL, CHARGED, VARYING (some
+coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working
 precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
 """
 from __future__ import annotations
@@ -27,7 +30,7 @@ CLUSTER = 8
 ROW = 1048
 WIDTH = 8
 NROWS = 0
-ENERGY = CHARGED = VARYING = SHARE = False
+ENERGY = VIRIAL = CHARGED = VARYING = SHARE = False
 EXCLUDE = OUTDATED = HIDE = True
 SLOT_BITS = 0x3FFFFFF
 CHARGE_ROW = 0           # where charges stand in the buffer, 0 for nowhere
@@ -253,6 +256,20 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             b[place(mine + a0 + 1 + 5 * ROW)] += fzb
             if ENERGY:
                 add(acc, sums)
+        if VIRIAL:
+            for a in range(CLUSTER):
+                b[place(mine + a)] = real(x[0, place(s + a)] - ox)
+            v0, v1, v2, v3, v4, v5 = real(0), real(0), real(0), real(0), real(0), real(0)
+            for k in range(full):
+                xk, yk, zk = b[place(k)], b[place(k + ROW)], b[place(k + 2 * ROW)]
+                fx, fy, fz = b[place(k + 3 * ROW)], b[place(k + 4 * ROW)], b[place(k + 5 * ROW)]
+                v0 = madd(xk, fx, v0)
+                v1 = madd(yk, fy, v1)
+                v2 = madd(zk, fz, v2)
+                v3 = madd(xk, fy, v3)
+                v4 = madd(xk, fz, v4)
+                v5 = madd(yk, fz, v5)
+            add(acc, (real(0), real(0), v0, v1, v2, v3, v4, v5))
         for k in range(0, full, 8):
             scatter8(b, k + 3 * ROW, ROW, push, entries, f0 + k, SLOT_BITS)
     for k in range(0, cap, 8):

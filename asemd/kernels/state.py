@@ -7,6 +7,34 @@ from typing import NamedTuple
 import numpy as np
 
 
+class Cell(NamedTuple):
+    """The periodic cell as compiled code sees it, in the user's frame. A non-periodic direction has inverse length and inverse row zero."""
+
+    vectors: np.ndarray          # (3, 3) rows a b c
+    inverse: np.ndarray          # (3, 3), fractional = d @ inverse, columns of non-periodic directions are zero
+    lengths: np.ndarray          # (3,) edge lengths along x y z (axis-aligned cells)
+    inverse_lengths: np.ndarray  # (3,) their inverses, 0 if not periodic
+    reduced: np.ndarray          # (3, 3) Minkowski-reduced vectors of the periodic directions, for closest images in skewed cells
+    reduced_inverse: np.ndarray  # (3, 3)
+    safe2: np.ndarray            # (1,) squared distance below which the rounded image is surely the closest
+
+
+class BoxState(NamedTuple):
+    """The box of a running simulation. A fix that changes it writes `vectors` and `origin`, then `asemd.kernels.box.follow`."""
+
+    vectors: np.ndarray       # (3, 3) rows a b c; the array of `cell`, too
+    origin: np.ndarray        # (3,)
+    periodic: np.ndarray      # (3,) 1 or 0
+    cell: Cell
+    reduction: np.ndarray     # (3, 3) whole numbers: ``reduction @ vectors`` are the reduced vectors
+    images: np.ndarray        # (m, 3) whole numbers: the images of the neighbour list
+    shifts: np.ndarray        # (m, 3) ``images @ vectors``
+    shifts4: np.ndarray       # (m, 4) the same with a column of zeros; (0, 4) where no kernel takes it
+    images27: np.ndarray      # (27, 3) whole numbers: the images of special pairs
+    shifts27: np.ndarray      # (27, 3) ``images27 @ reduced``
+    held: np.ndarray          # (4, 3) origin and vectors when the list was built
+
+
 class State(NamedTuple):
     """Slot arrays; `cap` slots are allocated, `ns` are in use."""
 
@@ -19,6 +47,11 @@ class State(NamedTuple):
     inverse_mass: np.ndarray  # (cap,) ftm2v / mass, 0 for an empty slot
     q: np.ndarray             # (cap,) charges, 0 if there are none
     mask: np.ndarray          # (cap,) int32 group bits, 0 for an empty slot
+    slot: np.ndarray          # (n,) int32 the slot of each atom row
+    image: np.ndarray         # (n, 3) int32 image flags by atom row; ``x + image @ box.vectors`` is the unwrapped position
+    acc: np.ndarray           # (nth, terms, 8) energies and virials of the terms, on steps that compute them: e e xx yy zz xy xz yz
+    virial: np.ndarray        # (nth, 6) what fixes add to the virial of this step: xx yy zz xy xz yz
+    box: BoxState
 
 
 def aligned(shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
@@ -29,11 +62,12 @@ def aligned(shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
     return raw[at:at + count * size].view(kind).reshape(shape)
 
 
-def empty_state(capacity: int) -> State:
+def empty_state(capacity: int, slot: np.ndarray, image: np.ndarray, acc: np.ndarray, box: BoxState) -> State:
     """Slots without atoms."""
     x, v, f = aligned((3, capacity)), aligned((3, capacity)), aligned((3, capacity))
     row, types, mask = np.full(capacity, -1, np.int32), np.zeros(capacity, np.int32), np.zeros(capacity, np.int32)
-    return State(x, v, f, row, types, np.ones(capacity), np.zeros(capacity), np.zeros(capacity), mask)
+    return State(x, v, f, row, types, np.ones(capacity), np.zeros(capacity), np.zeros(capacity), mask, slot, image, acc,
+                 np.zeros((len(acc), 6)), box)
 
 
 class Thread(NamedTuple):
@@ -49,18 +83,6 @@ class Thread(NamedTuple):
     dt: float
     sync: np.ndarray          # (8,) int64 barrier counter and generation
     scratch: np.ndarray       # (nth, 8) float64
-
-
-class Cell(NamedTuple):
-    """The periodic cell as compiled code sees it, in the user's frame. A non-periodic direction has inverse length and inverse row zero."""
-
-    vectors: np.ndarray          # (3, 3) rows a b c
-    inverse: np.ndarray          # (3, 3), fractional = d @ inverse, columns of non-periodic directions are zero
-    lengths: np.ndarray          # (3,) edge lengths along x y z (axis-aligned cells)
-    inverse_lengths: np.ndarray  # (3,) their inverses, 0 if not periodic
-    reduced: np.ndarray          # (3, 3) Minkowski-reduced vectors of the periodic directions, for closest images in skewed cells
-    reduced_inverse: np.ndarray  # (3, 3)
-    safe2: float                 # squared distance below which the rounded image is surely the closest
 
 
 def cell_arrays(vectors: np.ndarray, periodic: np.ndarray) -> Cell:
@@ -80,4 +102,4 @@ def cell_arrays(vectors: np.ndarray, periodic: np.ndarray) -> Cell:
     with np.errstate(divide="ignore"):
         inverse_lengths = np.where(periodic & (diagonal != 0), 1.0 / diagonal, 0.0)
     return Cell(vectors, np.ascontiguousarray(inverse * periodic), diagonal, inverse_lengths, reduced,
-                reduced_inverse, float(safe * safe))
+                reduced_inverse, np.array([safe * safe]))

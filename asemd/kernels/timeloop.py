@@ -11,7 +11,7 @@ import textwrap
 from collections.abc import Sequence
 from types import ModuleType
 
-from asemd.kernels import random
+from asemd.kernels import box, random
 from asemd.kernels.generate import FAST, Builder, plain_source
 
 FINISHED, REBUILD, BAD = 0, 1, 2
@@ -23,13 +23,13 @@ DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
 
 
 def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[dict[str, object]], everys: Sequence[int],
-           outdated: bool = False) -> ModuleType:
+           outdated: bool = False, box_moves: bool = False, virial_every: int = 0) -> ModuleType:
     """The loop module.
 
     Parameters
     ----------
-    kernels : sequence of (plain, with_energy)
-        Compiled kernels of each term.
+    kernels : sequence of (plain, with_energy, with_virial)
+        Compiled kernels of each term; the last one is not used without `virial_every`.
     categories : sequence of str
         ``pair`` or other, per term, for the timing table.
     hooks : sequence of dict
@@ -38,15 +38,23 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
         Per fix: `end_of_step` is called on multiples of this.
     outdated : bool
         The list may be: kernels look at how far each slot has moved.
+    box_moves : bool
+        A fix changes the box: what its corners have moved is taken from the skin, as LAMMPS does.
+    virial_every : int
+        The virial of the terms is there on multiples of this step, for fixes; 0: never.
     """
     b = Builder("time loop")
     b.line("from asemd.kernels.threads import barrier, reduce_sum")
     b.line("from asemd.kernels.state import Thread")
     b.line("from asemd.kernels.clock import now")
+    b.line("import math")
     b.function(random.uniform, fast=True)
     b.function(random.normal, fast=True)
-    for k, (plain, energy) in enumerate(kernels):
-        for f, alias in ((plain, f"term{k}"), (energy, f"term{k}_energy")):
+    if box_moves:
+        b.function(box.follow)
+        b.function(box.corner_moves)
+    for k, (plain, energy, virial) in enumerate(kernels):
+        for f, alias in ((plain, f"term{k}"), (energy, f"term{k}_energy"), *([(virial, f"term{k}_virial")] if virial_every else [])):
             g = getattr(f, "py_func", f)
             b.line(f"from {g.__module__} import {g.__name__} as {alias}")
     for n, fix in enumerate(hooks):
@@ -79,6 +87,12 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
         if last:
             lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
         return textwrap.indent("\n".join(lines) or "t0 = t0", " " * indent)
+
+    with_virial = textwrap.indent(f"""elif step % {virial_every} == 0:
+    for k in range(acc.shape[1]):
+        for c in range(8):
+            acc[tid, k, c] = 0.0
+{terms("_virial", 4)}""", " " * 8) if virial_every else ""
 
     b.text(f'''def run(tid, nth, ns, s, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
     step = control[{STEP}]
@@ -132,8 +146,9 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             m = 0.0
             for t in range(nth):
                 m = max(m, scratch[t, 1])
-            farthest[tid] = m
-            need = due and (check == 0 or m > trigger)
+            {"gone = corner_moves(s.box)" if box_moves else "gone = 0.0"}
+            farthest[tid] = m if gone == 0.0 else (math.sqrt(m) + gone) ** 2
+            need = due and (check == 0 or (m > trigger if gone == 0.0 else math.sqrt(m) + 0.5 * gone > math.sqrt(trigger)))
             if tid == 0:
                 t1 = now()
                 numbers[{COMM_TIME}] += t1 - t0
@@ -151,11 +166,14 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
         for d in range(3):
             for i in range(ns):
                 f[d, i] = 0.0
+        for c in range(6):
+            s.virial[tid, c] = 0.0
         if energy != 0 and step == last:
             for k in range(acc.shape[1]):
                 for c in range(8):
                     acc[tid, k, c] = 0.0
 {terms("_energy", 12)}
+{with_virial}
         else:
 {terms("", 12)}
         if nth > 1:

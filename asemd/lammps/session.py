@@ -297,6 +297,10 @@ class Session:
         self.loop = None
         self.moment.forget()
 
+    def look(self, loop) -> None:
+        """In the midst of a run: the present step of the loop is what formulas see, with energies and virials if it has them."""
+        self.moment = Moment(self.scene, loop.snapshot(), self.variables.number, self.moment.progress, loop.engine)
+
     def stale(self) -> None:
         """What was known about the last step no longer holds."""
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
