@@ -2,16 +2,16 @@
 from __future__ import annotations
 
 import math
-import signal
-import threading
 import time
 import warnings
 
 import numpy as np
 
+from asemd import population
 from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import Fix
+from asemd.interrupt import Interrupt
 from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
 from asemd.kernels.state import Thread
@@ -20,23 +20,6 @@ from asemd.watchdog import Watchdog
 IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
 ABOUT_LISTS = ("pre_exchange", "pre_neighbor", "post_neighbor")
 NEVER = 2**62
-
-
-class Interrupt:
-    """Keeps Ctrl-C back while steps are under way: `asked` tells that it came. A handler of the caller's own is left alone."""
-
-    def __enter__(self) -> Interrupt:
-        self.asked = False
-        mine = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
-        self._before = signal.signal(signal.SIGINT, self._ask) if mine else None
-        return self
-
-    def _ask(self, number, frame) -> None:
-        self.asked = True
-
-    def __exit__(self, *error) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
 
 
 def warn(message: str) -> None:
@@ -72,7 +55,7 @@ class Loop:
         self.result: Result | None = None
         self.gone: dict[str, int] = {}        # atoms of each group lost since `setup`
         self.warn = warn
-        self._fix_data: tuple = ()
+        self.fix_data: tuple = ()
         self._collected = -1
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
@@ -111,13 +94,13 @@ class Loop:
         self.begin = self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
         e = self.engine
-        self._fix_data = ()
+        self.fix_data = ()
         self._with_lost(e.load)
         self.gone = {}
         e.bonds.hold(True)
         e.forces(True)
         self._ago = 0
-        self._fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self._arrays(f)) for f in self.fixes)
+        self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
         self._collect()
         for n, f in enumerate(self.fixes):
@@ -130,7 +113,7 @@ class Loop:
         self.watchdog.begin()
         return self.result
 
-    def _arrays(self, fix: Fix) -> np.ndarray | tuple[np.ndarray, ...]:
+    def arrays_of(self, fix: Fix) -> np.ndarray | tuple[np.ndarray, ...]:
         a = fix.atom_arrays(self)
         if isinstance(a, tuple):
             return a
@@ -162,7 +145,7 @@ class Loop:
 
     def _sort_hooks(self) -> None:
         """Which fixes act in Python, and when; which of them want a virial."""
-        self._whole = [f for f, kinds in zip(self.fixes, self._kinds) if any(not kinds.get(name, True) for name in IN_A_STEP)]
+        self._in_python = [f for f, kinds in zip(self.fixes, self._kinds) if any(not kinds.get(name, True) for name in IN_A_STEP)]
         self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
         self._about_lists = any(name in kinds for kinds in self._kinds for name in ABOUT_LISTS)
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
@@ -170,7 +153,7 @@ class Loop:
     def _next_whole(self, step: int) -> int:
         """The next step after `step` that is made by Python, hook by hook."""
         forced = [f.next_reneighbor for f in self.fixes if f.next_reneighbor > step]
-        return min([NEVER, *forced, *(f.next_step(step) for f in self._whole)])
+        return min([NEVER, *forced, *(f.next_step(step) for f in self._in_python)])
 
     def _next_end(self, step: int) -> int:
         """The next step after `step` with an `end_of_step` in Python."""
@@ -178,7 +161,7 @@ class Loop:
 
     def _needs(self, step: int) -> set[str]:
         """What fixes that act in Python on a step want to see of it."""
-        return set().union(*(f.needs for f in self._whole if f.next_step(step - 1) == step),
+        return set().union(*(f.needs for f in self._in_python if f.next_step(step - 1) == step),
                            *(self.fixes[n].needs for n in self._ends if self.fixes[n].next_end(step - 1) == step))
 
     # ---- running ------------------------------------------------------------------------------------------------------------------------
@@ -270,7 +253,7 @@ class Loop:
 
     def _rebuild(self) -> None:
         try:
-            self.watchdog.before_build(not self._whole)
+            self.watchdog.before_build(not self._in_python)
             self._with_lost(self.engine.rebuild)
         except SimulationError as error:
             self.engine.store()
@@ -291,42 +274,8 @@ class Loop:
             self.remove(error.rows)
 
     def remove(self, rows) -> None:
-        """Take atoms out of the system in the midst of a run: system, groups, exclusions, lists and the fixes' arrays by atom.
-
-        Raises
-        ------
-        SimulationError
-            An atom is bonded to one that stays, unless `settings.lost_bond` says otherwise.
-        """
-        e, system, s = self.engine, self.system, self.settings
-        gone = np.zeros(system.n, bool)
-        gone[rows] = True
-        for kind, atoms, _ in system.topology:
-            torn = np.flatnonzero(gone[atoms].any(axis=1) & ~gone[atoms].all(axis=1)) if len(atoms) else ()
-            if len(torn) and s.lost_bond == "error":
-                ids = " ".join(str(i) for i in system.id[atoms[torn[0]]])
-                raise SimulationError(f"{kind} atoms {ids} missing: one of them left the box; use thermo_modify lost/bond ignore or warn "
-                                      "to go on without them")
-            if len(torn) and s.lost_bond == "warn":
-                self.warn(f"step {self.step}: {len(torn)} {kind}{'s' * (len(torn) > 1)} lost with an atom")
-        e.store()
-        system.keep(~gone)
-        for name in self.groups:
-            self.gone[name] = self.gone.get(name, 0) + int(np.count_nonzero(self.groups[name] & gone))
-            self.groups[name] = self.groups[name][~gone]
-        s.exclude = [(kind, *(m if kind == "type" else m[~gone] for m in masks)) for kind, *masks in s.exclude]
-        e.set_groups(self.groups, e.bits)
-        e.update(system)
-        e.load()
-        if self._fix_data:
-            self._fix_data = tuple(self._resize(fix, *data, gone) for fix, data in zip(self.fixes, self._fix_data))
-
-    def _resize(self, fix: Fix, p: np.ndarray, old: np.ndarray, gone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        a = self._arrays(fix)
-        if isinstance(a, np.ndarray) and len(old) == len(gone):
-            a[:] = old[~gone]
-        fix.resize(self)
-        return p, a
+        """Take atoms out of the system in the midst of a run, see `asemd.population.remove`."""
+        population.remove(self, rows)
 
     def _enter(self, last: int, energy: bool, resume: bool = False) -> int:
         e, s, c, x = self.engine, self.settings, self._control, self._numbers
@@ -340,7 +289,7 @@ class Loop:
 
         def work(tid):
             status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.farthest, e.buffers, e.bad, self._sync, self._scratch, c, x,
-                              e.acc, e.arguments(tid), self._fix_data)
+                              e.acc, e.arguments(tid), self.fix_data)
         for t in range(e.threads):
             e.arguments(t)
         e.parallel(work)
@@ -362,7 +311,7 @@ class Loop:
     def _call(self, n: int, name: str) -> None:
         """One hook of one fix, compiled or not, on all slots."""
         if self._kinds[n][name] and name in tl.COMPILED:
-            p, a = self._fix_data[n]
+            p, a = self.fix_data[n]
             getattr(self._module[1], f"fix{n}_{name}")(self._thread(), self.engine.state, p, a)
         else:
             getattr(self.fixes[n], name)(self)

@@ -286,7 +286,7 @@ class RespaLoop(Loop):
         state = self.state._replace(f=self._level_forces[level - 1])
         for n, fix in enumerate(self.fixes):
             if fix.integrates:
-                getattr(self._module[1], f"fix{n}_{name}")(th, state, *self._fix_data[n])
+                getattr(self._module[1], f"fix{n}_{name}")(th, state, *self.fix_data[n])
         self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _look_at_list(self) -> None:

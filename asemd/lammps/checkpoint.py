@@ -73,7 +73,7 @@ def take(loop: Loop, alone: np.ndarray) -> dict[str, Any] | None:
     """The state of a run; `alone` is what `renew` returned at this step. None for respa, which begins afresh."""
     if hasattr(loop, "levels"):
         return None
-    numbers = [{"p": p.copy(), "a": a.copy() if isinstance(a, np.ndarray) else np.zeros((1, 1))} for p, a in loop._fix_data]
+    numbers = [{"p": p.copy(), "a": a.copy() if isinstance(a, np.ndarray) else np.zeros((1, 1))} for p, a in loop.fix_data]
     return {"forces": loop.system.f.copy(), "alone": alone, "dt": loop.dt, "atoms": digest(loop.system), "fixes": describe(loop.fixes),
             "numbers": numbers}
 
@@ -86,7 +86,7 @@ def resume(loop: Loop, kept: dict[str, Any]) -> bool:
     largest = float(np.abs(kept["alone"]).max(initial=0.0))
     if alone.shape != kept["alone"].shape or not np.abs(alone - kept["alone"]).max(initial=0.0) <= CLOSE * largest:
         return False
-    for (p, a), old in zip(loop._fix_data, kept["numbers"], strict=True):
+    for (p, a), old in zip(loop.fix_data, kept["numbers"], strict=True):
         if p.shape == old["p"].shape:
             p[:] = old["p"]
         if isinstance(a, np.ndarray) and a.shape == old["a"].shape:
