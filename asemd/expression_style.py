@@ -5,6 +5,7 @@ import copy
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -70,6 +71,20 @@ def present(text: str, text_of: Callable[[str], str]) -> tuple[str, tuple[tuple[
     return text, tuple(given.items())
 
 
+@cache
+def is_periodic(compiled: Compiled) -> bool:
+    """Whether an expression of an angle has the same value one turn on."""
+    pairs = [(compiled.value(x), compiled.value(x + 2.0 * math.pi)) for x in (-3.1, -2.3, -1.7, -0.9, -0.2)]
+    scale = max((abs(v) for pair in pairs for v in pair if math.isfinite(v)), default=0.0)
+    return all(abs(a - b) <= 1e-11 * scale for a, b in pairs)
+
+
+def from_zero(compiled: Compiled) -> Compiled:
+    """The same expression of an angle that runs from 0 to one turn, as LAMMPS's torsions do here."""
+    turn = f"{ARGUMENT} = {ARGUMENT} + {2.0 * math.pi!r} if {ARGUMENT} < 0.0 else {ARGUMENT}"
+    return replace(compiled, lines=(turn, *compiled.lines), bend_lines=(turn, *compiled.bend_lines))
+
+
 class ExpressionStyle(Style):
     """``*_style lepton``: expressions of one kind (equal up to numbers) share a piece of code, others are told apart by their type.
 
@@ -130,6 +145,8 @@ class ExpressionStyle(Style):
             compiled = differentiate(text, self.variable, given)
         except InputError as e:
             raise InputError(f"{command}: {e.message}") from None
+        if self.category == "dihedral" and not is_periodic(compiled):
+            compiled = from_zero(compiled)
         if not self.equilibrium or settings.get("offset") == "no_offset":
             return compiled, 0.0
         offset = values["shift"] if "shift" in values else compiled.value(0.0)

@@ -379,3 +379,20 @@ def test_large_and_deep_formulas_take_the_chain_rule(text):
     bend, = evaluate(0.7, made.bend_lines, made.bend)
     assert slope == pytest.approx((high - low) / (2 * h), rel=1e-7, abs=1e-8)
     assert bend == pytest.approx((high_slope - low_slope) / (2 * h), rel=1e-7, abs=1e-8)
+
+
+@pytest.mark.parametrize(("expression", "expected"), [("phi^2", lambda phi: (phi % (2 * math.pi)) ** 2),
+                                                      ("3*(1+cos(3*phi-0.2))", lambda phi: 3 * (1 + math.cos(3 * phi - 0.2))),
+                                                      ("phi*sin(phi)", lambda phi: (phi % (2 * math.pi)) * math.sin(phi))])
+def test_torsions_from_zero_to_a_turn(expression, expected):
+    """Expressions that are not periodic see angles from 0 to 2 pi, as in LAMMPS; periodic ones keep the digits of small angles."""
+    style = registry.find("dihedral", "lepton")
+    twin = style.bind({}, {1: {"expression": expression}})
+    row = style.pack({}, {1: {"expression": expression}}, 1, None).coeff[:, 1]
+    for phi in (-3.1, -0.5, 0.3, 2.9):
+        energy, slope = twin.function(phi, *row)
+        h = 1e-6
+        assert energy == pytest.approx(expected(phi), rel=1e-13)
+        assert slope == pytest.approx((expected(phi + h) - expected(phi - h)) / (2 * h), rel=1e-7)
+    periodic = "cos" in expression
+    assert ("if" in twin.function.source) != periodic
