@@ -60,7 +60,7 @@ class StressAtom(Compute):
         """(n, 6) xx yy zz xy xz yz; zero outside the group."""
         total = np.zeros((state.system.n, 6))
         if "ke" in self.terms:
-            v, mass = state.system.v, state.system.atom_masses()
+            mass, v = state.system.atom_masses(), state.system.v if self.temperature is None else self.temperature.remove_bias(state)
             total += state.units.mvv2e * np.stack([mass * v[:, i] * v[:, j] for i, j in COMPONENTS], axis=1)
         if set(VIRIAL) <= set(self.terms):
             total += state.result.virials

@@ -6,6 +6,10 @@ with :math:`f` degrees of freedom: dimension times the number of atoms, minus th
 dimension for the conserved momentum (``compute_modify ID extra/dof N`` sets another number). Atoms lost during a run (``thermo_modify lost
 ignore``) count until its end, as in LAMMPS, unless ``compute_modify ID dynamic/dof yes``.
 
+Temperatures with a *bias* take a part of the velocities away first: that of the centre of mass, a profile of flow, some components. They
+are subclasses of `Temp` with ``bias = True`` and their own `Temp.remove_bias`. A thermostat with such a compute (``fix_modify ID temp``)
+acts on what is left.
+
 Source: LAMMPS manual, compute temp and compute_modify. Units: temperature; the tensor is an energy (twice the kinetic energy on its trace).
 """
 from __future__ import annotations
@@ -26,10 +30,19 @@ class Temp(Compute):
         The atoms it looks at.
     extra_dof : float, optional
         Degrees of freedom to leave out; None is the dimension of the system.
+
+    Attributes
+    ----------
+    bias : bool
+        Whether `remove_bias` changes anything.
+    hides : bool
+        Whether the bias is all of some velocities or components, to which the compute is blind; otherwise it is a flow.
     """
 
     style = "temp"
     size = 6        # elements of the vector
+    bias = False
+    hides = False
 
     def __init__(self, group: str = "all", extra_dof: float | None = None):
         super().__init__(group)
@@ -52,13 +65,18 @@ class Temp(Compute):
             raise InputError(f"compute {self.id or 'temp'}: group {self.group} has {n} atoms and {dof:g} degrees of freedom")
         return max(dof, 0.0)
 
+    def remove_bias(self, state) -> np.ndarray:
+        """(n, 3) velocities without the bias, of all atoms, whatever the group; those of the system stay as they are."""
+        return state.system.v
+
     def scalar(self, state) -> float:
         """The temperature; 0 without degrees of freedom."""
         dof = self.dof(state)
         if dof <= 0.0:
             return 0.0
         # einsum, not BLAS: its threads take longer to start than the sum
-        twice = np.einsum("i,ij,ij->", self._weights(state), state.system.v, state.system.v)
+        v = self.remove_bias(state)
+        twice = np.einsum("i,ij,ij->", self._weights(state), v, v)
         return float(state.units.mvv2e / (dof * state.units.boltz) * twice)
 
     def _weights(self, state) -> np.ndarray:
@@ -67,5 +85,5 @@ class Temp(Compute):
 
     def vector(self, state) -> np.ndarray:
         """(6,) sum of m v v in energy units: xx yy zz xy xz yz."""
-        w, v = self._weights(state), state.system.v
+        w, v = self._weights(state), self.remove_bias(state)
         return state.units.mvv2e * np.array([np.einsum("i,i,i->", w, v[:, i], v[:, j]) for i, j in COMPONENTS])

@@ -4,7 +4,9 @@ r"""Langevin thermostat: friction and uniform noise added to the forces; use it 
 
 with :math:`\tau_i` the damping time multiplied by the ratio of the atom's type (keyword ``scale``). Noise of three components per atom
 and step depends on seed, step and atom only, not on threads. ``zero yes`` takes the mean of the noise away from each atom of the group.
-``tally yes`` adds up the energy that friction and noise take from the atoms: the scalar of this fix (thermo keywords ecouple, econserve).
+With a temperature that takes a bias off the velocities (``fix_modify ID temp``) friction acts on what is left, and noise on the
+components that are not zero. ``tally yes`` adds up the energy that friction and noise take from the atoms: the scalar of this fix
+(thermo keywords ecouple, econserve).
 
 That holds for small steps. For harmonic forces of frequency :math:`\omega` the positions are too warm by the factor
 :math:`1 / (1 - \omega^2 \Delta t^2 / (4 - 2 \Delta t / \tau))`, and the velocities grow without bound from
@@ -26,7 +28,7 @@ from asemd.errors import InputError, nearest
 from asemd.fix import gronbech_jensen as gj
 from asemd.fix import hook
 from asemd.fix.formula import write
-from asemd.fix.thermostat import Thermostat
+from asemd.fix.thermostat import Thermostat, thermal_velocities
 from asemd.kernels.random import uniform
 from asemd.kernels.threads import reduce_sum
 from asemd.words import number, take, whole, yes_no
@@ -34,7 +36,7 @@ from asemd.words import number, take, whole, yes_no
 KEYWORDS = ("angmom", "gjf", "omega", "scale", "tally", "zero")
 GJF_WORDS = {"yes": "vfull", "on": "vfull", "off": "no", "false": "no"}        # yes: the form of old versions
 GJF_HOOKS = ("initial_integrate", "post_force", "end_of_step")
-TYPES = 16      # ratios start here in the parameters, by atom type
+TYPES = 16      # ratios start here in the parameters, by atom type; type 0 has the place of a flag: velocities have a bias
 
 
 class Langevin(Thermostat):
@@ -66,6 +68,7 @@ class Langevin(Thermostat):
 
     style = "langevin"
     levels = "outermost"
+    takes_bias = True
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1, scale: dict[int, float] | None = None,
                  tally: bool = False, zero: bool = False, gjf: str = "no"):
@@ -82,8 +85,6 @@ class Langevin(Thermostat):
         if gjf != "no":
             self.levels = ""
             self.initial_integrate, self.post_force, self.end_of_step = (getattr(gj.Hooks, n) for n in GJF_HOOKS)
-        if callable(self.start):
-            self.pre_force = self._follow_variable
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -119,7 +120,7 @@ class Langevin(Thermostat):
         wrong = [kind for kind in self.scale if not 1 <= kind <= ntypes]
         if wrong:
             raise InputError(f"fix langevin: scale names atom type {wrong[0]}, there are types 1 to {ntypes}")
-        ratios = [1.0] + [self.scale.get(kind, 1.0) for kind in range(1, ntypes + 1)]
+        ratios = [float(self.temp.bias)] + [self.scale.get(kind, 1.0) for kind in range(1, ntypes + 1)]
         constant = not callable(self.start)
         ramp = (self.start, self.stop) if constant else (0.0, 0.0)
         friction, noise = 1.0 / (self.damping * u.ftm2v), 24.0 * u.boltz / (self.damping * u.mvv2e) / u.ftm2v**2
@@ -132,29 +133,37 @@ class Langevin(Thermostat):
         return self.p
 
     def atom_arrays(self, loop) -> np.ndarray | None:
-        """Columns: the added force (for the tally), the square root of the target temperature (for a variable)."""
+        """Columns: added force (for the tally), square root of the target temperature (for a variable), velocity without the bias."""
         if self.gjf != "no":
             if self.a.shape != (loop.system.n, gj.COLUMNS):
                 self.a = np.full((loop.system.n, gj.COLUMNS), gj.NONE)
             self.a[:, 9] = 0.0
-        elif self.tally or callable(self.start):
-            self.a = np.zeros((loop.system.n, 4))
+        elif self.tally or self.follows:
+            self.a = np.zeros((loop.system.n, 7))
         else:
             return None
-        if callable(self.start):
-            self._follow_variable(loop)
+        if self.follows:
+            self._follow(loop)
         return self.a
 
     def resize(self, loop) -> None:
         self.p[9] = max(np.count_nonzero(loop.groups[self.group]), 1)
 
-    def _follow_variable(self, loop) -> None:
-        self.a[:, -1] = np.sqrt(self.target(loop))
+    @property
+    def follows(self) -> bool:
+        """Whether the target comes from a variable, or velocities without a bias are needed: both are found in Python each step."""
+        return callable(self.start) or self.temp.bias
+
+    def _follow(self, loop) -> None:
+        if callable(self.start):
+            self.a[:, 3 if self.gjf == "no" else 10] = np.sqrt(self.target(loop))
+        if self.temp.bias:
+            self.a[:, 4:7] = thermal_velocities(loop, self.temp)
 
     @hook
     def post_force(th, s, p, a):
         bit, seed, step = np.int32(np.int64(p[0])), np.int64(p[1]), th.step
-        tally, zero, variable, scaled = p[2] != 0.0, p[3] != 0.0, p[4] != 0.0, p[10] != 0.0
+        tally, zero, variable, scaled, biased = p[2] != 0.0, p[3] != 0.0, p[4] != 0.0, p[10] != 0.0, p[16] != 0.0
         friction, noise = p[7], math.sqrt(p[8] / th.dt)
         done = 0.0
         if th.end != th.begin:
@@ -165,22 +174,25 @@ class Langevin(Thermostat):
         work = 0.0
         for d in range(3):
             total = 0.0
-            if tally or variable or scaled or zero:
+            if tally or variable or scaled or zero or biased:
                 for i in range(th.lo, th.hi):
                     if s.mask[i] & bit != 0:
                         ratio = p[16 + s.type[i]]
                         size = a[s.row[i], 3] if variable else root
-                        drag = friction * s.mass[i] / ratio * s.v[d, i]
+                        v = a[s.row[i], 4 + d] if biased else s.v[d, i]
+                        drag = friction * s.mass[i] / ratio * v
                         kick = noise * math.sqrt(s.mass[i] / ratio) * size * (uniform(seed, step, s.row[i], d) - 0.5)
+                        if biased and v == 0.0:
+                            kick = 0.0
                         s.f[d, i] += kick - drag
                         total += kick
                         if tally:
                             a[s.row[i], d] = kick - drag
             else:
-                v, f = s.v[d, mine], s.f[d, mine]
-                for i in range(v.size):
+                w, f = s.v[d, mine], s.f[d, mine]
+                for i in range(w.size):
                     kick = noise * root * math.sqrt(mass[i]) * (uniform(seed, step, row[i], d) - 0.5)
-                    f[i] += kick - friction * mass[i] * v[i] if mask[i] & bit != 0 else 0.0
+                    f[i] += kick - friction * mass[i] * w[i] if mask[i] & bit != 0 else 0.0
             mean = reduce_sum(th, total) / p[9] if zero else 0.0
             if zero or tally:
                 for i in range(th.lo, th.hi):
@@ -208,7 +220,17 @@ class Langevin(Thermostat):
             p[11] += work * th.dt
             p[12] = work
 
+    def modify_option(self, keyword, value, session):
+        before, known = self.temp, super().modify_option(keyword, value, session)
+        if self.gjf != "no" and self.temp.bias:
+            self.temp = before
+            raise InputError(f"fix_modify temp: fix langevin with gjf takes no temperature with a bias, {value} has one; use gjf no")
+        return known
+
     def hooks(self) -> dict[str, bool]:
+        vars(self).pop("pre_force", None)
+        if self.follows:
+            self.pre_force = self._follow
         hooks = super().hooks()
         if not self.tally and self.gjf != "vhalf":
             del hooks["end_of_step"]

@@ -5,7 +5,7 @@ The target ramps linearly over the run, :math:`T_0(t) = T_{start} + \frac{t - t_
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -37,6 +37,8 @@ class Thermostat(Fix):
     ----------
     temp : Temp
         Measures the temperature; that of the group unless ``fix_modify ID temp`` names another one.
+    takes_bias : bool
+        Whether `temp` may be another style than temp: one with a bias, or with degrees of freedom of its own.
 
     Raises
     ------
@@ -45,6 +47,7 @@ class Thermostat(Fix):
     """
 
     ecouple = True
+    takes_bias: ClassVar[bool] = False
 
     def __init__(self, group: str = "all", temperature: Value | tuple[float, float] = 300.0, damping: float = 100.0):
         super().__init__(group)
@@ -83,17 +86,38 @@ class Thermostat(Fix):
         done = (loop.step - loop.begin) / (loop.end - loop.begin) if loop.end != loop.begin else 0.0
         return self.start + done * (self.stop - self.start)
 
+    @property
+    def plain(self) -> bool:
+        """Whether compiled hooks can measure the temperature: it is that of all velocities of a group."""
+        return type(self.temp) is Temp
+
     def modify_option(self, keyword, value, session):
         if keyword == "temp":
             found = find_temperature(value, session, "fix_modify temp")
-            if type(found) is not Temp:
-                raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp so far, {value} has style {found.style}")
+            if type(found) is not Temp and not self.takes_bias:
+                raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp only, {value} has style {found.style}")
             self.temp = found
             return True
         if keyword == "energy" and value in ("yes", "on", "true"):
             raise InputError(f"fix_modify energy: the energy of fix {self.style} is that of a heat bath, not potential energy; "
                              "print it with the thermo keywords ecouple and econserve")
         return super().modify_option(keyword, value, session)
+
+
+def thermal_velocities(loop: Loop, temp: Temp) -> np.ndarray:
+    """(n, 3) by atom row: velocities now, without the bias of a temperature compute."""
+    loop.sync_out()
+    return temp.remove_bias(loop.snapshot())
+
+
+def scale_thermal(loop: Loop, temp: Temp, group: str, factor: float) -> None:
+    """Multiply the velocities of a group, but for the bias of a temperature compute, by a factor; not compiled."""
+    thermal, mask = thermal_velocities(loop, temp), loop.groups[group]
+    if temp.bias:
+        loop.system.v[mask] += (factor - 1.0) * thermal[mask]
+    else:
+        loop.system.v[mask] *= factor
+    loop.sync_in()
 
 
 def measured_temperature(th, s, p):
@@ -142,12 +166,17 @@ class VelocityScaling(Thermostat):
     """
 
     scaled = None
+    takes_bias = True
 
     def __init__(self, group="all", temperature=300.0, damping=1.0):
         super().__init__(group, temperature, damping)
         self.p = np.zeros(9)
-        if callable(self.start):
-            self.end_of_step = self._follow_variable
+
+    def hooks(self) -> dict[str, bool]:
+        vars(self).pop("end_of_step", None)
+        if callable(self.start) or not self.plain:
+            self.end_of_step = self._in_python
+        return super().hooks()
 
     def settings(self) -> tuple[float, ...]:
         return ()
@@ -158,18 +187,20 @@ class VelocityScaling(Thermostat):
                            loop.units.mvv2e, start, self.stop, energy, 0.0, *self.settings()], dtype=float)
         return self.p
 
-    def _follow_variable(self, loop) -> None:
-        """One step with the target from a variable."""
+    def _in_python(self, loop) -> None:
+        """One step with the target from a variable, or with a temperature that compiled code does not measure."""
         target = self.target(loop)
         loop.sync_out()
-        now = self.temp.scalar(loop.snapshot())
+        state = loop.snapshot()
+        now, dof = self.temp.scalar(state), self.temp.dof(state)
         if now <= 0.0:
             self.p[8] += 1.0
             return
+        self.p[2] = dof
         new = type(self).scaled(now, target, loop.dt, self.p)
-        loop.system.v[loop.groups[self.group]] *= math.sqrt(new / now)
-        self.p[7] += 0.5 * self.p[3] * self.p[2] * (now - new)
-        loop.sync_in()
+        if new != now:
+            scale_thermal(loop, self.temp, self.group, math.sqrt(new / now))
+        self.p[7] += 0.5 * self.p[3] * dof * (now - new)
 
     def finish(self, loop) -> None:
         if self.p[8] > 0.0:

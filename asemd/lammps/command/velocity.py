@@ -39,12 +39,12 @@ class Velocity:
         self.rows = np.flatnonzero(mask)
         self.mass = self.system.atom_masses()
         self.dist, self.sum, self.mom, self.rot, self.loop, self.temp = "uniform", False, True, False, "all", None
+        self.bias = False
         self.rigid = ""     # fix of rigid bodies whose bodies lose their momentum as a whole
         spacings = None if self.scene.lattice is None else self.scene.lattice.spacings
         self.spacings = np.ones(3) if spacings is None else spacings
 
     def options(self, words: list[str]) -> None:
-        bias = False
         while words:
             key, what = words[0], f"{self.what} {words[0]}"
             value = take(words[1:], 1, what)[0]
@@ -64,7 +64,7 @@ class Velocity:
                 if choice(value, ("box", "lattice"), what) == "box":
                     self.spacings = np.ones(3)
             elif key == "bias":
-                bias = yes_no(value, what)
+                self.bias = yes_no(value, what)
             elif key == "rigid":
                 if value not in self.scene.fixes:
                     raise InputError(f"{what}: there is no fix {value}{nearest(value, self.scene.fixes)}")
@@ -73,9 +73,9 @@ class Velocity:
                 raise InputError(f"{self.what}: unknown keyword {key!r}"
                                  f"{nearest(key, ('dist', 'sum', 'mom', 'rot', 'loop', 'temp', 'units', 'bias', 'rigid'))}")
             words = words[2:]
-        if bias and self.temp is None:
+        if self.bias and self.temp is None:
             raise InputError(f"{self.what} bias yes needs temp ID, a compute of a temperature with a bias")
-        if bias and not getattr(self.temp, "bias", False):
+        if self.bias and not self.temp.bias:
             raise InputError(f"{self.what} bias yes: compute {self.temp.id} (style {self.temp.style}) takes no bias off the velocities")
 
     # ---- styles
@@ -86,13 +86,14 @@ class Velocity:
         v = self._draws(seed) * (1.0 / np.sqrt(self.mass[self.rows]))[:, None]
         if self.system.dimension == 2:
             v[:, 2] = 0.0
-        old = self.system.v.copy()
+        old, flow = self.system.v.copy(), self._take_bias()
         self.system.v[self.rows] = v
         if self.mom:
             self._zero_momentum()
         if self.rot:
             self._zero_rotation()
-        self._rescale(target)
+        self._rescale(target, bare=self.bias)
+        self._give_bias(flow)
         if self.sum:
             self.system.v[self.rows] += old[self.rows]
 
@@ -133,7 +134,9 @@ class Velocity:
             self.system.v[self.rows, k] = self.system.v[self.rows, k] + new if self.sum else new
 
     def scale(self, words: list[str]) -> None:
-        self._rescale(self._temperature(words[0]))
+        target, flow = self._temperature(words[0]), self._take_bias()
+        self._rescale(target)
+        self._give_bias(flow)
 
     def ramp(self, words: list[str]) -> None:
         v = ("vx", "vy", "vz").index(choice(words[0], ("vx", "vy", "vz"), self.what))
@@ -198,10 +201,28 @@ class Velocity:
         wx, wy, wz = _solve(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), momentum)
         system.v[self.rows] -= np.column_stack([wy * z - wz * y, wz * x - wx * z, wx * y - wy * x])
 
-    def _current(self) -> float:
+    def _take_bias(self) -> np.ndarray | None:
+        """Take the bias off the velocities, and return it; None without ``bias yes``."""
+        if not self.bias:
+            return None
+        mask, v = self.scene.groups.mask(self.temp.group), self.system.v
+        flow = np.where(mask[:, None], v - self.temp.remove_bias(State(self.scene)), 0.0)
+        v -= flow
+        return flow
+
+    def _give_bias(self, flow: np.ndarray | None) -> None:
+        """Put the bias back; velocities that the compute does not see at all are those of before."""
+        if flow is None:
+            return
+        if self.temp.hides:
+            mask = self.scene.groups.mask(self.temp.group)[:, None]
+            self.system.v[:] = np.where(mask, self.temp.remove_bias(State(self.scene)), self.system.v)
+        self.system.v += flow
+
+    def _current(self, bare: bool = False) -> float:
         """Temperature of the group: of the chosen compute, else 3 N - 3 degrees of freedom less those fixes remove."""
         system, u = self.system, units.get(self.system.units)
-        if self.temp is not None:
+        if self.temp is not None and not bare:
             return float(self.temp.scalar(State(self.scene)))
         removed = sum(fix.removed_dof(self.mask) for fix in self.scene.fixes.values())
         dof = system.dimension * (len(self.rows) - 1) - removed
@@ -210,8 +231,8 @@ class Velocity:
         vx, vy, vz = system.v[self.rows].T
         return float(self._sum((vx * vx + vy * vy + vz * vz) * self.mass[self.rows])) * (u.mvv2e / (dof * u.boltz))
 
-    def _rescale(self, target: float) -> None:
-        now = self._current()
+    def _rescale(self, target: float, bare: bool = False) -> None:
+        now = self._current(bare)
         if now == 0.0:
             if target == 0.0:
                 self.system.v[self.rows] = 0.0
