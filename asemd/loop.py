@@ -145,7 +145,8 @@ class Loop:
 
     def _sort_hooks(self) -> None:
         """Which fixes act in Python, and when; which of them want a virial."""
-        self._in_python = [f for f, kinds in zip(self.fixes, self._kinds) if any(not kinds.get(name, True) for name in IN_A_STEP)]
+        self._in_python = [f for f, kinds in zip(self.fixes, self._kinds)
+                           if f.follows or any(not kinds.get(name, True) for name in IN_A_STEP)]
         self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
         self._about_lists = any(name in kinds for kinds in self._kinds for name in ABOUT_LISTS)
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
@@ -311,6 +312,8 @@ class Loop:
     def _call(self, n: int, name: str) -> None:
         """One hook of one fix, compiled or not, on all slots."""
         if self._kinds[n][name] and name in tl.COMPILED:
+            if self.fixes[n].follows == name:
+                self.fixes[n].follow(self)
             p, a = self.fix_data[n]
             getattr(self._module[1], f"fix{n}_{name}")(self._thread(), self.engine.state, p, a)
         else:
@@ -395,6 +398,3 @@ class Loop:
     def snapshot(self) -> Snapshot:
         """What observers see now."""
         return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes, self.gone, self._collected == self.step)
-
-
-__all__ = ["Loop"]

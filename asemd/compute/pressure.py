@@ -86,12 +86,7 @@ class Pressure(Compute):
         """(6,) virial of the chosen terms, energy units, with the tail correction."""
         of = state.result.virial_of
         keys = [k for k in VIRIAL if k in self.terms] + ["tail"] * ("pair" in self.terms)
-        virial = sum((of[k] for k in keys if k in of), np.zeros(6))
-        if "fix" in self.terms:
-            for fix in state.fixes:
-                if fix.thermo_virial:
-                    virial = virial + fix.virials(state).sum(axis=0)
-        return virial
+        return sum((of[k] for k in keys if k in of), np.zeros(6))
 
     def _per_volume(self, state) -> float:
         box = state.system.box

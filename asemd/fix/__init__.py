@@ -84,13 +84,16 @@ class Fix:
         The fix whose hooks move the atoms on all levels but the outermost, if not its own; ``outer_initial`` is a hook that takes the
         place of `initial_integrate` on the outermost of several levels and moves no atom (by default `final_integrate`).
     thermo_energy, thermo_virial : bool
-        ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, ``virial(state)`` as virial.
+        ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, what hooks
+        add to ``s.virial`` as virial (they add it only then), ``virials(state)`` in virials by atom.
     box_moves : str
         ``size`` or ``shape`` for a fix that changes the box during a run (shape: it may become tilted).
     virial_every : int
         Compiled hooks see the virial of the terms (``s.acc``) on multiples of this step; 0: never.
     next_reneighbor : int
         The step on which it asks for a list build, with its hook `pre_exchange` before it.
+    follows : str
+        The compiled hook before which `follow` is called, in Python, for numbers that change from step to step. Empty: none does.
     needs : set of str
         What its Python hooks want to see of the steps on which they act: ``energy``, ``virial``, ``energies``, ``virials``.
     id : str
@@ -106,6 +109,7 @@ class Fix:
     box_moves: str = ""
     virial_every: int = 0
     next_reneighbor: int = -1
+    follows: str = ""
     needs: frozenset[str] = frozenset()
     level: int = 0
     inner: ClassVar[type[Fix] | None] = None
@@ -148,6 +152,9 @@ class Fix:
         """The next step after `step` at whose end `end_of_step`, in Python, acts."""
         return (step // self.every + 1) * self.every
 
+    def follow(self, loop: Loop) -> None:
+        """Put the present numbers into ``p`` and ``a``; called before the compiled hook that `follows` names."""
+
     def setup(self, loop: Loop) -> None:
         """Called at the start of every run, after the first forces; compiled post_force hooks are applied to those forces by the loop."""
 
@@ -168,6 +175,11 @@ class Fix:
     def vector(self, i: int) -> float:
         """Component `i`, counted from 1."""
         raise InputError(f"fix {self.id} (style {self.style}) has no global vector")
+
+    def virials(self, state) -> np.ndarray:
+        """(n, 6) each atom's share of what this fix adds to the virial: xx yy zz xy xz yz, energy units."""
+        raise InputError(f"fix {self.id} (style {self.style}) has no virial by atom: say fix_modify {self.id} virial no, or name the terms "
+                         "of compute stress/atom without fix")
 
     def local_columns(self) -> int | None:
         """Columns of ``local(state)``, f_ID[i]: 0 for a vector, None for a fix without local values."""

@@ -16,6 +16,7 @@ import numpy as np
 from asemd.errors import InputError, nearest
 from asemd.fix import hook
 from asemd.fix.applied_force import AppliedForce
+from asemd.fix.forcing import tally, unwrapped
 from asemd.fix.formula import Value, read, write
 from asemd.kernels.threads import reduce_sum
 from asemd.result import COMPONENTS
@@ -94,11 +95,12 @@ class AddForce(AppliedForce):
         return words + (["energy", write(self.energy)] if self.energy is not None else [])
 
     def parameters(self, loop) -> np.ndarray:
-        p = np.array([loop.group_bit(self.group), *(0.0 if callable(f) else f for f in self.force), *self.before], dtype=float)
-        self.before, self._loop = p[4:], loop
+        p = np.array([loop.group_bit(self.group), *(0.0 if callable(f) else f for f in self.force), *self.before, self.thermo_virial],
+                     dtype=float)
+        self.before, self._loop = p[4:7], loop
         return p
 
-    @hook
+    @hook(uses=[unwrapped, tally])
     def post_force(th, s, p, a):
         bit, mask = np.int32(np.int64(p[0])), s.mask[th.lo:th.hi]
         for d in range(3):
@@ -110,6 +112,10 @@ class AddForce(AppliedForce):
             before = reduce_sum(th, before)
             if th.tid == 0:
                 p[4 + d] = before
+        if p[7] != 0.0:
+            for i in range(th.lo, th.hi):
+                if s.mask[i] & bit != 0:
+                    tally(th, s, i, p[1], p[2], p[3])
 
     def _with_python(self, loop) -> None:
         if loop.step % self.add_every:
@@ -123,6 +129,8 @@ class AddForce(AppliedForce):
         self._force = np.zeros((system.n, 3))
         self._force[rows] = added.T
         self._positions = system.box.unwrap(system.x, system.image)
+        if self.thermo_virial:
+            loop.state.virial[0] += self.virials(loop.snapshot()).sum(axis=0)
         if self.energy is None:
             self._energy = -float((self._force * self._positions).sum())
         else:
