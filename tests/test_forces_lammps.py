@@ -33,7 +33,9 @@ CASES = {
     "smd cvel tether": (["fix 2 some smd cvel 5.0 0.01 tether 3 NULL 4 1.5", "fix_modify 2 virial yes", NVE], [*SEVEN, "press", "pxy"]),
     "smd cfor tether": (["fix 2 some smd cfor 5.0 tether 3 2 NULL 1.5", NVE], SEVEN),
     "smd cvel couple": (["group others type 2", "fix 2 some smd cvel 5.0 0.01 couple others auto auto NULL 1.5", NVE], SEVEN),
-    "smd cvel couple along": (["group others type 2", "fix 2 some smd cvel 5.0 -0.01 couple others 1 auto 2 1.5", "fix_modify 2 virial yes", NVE], [*SEVEN, "press", "pxz"]),
+    "smd cvel couple along": (["group others type 2",
+                               "fix 2 some smd cvel 5.0 -0.01 couple others 1 auto 2 1.5", "fix_modify 2 virial yes", NVE],
+                              [*SEVEN, "press", "pxz"]),
     "smd cfor couple": (["group others type 2", "fix 2 some smd cfor 5.0 couple others auto auto auto 1.5", NVE], SEVEN),
     "smd cfor couple along": (["group others type 2", "fix 2 some smd cfor 5.0 couple others 1 2 NULL 1.5", NVE], SEVEN),
 }

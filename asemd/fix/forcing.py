@@ -93,7 +93,8 @@ class Forcing(Fix):
     def parameters(self, loop: Loop) -> np.ndarray:
         told = self.p[3:3 + self.outputs]
         values = [0.0 if v is None or callable(v) else v for v in self.values]
-        self.p = np.array([loop.group_bit(self.group), self.thermo_virial, bool(self.uses_atoms()), *told, *values, *self.numbers(loop)], float)
+        head = [loop.group_bit(self.group), self.thermo_virial, bool(self.uses_atoms())]
+        self.p = np.array([*head, *told, *values, *self.numbers(loop)], float)
         return self.p
 
     def uses_atoms(self) -> bool:

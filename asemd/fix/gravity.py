@@ -2,8 +2,8 @@ r"""A constant acceleration of all atoms.
 
 .. math:: F_i \leftarrow F_i + m_i\, g\, n, \qquad E = -\sum_i m_i\, g\, n \cdot r_i
 
-The direction n: ``chute a`` is down a plane inclined by a degrees from the horizontal (in x), ``spherical phi theta`` by the angle from x and
-from z, ``vector x y z``. The magnitude and all of these numbers may be variables of style equal.
+The direction n: ``chute a`` is down a plane inclined by a degrees from the horizontal (in x), ``spherical phi theta`` by the angle from x
+and from z, ``vector x y z``. The magnitude and all of these numbers may be variables of style equal.
 
 Source: LAMMPS manual, fix gravity. Units: ``magnitude`` in force/mass units, angles in degrees. Output: a scalar, the energy in the field.
 """

@@ -3,13 +3,14 @@ r"""Steered dynamics: a group is pulled by a moving spring or a constant force.
 With the centre of mass c of the group, the unit vector n from it to the point (``tether``) or to the centre of the second group
 (``couple``; or along the vector that is given), and the distance :math:`R_t = R_{start} + v t`: the spring (``cvel``) pulls with
 
-.. math:: F = -K (R - R_0 - R_t)\, \hat R \;\; \text{(tether)}, \qquad F = K (|D| - R_0)\, \hat D, \;\; D = c_2 - c_1 - R_t\, n \;\; \text{(couple)}
+.. math:: F = -K (R - R_0 - R_t)\, \hat R \;\; \text{(tether)},
+          \qquad F = K (|D| - R_0)\, \hat D, \;\; D = c_2 - c_1 - R_t\, n \;\; \text{(couple)}
 
 and ``cfor`` with a constant force along the line. Each atom gets the share :math:`m_i / M`. Positions are unwrapped.
 
 Source: S. Izrailev et al., Computational Molecular Dynamics (Springer 1998); S. Park, K. Schulten, J. Chem. Phys. 120, 5946 (2004); LAMMPS
-manual, fix smd. Units: ``K`` in force/distance units. Output: a vector of 7: the force, that along the pull, the distance of the spring's end,
-the distance of the two points, the work so far (the potential of mean force).
+manual, fix smd. Units: ``K`` in force/distance units. Output: a vector of 7: the force, that along the pull, the distance of the spring's
+end, the distance of the two points, the work so far (the potential of mean force).
 ``fix_modify ID virial yes`` counts the force of ``tether`` in the pressure.
 """
 from __future__ import annotations
