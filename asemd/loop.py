@@ -53,7 +53,8 @@ class Loop:
         self.engine = Engine(system, interactions, settings, "shape" if "shape" in moves else "".join(moves))
         self.units = self.engine.units
         self.result: Result | None = None
-        self.gone: dict[str, int] = {}        # atoms of each group lost since `setup`
+        self.gone: dict[str, int] = {}        # atoms of each group that left since `setup`, less those that joined
+        self.natoms = system.n                # how many there should be: lost ones count
         self.warn = warn
         self.fix_data: tuple = ()
         self._collected = -1
@@ -96,7 +97,7 @@ class Loop:
         e = self.engine
         self.fix_data = ()
         self._with_lost(e.load)
-        self.gone = {}
+        self.gone, self.natoms = {}, self.system.n
         e.bonds.hold(True)
         e.forces(True)
         self._ago = 0

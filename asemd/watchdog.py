@@ -161,8 +161,8 @@ class Watchdog:
         if not self.on:
             return
         self._built = self.loop.step
-        if self._atoms != self.loop.system.n:       # some were lost, with their energy
-            self._atoms, self._energies = self.loop.system.n, None
+        if self._atoms != self.loop.system.n:       # some left or joined, with their energy; older frames are of other atoms
+            self._atoms, self._energies, self._next = self.loop.system.n, None, 0.0
         if time.perf_counter() > self._next:
             self._timed(self._keep)
 

@@ -148,7 +148,6 @@ class Driver:
         self.words = self.scene.thermo.columns(self.scene.box_changes)
         self.output_seconds = 0.0
         self.afresh = False         # the next run must not go on without a setup
-        self.natoms = self.scene.system.n
 
     def run(self) -> None:
         """Setup, steps, summary."""
@@ -339,9 +338,9 @@ class Driver:
 
     def _tell_lost(self) -> None:
         """With ``thermo_modify lost warn``: say once that atoms are gone."""
-        thermo, n = self.scene.thermo, self.scene.system.n
-        if thermo.lost == "warn" and n < self.natoms and not thermo.lost_told:
-            self.session.warn(f"Lost atoms: original {self.natoms} current {n}")
+        thermo, n, expected = self.scene.thermo, self.scene.system.n, self.session.loop.natoms
+        if thermo.lost == "warn" and n < expected and not thermo.lost_told:
+            self.session.warn(f"Lost atoms: original {expected} current {n}")
             thermo.lost_told = True
 
     def _watch(self, what: str, *args) -> None:
