@@ -2,17 +2,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 
 import numpy as np
 from numba import config
 
-from asemd import atom_shares
+from asemd import atom_shares, faults, live_box
 from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
 from asemd.exclusions import Exclusions
-from asemd.kernels.state import BoxState, aligned, cell_arrays, empty_state
+from asemd.kernels.state import aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
@@ -162,7 +161,7 @@ class Engine:
 
     def _allocate(self, capacity: int) -> None:
         old, capacity = self.state, -(-capacity // 8) * 8      # rows of whole cache lines
-        new = empty_state(capacity, self.slot_of, self.system.image, self.acc, self._live_box())
+        new = empty_state(capacity, self.slot_of, self.system.image, self.acc, live_box.live(self))
         if old is not None:
             m = self.ns
             for a, b in zip(new[:SLOTTED], old[:SLOTTED]):
@@ -172,24 +171,6 @@ class Engine:
         self.held = aligned((3, capacity))
         self.moved = aligned((capacity,))      # squared displacement of each slot since the list was built, for lists that may be outdated
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
-
-    def _live_box(self) -> BoxState:
-        """The box as the loop has it, with the shifts of the present lists."""
-        shifts, shifts4 = np.zeros((0, 3)), np.zeros((0, 4))
-        if self.mode == "cluster" and hasattr(self.list, "shifts"):
-            shifts, shifts4 = self.list.shifts, self.list.shifts4
-        elif self.mode == "plain" and hasattr(self.list, "shifts"):
-            shifts = self.list.shifts
-        reduction = np.rint(self.cell.reduced @ np.linalg.inv(self.vectors))
-        return BoxState(self.vectors, self.origin, self.periodic.astype(float), self.cell, reduction,
-                        np.rint(shifts @ np.linalg.inv(self.vectors)), shifts, shifts4, IMAGES.copy(), self.shifts27,
-                        np.vstack([self.origin, self.vectors]))
-
-    def take_box(self) -> None:
-        """The box of the loop becomes that of the system."""
-        box = self.system.box
-        if self.state is not None and not (np.array_equal(box.cell, self.vectors) and np.array_equal(box.origin, self.origin)):
-            self.system.box = replace(box, origin=self.origin, cell=self.vectors)
 
     def __getstate__(self):
         raise TypeError("an Engine holds compiled code and is made anew from its scene")
@@ -216,7 +197,7 @@ class Engine:
         began = time.perf_counter()
         self.bonds.release()
         if self.box_moves:
-            self.take_box()
+            live_box.take(self)
             self._set_box()
         k, s = self.k, self.state
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
@@ -252,7 +233,7 @@ class Engine:
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
         self.moved[:] = 0.0
-        self.state = self.state._replace(slot=self.slot_of, image=self.system.image, box=self._live_box())
+        self.state = self.state._replace(slot=self.slot_of, image=self.system.image, box=live_box.live(self))
         for t in self.terms:
             t.rebuild(self)
         self.thread_arguments = None
@@ -367,29 +348,15 @@ class Engine:
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])
         self.store()
         if not np.isfinite(acc).all() or not np.isfinite(self.system.f).all():
-            raise self._not_finite()
+            raise faults.not_finite(self)
         self.result = Result(energy, virial, virial_of, self.system.f)
         return self.result
-
-    def _not_finite(self) -> SimulationError:
-        """Find who is to blame: coincident atoms, else the first atom with a bad force."""
-        s, bad = self.system, np.flatnonzero(~np.isfinite(self.system.f).all(axis=1))
-        if self.mode == "cluster":
-            i, j, code = self.list.expand(self.k, self.state, 1e-3 * max(self.cutoff, 1e-300))
-            if len(i):
-                d = self.state.x[:, i] - self.state.x[:, j] - self.list.shifts[code >> 2].T
-                m = int(np.argmin((d * d).sum(0)))
-                a, b = sorted(int(s.id[self.state.row[t[m]]]) for t in (i, j))
-                distance = np.sqrt((d[:, m] ** 2).sum())
-                return SimulationError(f"atoms {a} and {b} overlap (distance {distance:.3g}): energy or force is not finite")
-        who = f"atom {s.id[bad[0]]}: force is not finite (NaN or infinite)" if len(bad) else "the energy is not finite"
-        return SimulationError(who + "; atoms overlap, or the time step is too long")
 
     def store(self) -> None:
         """Slots back into the system: positions, velocities, forces."""
         s, y = self.state, self.system
         if self.box_moves:
-            self.take_box()
+            live_box.take(self)
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
         store_torques(self.terms, y)
         self.bonds.carry_back()

@@ -276,7 +276,7 @@ class Loop:
             self.remove(error.rows)
 
     def remove(self, rows) -> None:
-        """Take atoms out of the system in the midst of a run, see `asemd.population.remove`."""
+        """See `asemd.population.remove`."""
         population.remove(self, rows)
 
     def _enter(self, last: int, energy: bool, resume: bool = False) -> int:
