@@ -62,8 +62,7 @@ class Loop:
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
-        self._module = None
-        self._chunk = 100
+        self._module, self._chunk = None, 100
         self.watchdog = Watchdog(self)
 
     def group_bit(self, name: str) -> int:
