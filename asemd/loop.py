@@ -397,4 +397,5 @@ class Loop:
 
     def snapshot(self) -> Snapshot:
         """What observers see now."""
-        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes, self.gone, self._collected == self.step)
+        return Snapshot(self.system, self.result, self.groups, self.dt, self.step, self.fixes, self.gone, self._collected == self.step,
+                        self.engine)

@@ -85,7 +85,8 @@ class Result:
 class Snapshot:
     """What computes, thermo output and dumps see of a step.
 
-    `gone`: group -> how many of its atoms were lost since the run began; `fresh`: `result` is of this step.
+    `gone`: group -> how many of its atoms were lost since the run began; `fresh`: `result` is of this step; `engine`: who made `result`,
+    with its neighbour list.
     """
 
     system: object
@@ -96,6 +97,10 @@ class Snapshot:
     fixes: list = field(default_factory=list)
     gone: dict[str, int] = field(default_factory=dict)
     fresh: bool = True
+    engine: object = field(default=None, repr=False, compare=False)
+
+    def __getstate__(self):
+        return {**self.__dict__, "engine": None}      # it holds compiled code
 
     @property
     def units(self):

