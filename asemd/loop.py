@@ -55,8 +55,7 @@ class Loop:
         self.result: Result | None = None
         self.gone: dict[str, int] = {}        # atoms of each group that left since `setup`, less those that joined
         self.natoms = system.n                # how many there should be: lost ones count
-        self.warn = warn
-        self.fix_data: tuple = ()
+        self.warn, self.fix_data = warn, ()
         self._collected = -1
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
