@@ -112,7 +112,31 @@ fix 2 all bond/create 10 1 2 1.1 1 {}
 {}
 """
 SAME = "lj/coul 0 1 1"
+ALLOY = """
+units lj
+lattice fcc 0.8442
+region b block 0 3 0 3 0 3
+create_box 3 b
+create_atoms 1 box
+mass 1 1
+mass 2 2
+mass 3 3
+set atom 7 type 2
+set atom 50 type 3
+velocity all create 1.44 87287
+pair_style lj/cut 2.0
+pair_coeff * * 1 1
+pair_coeff 2 2 0.8 1
+pair_coeff 3 3 1.2 1.02
+pair_coeff 1 3 0.6 1
+fix 1 all nve
+fix 2 all atom/swap 5 3 4711 1.0 {}
+run 42
+"""
 CASES = {
+    "swap": ALLOY.format("types 2 3"),
+    "swap and keep velocities": ALLOY.format("ke no types 2 3"),
+    "semi-grand": ALLOY.format("semi-grand yes mu -0.2 0.3 types 2 3"),
     "deposit": SURFACE.format("near 1.0 vz -1.0 -1.0", 63),
     "deposit local": SURFACE.format("local 0.5 1.0 1.2 vx -0.2 0.3 vz -2 -1 units box", 63),
     "deposit global": SURFACE.format("global 0.5 1.0 near 0.5 vz -1 -1 target 2 2 0 id next", 63),
@@ -230,6 +254,8 @@ def test_deposit_goes_on_from_a_restart(tmp_path, monkeypatch):
     ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 2 20 12345 region c", "type"),
     ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 1 20 12345 region c nera 1", "did you mean near"),
     ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 1 20 12345 region c shake 1", "fix shake"),
+    ("fix 2 all atom/swap 5 3 4711 1.0 types 1", "types"),
+    ("fix 2 all atom/swap 5 3 4711 1.0 semi-grand yes types 1 1", "given together"),
     ("fix 2 all bond/create 10 1 1 1.1 1", "bond type"),
     ("fix 2 all bond/break 10 1", "Nevery bondtype Rmax"),
 ])
@@ -246,3 +272,11 @@ def test_as_plain_classes():
         fixes.BondCreate(types=(1, 1), most=(1, 2))
     assert fixes.BondBreak(every=5, distance=1.5).to_lammps() == ["5", "1", "1.5"]
     assert fixes.find("evaporate") is fixes.Evaporate
+
+
+def test_semi_grand_composition():
+    """Atoms without interaction: the numbers of the two types follow their chemical potentials."""
+    session = asemd(GAS.replace("create_box 1", "create_box 2").replace("mass 1 1", "mass * 1").replace("lj/cut 2.5", "zero 2.5").replace(
+        "pair_coeff 1 1 1 1 2.5", "pair_coeff * *") + "fix 2 all atom/swap 1 500 7 1.0 semi-grand yes mu 0 1.0 types 1 2\nrun 12")
+    share = (session.scene.system.type == 2).mean()
+    assert share == pytest.approx(np.e / (1 + np.e), abs=0.06)
