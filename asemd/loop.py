@@ -94,6 +94,8 @@ class Loop:
         self.end = self.begin if end is None else int(end)
         e = self.engine
         self.fix_data = ()
+        for f in self.fixes:
+            f.prepare(self)
         self._with_lost(e.load)
         self.gone, self.natoms = {}, self.system.n
         e.bonds.hold(True)

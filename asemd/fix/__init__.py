@@ -136,6 +136,9 @@ class Fix:
         """Hooks this instance has now -> whether each is compiled. Override where it depends on the arguments."""
         return {name: bool(getattr(getattr(self, name), "compiled", False)) for name in HOOKS if getattr(self, name, None)}
 
+    def prepare(self, loop: Loop) -> None:
+        """Called at the start of every run, before its first list."""
+
     def parameters(self, loop: Loop) -> np.ndarray:
         """The numbers ``p`` of the compiled hooks; called at the start of every run. ``p[0]`` is the group bit."""
         return np.array([float(loop.group_bit(self.group))])

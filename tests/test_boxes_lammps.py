@@ -1,0 +1,57 @@
+"""A box that is driven, and momentum or heat that is: positions, velocities, box and outputs as LAMMPS has them."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scripted import by_lammps, have_lammps, measure, write_data
+
+NVE = "fix 1 all nve"
+BOX = ["xlo", "xhi", "ylo", "yhi", "zlo", "zhi", "xy", "xz", "yz", "press", "temp"]
+TILTED = "change_box all triclinic"
+CASES = {
+    "deform erate": ([NVE, "fix 2 all deform 1 x erate 0.001 y trate -0.001"], BOX),
+    "deform final delta": ([NVE, "fix 2 all deform 3 x final 0.5 13 y delta -0.2 0.3 z scale 1.1 units box"], BOX),
+    "deform vel volume": ([NVE, "fix 2 all deform 1 x vel 0.01 y volume"], BOX),
+    "deform volume two": ([NVE, "fix 2 some deform 2 y trate 0.001 x volume z volume remap x"], BOX),
+    "deform volume of two": ([NVE, "fix 2 some deform 1 y trate 0.001 x erate 0.002 z volume remap none"], BOX),
+    "deform wiggle": ([NVE, "fix 2 all deform 1 z wiggle 1.0 40 remap v"], BOX),
+    "deform tilt": ([TILTED, NVE, "fix 2 all deform 1 xy erate 0.002 xz vel 0.01 units box"], BOX),
+    "deform variable": ([TILTED, NVE, "variable d equal 0.02*step", "variable r equal 0.02",
+                         "fix 2 all deform 1 x variable v_d v_r xy variable v_d v_r"], BOX),
+    "deform flip x": ([TILTED, NVE, "fix 2 all deform 1 xy erate 0.05"], BOX),
+    "deform flip v": ([TILTED, NVE, "fix 2 all deform 1 xy erate 0.05 remap v"], BOX),
+    "deform flip every": ([TILTED, NVE, "fix 2 all deform 4 xy erate -0.05 xz erate 0.06 remap x"], BOX),
+    "deform flip yz": ([TILTED, NVE, "fix 2 some deform 1 yz erate -0.05 xz erate 0.03 remap v"], BOX),
+    "deform flip none": ([TILTED, NVE, "fix 2 some deform 1 yz erate -0.03 flip no"], BOX),
+    "deform flip variable": ([TILTED, NVE, "variable d equal 0.6*step", "variable r equal 0.6",
+                              "fix 2 all deform 1 xy variable v_d v_r remap v"], BOX),
+    "deform tilt trate wiggle": (["change_box all triclinic xy final 1.0", NVE,
+                                  "fix 2 all deform 1 xy trate 0.05 xz wiggle 3.0 25.0 units box"], BOX),
+    "deform v lengths": ([NVE, "fix 2 all deform 1 x erate 0.004 y trate -0.004 z volume remap v"], BOX),
+}
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("boxes")
+    write_data(folder / "data3")
+    return {name: {"data": str(folder / "data3"), "commands": commands, "values": values, "runs": ["run 20", "run 30 start 0 stop 60"]}
+            for name, (commands, values) in CASES.items()}
+
+
+@pytest.fixture(scope="module")
+def expected(cases, tmp_path_factory):
+    if not have_lammps():
+        pytest.skip("the lammps module is not installed")
+    return by_lammps(cases, tmp_path_factory.mktemp("lammps"))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_like_lammps(name, cases, expected):
+    from asemd.lammps import Lammps
+    for ours, theirs in zip(measure(Lammps, cases[name]), expected[name], strict=True):
+        for formula, a, b in zip(cases[name]["values"], ours["values"], theirs["values"], strict=True):
+            assert a == pytest.approx(b, rel=1e-10, abs=1e-9), formula
+        for key in ("x", "v"):
+            a, b = np.array(ours[key]), np.array(theirs[key])
+            assert abs(a - b).max() <= 5e-12 * abs(b).max(), key
