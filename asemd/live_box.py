@@ -19,7 +19,7 @@ def live(engine) -> BoxState:
     reduction = np.rint(engine.cell.reduced @ np.linalg.inv(engine.vectors))
     return BoxState(engine.vectors, engine.origin, engine.periodic.astype(float), engine.cell, reduction,
                     np.rint(shifts @ np.linalg.inv(engine.vectors)), shifts, shifts4, IMAGES.copy(), engine.shifts27,
-                    np.vstack([engine.origin, engine.vectors]))
+                    np.vstack([engine.origin, engine.vectors]), np.array([float(engine.system.box.triclinic)]))
 
 
 def take(engine) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import timeloop as tl
+from asemd.kernels.box import corner_moves
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
 from asemd.neighbor import ClusterList
@@ -224,7 +225,7 @@ class RespaLoop(Loop):
         numbers = [a, 1.0 / max(b - a, 1e-30), c, 1.0 / max(d - c, 1e-30), near * abs(near), far * far]
         owner = replace(owner, tables=replace(owner.tables, constants=np.append(owner.tables.constants, numbers)))
         within = far + self.settings.skin
-        short = within < SHORT * self.engine.reach
+        short = within < SHORT * self.engine.reach and not self.engine.box_moves        # a second list has images of its own
         if isinstance(t, PairListTerm):
             kind = ShortListTerm if short and t.pairs == "all" else PairListTerm
             new = kind(owner.style, owner.tables, t.parts, t.pairs, owner=owner)
@@ -293,12 +294,14 @@ class RespaLoop(Loop):
         """Once in a step, after the outermost kick: a fresh list if it is time; the forces of the levels keep their atoms."""
         e, s = self.engine, self.settings
         self._ago += 1
-        if self._ago < s.delay or self._ago % s.every:
-            return
-        if s.check and e.k.moved(e.state.x, e.held, e.ns) <= (0.5 * s.skin) ** 2:
-            return
-        if s.check and self._ago == max(s.every, s.delay):
-            e.dangerous += 1
+        if not any(f.next_reneighbor == self.step for f in self.fixes):
+            if self._ago < s.delay or self._ago % s.every:
+                return
+            limit = max(0.0, 0.5 * (s.skin - corner_moves(e.state.box))) if e.box_moves else 0.5 * s.skin
+            if s.check and e.k.moved(e.state.x, e.held, e.ns) <= limit**2:
+                return
+            if s.check and self._ago == max(s.every, s.delay):
+                e.dangerous += 1
         self._hook("pre_exchange")
         self._hook("pre_neighbor")
         old = e.state.row[:e.ns]

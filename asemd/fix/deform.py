@@ -67,6 +67,7 @@ class Deform(Fix):
     """
 
     style = "deform"
+    levels = "every"
 
     def __init__(self, group: str = "all", every: int = 1, changes=None, remap: str = "x", flip: bool = True):
         super().__init__(group)

@@ -132,6 +132,7 @@ def move(s, p, slots: int) -> None:
     s.x[:, inside] = (a @ new + p[12:15]).T
 
 
+new_box.strict = take_box.strict = True       # the last bit decides when a list is built
 _new_box, _take_box = njit(cache=True)(new_box), njit(cache=True)(take_box)
 
 

@@ -57,18 +57,24 @@ def follow(box):
 
 
 def corner_moves(box):
-    """The two largest distances, added, that corners of the box have moved since the list was built."""
-    first, second = 0.0, 0.0
+    """The two largest distances, added, that corners of the box have moved since the list was built.
+
+    Of a box that is not triclinic the distances of the lowest and the highest corner.
+    This is LAMMPS's way, to the last bit, which decides when a list is built: a corner that sets a new record makes it forget the last one.
+    """
+    first, second, v, h, triclinic = 0.0, 0.0, box.vectors, box.held, box.triclinic[0] != 0.0
     for n in range(8):
         a, b, c = n & 1, (n >> 1) & 1, (n >> 2) & 1
         square = 0.0
         for d in range(3):
-            move = (box.origin[d] - box.held[0, d] + a * (box.vectors[0, d] - box.held[1, d]) + b * (box.vectors[1, d] - box.held[2, d])
-                    + c * (box.vectors[2, d] - box.held[3, d]))
+            now = v[0, d] * a + v[1, d] * b + v[2, d] * c + box.origin[d]
+            move = now - (h[1, d] * a + h[2, d] * b + h[3, d] * c + h[0, d])
             square += move * move
         length = math.sqrt(square)
-        if length > first:
-            first, second = length, first
+        if not triclinic:
+            second += length if n == 0 or n == 7 else 0.0
+        elif length > first:
+            first = length
         elif length > second:
             second = length
     return first + second

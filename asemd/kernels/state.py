@@ -33,6 +33,7 @@ class BoxState(NamedTuple):
     images27: np.ndarray      # (27, 3) whole numbers: the images of special pairs
     shifts27: np.ndarray      # (27, 3) ``images27 @ reduced``
     held: np.ndarray          # (4, 3) origin and vectors when the list was built
+    triclinic: np.ndarray     # (1,) 1 or 0
 
 
 class State(NamedTuple):

@@ -60,7 +60,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
     for n, fix in enumerate(hooks):
         for name, f in fix.items():
             for helper in getattr(f, "uses", ()):
-                b.function(helper, fast=True)
+                b.function(helper, fast=not getattr(helper, "strict", False))
             # strict where two halves may be one pass: a run has the same digits wherever it is cut into pieces
             b.text(plain_source(f, f"fix{n}_{name}"), "" if name in HALVES else f"fastmath={FAST}")
 
