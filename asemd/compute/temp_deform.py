@@ -2,8 +2,8 @@ r"""Temperature without the velocity of a box that fix deform changes: what atom
 
 .. math:: v_i \to v_i - (\dot h\, s_i + \dot r_0)
 
-with fractional coordinates :math:`s_i`, the rates :math:`\dot h` of the box vectors and :math:`\dot r_0` of its origin. Without a fix deform
-nothing is taken away.
+with fractional coordinates :math:`s_i`, the rates :math:`\dot h` of the box vectors and :math:`\dot r_0` of its origin. Without a fix
+deform nothing is taken away.
 
 Source: LAMMPS manual, compute temp/deform. Units: temperature; the tensor is an energy.
 """

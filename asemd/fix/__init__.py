@@ -19,8 +19,8 @@ the compiler must know that an index is not negative.
 
 Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0
 only, with ``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own
-that several hooks share is named with ``@hook(uses=[function])`` and pasted beside them; if it has the attribute ``strict``, its sums and products
-keep their order to the last bit.
+that several hooks share is named with ``@hook(uses=[function])`` and pasted beside them; if it has the attribute ``strict``, its sums and
+products keep their order to the last bit.
 
 A fix may offer ``final_initial`` besides: `final_integrate` of a step and `initial_integrate` of the next in one pass, used where nothing
 happens in between.

@@ -35,7 +35,7 @@ KIND = {"trate": TRUE, "volume": VOLUME, "wiggle": WIGGLE, "variable": VARIABLE}
 class Change(NamedTuple):
     """How one length or tilt changes: style and values in box units, two functions of the loop for ``variable``."""
 
-    style: str
+    how: str
     values: tuple = ()
 
 
@@ -83,18 +83,18 @@ class Deform(Fix):
             if style == "wiggle" and not values[1] > 0.0:
                 raise InputError(f"fix deform {name} wiggle: the period must be positive, got {values[1]:g}")
             self.changes[name] = Change(style, tuple(values))
-        self.kept = {d: self._keepers(d) for d, name in enumerate("xyz") if name in self.changes and self.changes[name].style == "volume"}
+        self.kept = {d: self._keepers(d) for d, name in enumerate("xyz") if name in self.changes and self.changes[name].how == "volume"}
         self.box_moves = "shape" if any(len(name) == 2 for name in self.changes) else "size"
         self.initial: tuple[np.ndarray, np.ndarray] | None = None      # vectors and origin when it was defined
         self.p = np.zeros(34 + 13 * 6)
         self.image: np.ndarray | None = None
         self.planned: tuple = ()
-        if any(change.style == "variable" for change in self.changes.values()):
+        if any(change.how == "variable" for change in self.changes.values()):
             self.end_of_step = self.by_formulas
 
     def _keepers(self, d: int) -> tuple[int, int, int]:
         """How dimension `d` keeps the volume (1 one of one, 2 one of two, 3 two of one), and by which others."""
-        styles = [self.changes[name].style if name in self.changes else "" for name in "xyz"]
+        styles = [self.changes[name].how if name in self.changes else "" for name in "xyz"]
         one, two = (d + 1) % 3, (d + 2) % 3
         if all(styles[k] in ("", "volume") for k in (one, two)):
             raise InputError("fix deform volume: another length must change by a style of its own")
@@ -202,7 +202,7 @@ class Deform(Fix):
             row[3:5] = row[1:3]
             if change is None:
                 continue
-            row[0] = KIND.get(change.style, LINEAR)
+            row[0] = KIND.get(change.how, LINEAR)
             if d < 3:
                 self._length(row, d, change, time, float(np.prod(np.diag(cell))))
             else:
@@ -217,42 +217,42 @@ class Deform(Fix):
         lo, hi = row[1:3]
         half, middle = 0.5 * (hi - lo), 0.5 * (lo + hi)
         value = (*change.values, 0.0)
-        if change.style == "final":
+        if change.how == "final":
             row[3:5] = value[:2]
-        elif change.style == "delta":
+        elif change.how == "delta":
             row[3:5] = lo + value[0], hi + value[1]
-        elif change.style == "scale":
+        elif change.how == "scale":
             row[3:5] = middle - value[0] * half, middle + value[0] * half
-        elif change.style == "vel":
+        elif change.how == "vel":
             row[3:5] = lo - 0.5 * time * value[0], hi + 0.5 * time * value[0]
-        elif change.style == "erate":
+        elif change.how == "erate":
             row[3:5] = lo - time * value[0] * half, hi + time * value[0] * half
-        elif change.style == "trate":
+        elif change.how == "trate":
             row[5] = value[0]
-        elif change.style == "wiggle":
+        elif change.how == "wiggle":
             row[5:7] = value[:2]
             if not abs(value[0]) < hi - lo:
                 raise InputError(f"fix deform {'xyz'[d]} wiggle: the amplitude {value[0]:g} is not below the length {hi - lo:g} of the box")
-        elif change.style == "volume":
+        elif change.how == "volume":
             row[7:11] = volume, *self.kept[d]
         if not row[3] < row[4]:
-            raise InputError(f"fix deform {'xyz'[d]} {change.style}: the box would have length {row[4] - row[3]:g} at the end of the run")
+            raise InputError(f"fix deform {'xyz'[d]} {change.how}: the box would have length {row[4] - row[3]:g} at the end of the run")
 
     def _tilt(self, row, name: str, change: Change, time: float, across: float) -> None:
         start, value = row[1], (*change.values, 0.0)
-        if change.style == "final":
+        if change.how == "final":
             row[3] = value[0]
-        elif change.style == "delta":
+        elif change.how == "delta":
             row[3] = start + value[0]
-        elif change.style == "vel":
+        elif change.how == "vel":
             row[3] = start + time * value[0]
-        elif change.style == "erate":
+        elif change.how == "erate":
             row[3] = start + time * value[0] * across
-        elif change.style == "trate":
+        elif change.how == "trate":
             if start == 0.0:
                 raise InputError(f"fix deform {name} trate: the tilt is zero and stays so; use erate")
             row[5], row[3] = value[0], start * math.exp(value[0] * time)
-        elif change.style == "wiggle":
+        elif change.how == "wiggle":
             row[5:7], row[3] = value[:2], start + value[0]
             row[2] = start - value[0]
 
@@ -260,10 +260,10 @@ class Deform(Fix):
         """A flip of yz changes xz by xy, which must not change, too."""
         if not (self.flips and "yz" in self.changes and "xy" in self.changes):
             return
-        if self.changes["yz"].style == "variable":
+        if self.changes["yz"].how == "variable":
             raise InputError("fix deform: yz by variables cannot change together with xy unless flip is no")
         row, y = p[34 + 39:34 + 52], p[34 + 13:34 + 26]
-        ends = (row[1], row[3], row[2]) if self.changes["yz"].style == "wiggle" else (row[1], row[3])
+        ends = (row[1], row[3], row[2]) if self.changes["yz"].how == "wiggle" else (row[1], row[3])
         if max(abs(t) / min(y[2] - y[1], y[4] - y[3]) for t in ends) > 0.5:
             raise InputError("fix deform: yz changes by more than half the length of y together with xy; use flip no")
 
@@ -301,7 +301,7 @@ class Deform(Fix):
         p, box = self.p, loop.state.box
         for d, name in enumerate(DIMENSIONS):
             change = self.changes.get(name)
-            if change is not None and change.style == "variable":
+            if change is not None and change.how == "variable":
                 p[34 + 13 * d + 11:34 + 13 * d + 13] = [_single(f(loop), name) for f in change.values]
         new_box(loop.step, loop.begin, loop.end, loop.dt, p, box.vectors, box.origin)
         remember(p, box.vectors, box.origin)

@@ -6,8 +6,8 @@ with the flow :math:`u(r) = \dot h\, h^{-1} (r - r_0) + \dot r_0` of the box. Th
 (compute temp/deform) it measures. With ``psllod yes`` the term of the gradient takes :math:`v` in place of :math:`v'`. The box must be
 deformed with ``remap v``. The chain has one link unless ``tchain`` says otherwise.
 
-Source: D. J. Evans, G. P. Morriss, Phys. Rev. A 30, 1528 (1984); M. E. Tuckerman, C. J. Mundy, S. Balasubramanian, M. L. Klein, J. Chem. Phys.
-106, 5615 (1997); P. J. Daivis, B. D. Todd, J. Chem. Phys. 124, 194103 (2006) for psllod; LAMMPS manual, fix nvt/sllod.
+Source: D. J. Evans, G. P. Morriss, Phys. Rev. A 30, 1528 (1984); M. E. Tuckerman, C. J. Mundy, S. Balasubramanian, M. L. Klein,
+J. Chem. Phys. 106, 5615 (1997); P. J. Daivis, B. D. Todd, J. Chem. Phys. 124, 194103 (2006) for psllod; LAMMPS manual, fix nvt/sllod.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import numpy as np
 from asemd.compute.temp_deform import TempDeform
 from asemd.errors import InputError
 from asemd.fix import hook
-from asemd.fix.nvt import NVT, nose_hoover_chain
+from asemd.fix.nvt import HEADER, NVT, nose_hoover_chain
 from asemd.kernels.threads import barrier, reduce_sum
 from asemd.words import take, yes_no
 
@@ -101,8 +101,10 @@ class NVTSllod(NVT):
 
     style = "nvt/sllod"
     takes_bias = True
+    size = 12
 
-    def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 1, drag: float = 0.0, psllod: bool = False):
+    def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 1, drag: float = 0.0,
+                 psllod: bool = False):
         super().__init__(group, temperature, damping, chain, 1, drag)
         self.temp, self.psllod = TempDeform(group), psllod
 
@@ -124,7 +126,7 @@ class NVTSllod(NVT):
     def modify_option(self, keyword, value, session):
         taken = super().modify_option(keyword, value, session)
         if keyword == "temp" and type(self.temp) is not TempDeform:
-            raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp/deform, {value} has style {self.temp.style}")
+            raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp/deform, {value} is of {self.temp.style}")
         return taken
 
     def atom_arrays(self, loop):
@@ -135,6 +137,16 @@ class NVTSllod(NVT):
         if deform.remap != "v":
             raise InputError(f"fix {self.id} (style {self.style}) needs a fix deform with remap v, it has remap {deform.remap}")
         return (deform.p, np.array([float(self.psllod)]))
+
+    def vector(self, i: int) -> float:
+        """Positions and velocities of the chain, its potential and its kinetic energies; 12 values, the last ones 0 for a short chain."""
+        n, p = self.chain, self.p
+        if not 1 <= i <= max(12, 4 * n):
+            raise InputError(f"fix {self.id} (style {self.style}): the vector has {max(12, 4 * n)} elements, there is no element {i}")
+        eta, rate, mass = p[HEADER:HEADER + n], p[HEADER + n:HEADER + 2 * n], p[HEADER + 3 * n + 1:]
+        weight = np.where(np.arange(n) == 0, p[2], 1.0)
+        values = np.concatenate([eta, rate, p[3] * p[13] * weight * eta, 0.5 * mass * rate * rate])
+        return float(values[i - 1]) if i <= 4 * n else 0.0
 
     @hook(uses=[nose_hoover_chain, gradient, thermostat])
     def initial_integrate(th, s, p, a):
