@@ -116,9 +116,7 @@ class Loop:
 
     def arrays_of(self, fix: Fix) -> np.ndarray | tuple[np.ndarray, ...]:
         a = fix.atom_arrays(self)
-        if isinstance(a, tuple):
-            return a
-        return np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)
+        return a if isinstance(a, tuple) else np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)
 
     def _collect(self) -> Result:
         """The result of this step, whose energies were computed."""

@@ -25,7 +25,8 @@ def session_of(triclinic: bool, boundary=("pp", "pp", "pp"), dimension: int = 3)
 
 @pytest.mark.parametrize("line", [
     "deform 1 x erate 0.1 remap x flip yes units box", "deform 5 x final 0.0 2.0 y delta -1.0 1.0 z scale 2.0 remap v flip no units box",
-    "deform 1 x vel 0.5 y volume z volume remap none flip yes units box", "deform 1 x trate 0.1 xy wiggle 1.0 5.0 remap x flip yes units box",
+    "deform 1 x vel 0.5 y volume z volume remap none flip yes units box",
+    "deform 1 x trate 0.1 xy wiggle 1.0 5.0 remap x flip yes units box",
     "deform 1 yz variable v_d v_e remap x flip yes units box", "deform 1 remap v flip yes units box",
     "nvt/sllod temp 1.0 2.0 0.5 tchain 1 tloop 1 psllod no", "nvt/sllod temp 1.0 2.0 0.5 tchain 3 tloop 1 drag 0.1 psllod yes",
 ])
@@ -39,7 +40,8 @@ def test_round_trip(line):
 @pytest.mark.parametrize(("line", "message"), [
     ("deform", "needs N"), ("deform 0 x erate 1", "at least 1"), ("deform 1 x", "needs 1 value"), ("deform 1 x erate", "needs 1 value"),
     ("deform 1 x erat 1", "did you mean erate"), ("deform 1 xy volume", "expected one of"), ("deform 1 xy scale 2", "expected one of"),
-    ("deform 1 x volume y volume", "another length"), ("deform 1 x erate 1 remap w", "remap"), ("deform 1 x erate 1 flip maybe", "yes or no"),
+    ("deform 1 x volume y volume", "another length"), ("deform 1 x erate 1 remap w", "remap"),
+    ("deform 1 x erate 1 flip maybe", "yes or no"),
     ("deform 1 x erate 1 unit box", "did you mean units"), ("deform 1 x erate 1 remap v y erate 1", "unknown keyword 'y'"),
     ("deform 1 x wiggle 1 0", "period"), ("deform 1 x variable d e", "v_name"), ("deform 1 x variable v_q v_e", "undefined variable q"),
     ("deform 1 x erate fast", "number"), ("deform 1 x erate 1 units", "1 value"),
