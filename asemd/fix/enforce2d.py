@@ -1,4 +1,4 @@
-r"""Two dimensions: velocity and force along z are zero.
+r"""Two dimensions: velocity and force along z are zero, and spheres turn about z only.
 
 Source: LAMMPS manual, fix enforce2d.
 """
@@ -26,7 +26,12 @@ class Enforce2D(Fix):
     def parameters(self, loop) -> np.ndarray:
         if loop.system.dimension != 2:
             raise InputError("fix enforce2d is for systems of two dimensions; say dimension 2 before the box is created")
-        return super().parameters(loop)
+        return np.array([loop.group_bit(self.group), "omega" in loop.system.extra], float)
+
+    def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
+        """Angular velocities and torques of spheres."""
+        extra, none = loop.system.extra, np.zeros((1, 3))
+        return (extra["omega"], extra["torque"]) if "omega" in extra else (none, none)
 
     @hook
     def post_force(th, s, p, a):
@@ -35,3 +40,8 @@ class Enforce2D(Fix):
             if s.mask[i] & bit != 0:
                 s.v[2, i] = 0.0
                 s.f[2, i] = 0.0
+                if p[1] != 0.0:
+                    r = s.row[i]
+                    for d in range(2):
+                        a[0][r, d] = 0.0
+                        a[1][r, d] = 0.0
