@@ -49,6 +49,9 @@ class Compute:
     def to_lammps(self) -> list[str]:
         return []
 
+    def setup(self, state) -> None:
+        """Called at the start of every run of a script, after the first forces."""
+
     def scalar(self, state) -> float:
         raise InputError(f"compute {self.id} (style {self.style}) has no global scalar")
 

@@ -27,7 +27,7 @@ PARTIAL = {
     ("command", "run_style"): "verlet; respa",
     ("command", "set"): "keywords of the atom styles listed under atom",
     ("command", "special_bonds"): "one/five yes needs atom_style amoeba",
-    ("command", "velocity"): "bias and rigid: checked; there is no temperature with a bias and no fix of rigid bodies to use",
+    ("command", "velocity"): "rigid: checked; there is no fix of rigid bodies to use",
     ("atom", "dipole"): "no fix turns the dipoles",
     ("atom", "sphere"): "no fix turns the spheres; their radii stay as they are",
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",

@@ -307,6 +307,9 @@ class Driver:
             if needs & {"energies", "virials"}:
                 loop.engine.per_atom(loop.result)
         session.moment = Moment(scene, loop.snapshot(), session.variables.number, self.progress, loop.engine)
+        if fresh:
+            for compute in scene.computes.values():
+                compute.setup(session.moment.snapshot)
 
     def _output(self, step: int, ends: bool, dumps: bool = False) -> None:
         """Thermo row and dumps of a step that are due, or all of them."""

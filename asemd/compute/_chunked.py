@@ -1,0 +1,63 @@
+"""What computes of chunks share: the compute chunk/atom they sum over."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.compute import Compute
+from asemd.compute._pieces import Pieces
+from asemd.errors import InputError, nearest
+from asemd.words import take
+
+
+def find_chunks(id: str, what: str, session) -> Compute:
+    """The compute chunk/atom of that ID."""
+    computes = session.scene.computes
+    if id not in computes:
+        raise InputError(f"{what}: there is no compute {id}{nearest(id, computes)}")
+    if computes[id].style != "chunk/atom":
+        raise InputError(f"{what}: compute {id} has style {computes[id].style}, not chunk/atom")
+    return computes[id]
+
+
+def read_chunks(words: list[str], style: str, session) -> Compute:
+    """That of the first word after the style's name."""
+    return find_chunks(take(words, 1, f"compute {style} (chunkID)")[0], f"compute {style}", session)
+
+
+class Chunked(Compute):
+    """Base class: ``compute ID group style chunkID``.
+
+    Parameters
+    ----------
+    group : str
+        The atoms that count.
+    chunks : asemd.compute.chunk_atom.ChunkAtom
+    """
+
+    def __init__(self, group: str = "all", chunks=None):
+        super().__init__(group)
+        if chunks is None:
+            raise InputError(f"compute {self.style} needs the ID of a compute chunk/atom")
+        self.chunks = chunks
+
+    @property
+    def needs(self) -> frozenset[str]:
+        return self.chunks.needs
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        chunks = read_chunks(words, cls.style, session)
+        if len(words) > 1:
+            raise InputError(f"compute {cls.style} takes the ID of a compute chunk/atom only, got {' '.join(words[1:])} besides")
+        return cls(group, chunks)
+
+    def to_lammps(self) -> list[str]:
+        return [self.chunks.id]
+
+    def index(self, state) -> tuple[np.ndarray, int]:
+        """(n,) the chunk of each atom of the group, 0 for none, and how many there are."""
+        at, count = self.chunks.assign(state)
+        return np.where(state.mask(self.group), at, 0), count
+
+    def pieces(self, state) -> Pieces:
+        return Pieces(state.system, *self.index(state))

@@ -1,0 +1,38 @@
+"""Numbers of atoms as they were, found again by id when atoms come, go or change places."""
+from __future__ import annotations
+
+import numpy as np
+
+
+class Original:
+    """Values (n, ...) of the atoms of a system at some time.
+
+    Parameters
+    ----------
+    system : asemd.system.System
+    values : (n, ...) array
+    """
+
+    def __init__(self, system, values: np.ndarray):
+        order = np.argsort(system.id, kind="stable")
+        self.id, self.values = system.id[order], np.array(values)[order]
+
+    def _places(self, system) -> tuple[np.ndarray, np.ndarray]:
+        at = np.minimum(np.searchsorted(self.id, system.id), max(len(self.id) - 1, 0))
+        return at, self.id[at] == system.id if len(self.id) else np.zeros(system.n, bool)
+
+    def of(self, system, fresh: np.ndarray) -> np.ndarray:
+        """By atom row now; atoms that were not there then have what `fresh` says."""
+        at, known = self._places(system)
+        out = np.array(fresh)
+        out[known] = self.values[at[known]]
+        return out
+
+    def update(self, system, values: np.ndarray) -> None:
+        """Other values for the atoms of now."""
+        self.__init__(system, values)
+
+
+def unwrapped(system) -> np.ndarray:
+    """(n, 3) positions without periodic boundaries."""
+    return system.box.unwrap(system.x, system.image)
