@@ -228,6 +228,8 @@ def evaluate(moment: Moment, word: str, norm: bool) -> float:
         source = {"c": moment.scene.computes, "f": moment.scene.fixes, "v": {}}[reference[0]].get(reference[1])
         if reference[0] == "c" and reference[2] and getattr(source, "style", "").startswith("temp"):
             extensive = True        # the kinetic energies of the tensor; the temperature itself is not
+        elif hasattr(source, "extensive_at"):
+            extensive = source.extensive_at(reference[2])
         else:
             extensive = bool(getattr(source, "extensive", getattr(source, "ecouple", False) or getattr(source, "style", "") in EXTENSIVE))
     return value / moment.system.n if norm and extensive and moment.system.n else value

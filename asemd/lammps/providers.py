@@ -43,7 +43,10 @@ class Providers:
         """Whether a compute or fix gives ``scalar``, ``vector``, ``array`` or ``per_atom`` values."""
         from asemd.compute import Compute
         from asemd.fix import Fix
-        found, base = type(self.source(kind, id)), Compute if kind == "c" else Fix
+        source, base = self.source(kind, id), Compute if kind == "c" else Fix
+        if (outputs := getattr(source, "outputs", None)) is not None:       # depends on what it was asked for
+            return what in outputs
+        found = type(source)
         return getattr(found, what, None) is not getattr(base, what, None)
 
     def source(self, kind: str, id: str):
@@ -215,6 +218,8 @@ def _no_charge(system):
 
 def fix_vector(fix, column: int | None) -> np.ndarray:
     """All elements of the global vector of a fix, or of a column of its array: those up to the first that it does not have."""
+    if hasattr(fix, "whole_vector"):
+        return fix.whole_vector(column)
     values: list[float] = []
     size = getattr(fix, "size", None) or LONGEST
     while len(values) < size:

@@ -61,6 +61,7 @@ class Session:
     """
 
     dry = False      # whether runs are only checked
+    defining = ""    # ID of the fix that is being made
 
     def __init__(self, scene: Scene | None = None, switches: Switches | None = None,
                  screen: Callable[[str], None] | None = None, passive: bool = False):
