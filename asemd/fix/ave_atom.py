@@ -2,7 +2,7 @@ r"""Average values of each atom over time.
 
 .. math:: \bar a_i(t) = \frac{1}{N} \sum_{k=0}^{N-1} a_i(t - k\,m)
 
-with :math:`N` = Nrepeat samples, :math:`m` = Nevery steps apart, known on multiples of Nfreq. Positions are unwrapped ones.
+with :math:`N` = Nrepeat samples, :math:`m` = Nevery steps apart, known on multiples of Nfreq. Positions are those inside the box.
 
 Source: LAMMPS manual, fix ave/atom. Output: values per atom, a column for each value; zero outside the group.
 """
@@ -13,7 +13,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.fix import sampled
 from asemd.fix.sampled import Sampled
-from asemd.fix.values import ATOM_WORDS, AXES, expand, read
+from asemd.fix.values import ATOM_WORDS, expand, read
 from asemd.words import take, whole
 
 
@@ -73,11 +73,7 @@ class AveAtom(Sampled):
             self._sum[:] = 0.0
         mask = snapshot.mask(self.group)
         for k, value in enumerate(self.values):
-            if value.kind == "atom" and value.id in AXES:
-                now = system.box.unwrap(system.x, system.image)[:, AXES.index(value.id)]
-            else:
-                now = value.per_atom(snapshot)
-            self._sum[mask, k] += now[mask]
+            self._sum[mask, k] += value.per_atom(snapshot)[mask]
 
     def conclude(self, step: int) -> None:
         self._mean[:] = self._sum / self.repeat

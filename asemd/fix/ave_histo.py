@@ -1,7 +1,7 @@
 r"""Histogram of values, averaged over time.
 
-Bin :math:`k` of :math:`N` counts the values in :math:`[lo + (k-1) w, lo + k w)` with :math:`w = (hi - lo) / N`; the counts of Nrepeat samples
-are added. Values outside are left out (``beyond ignore``), counted in the first and last bin (``end``) or in two more bins (``extra``).
+Bin :math:`k` of :math:`N` counts the values in :math:`[lo + (k-1) w, lo + k w)` with :math:`w = (hi - lo) / N`; the counts of Nrepeat
+samples are added. Values outside are left out (``beyond ignore``), counted in the first and last bin (``end``) or in two more bins (``extra``).
 
 Source: LAMMPS manual, fix ave/histo. Output: a vector of 4 (values counted, values left out, smallest and largest value), an array of 3
 columns (coordinate of the bin, count, fraction); a file.
@@ -20,6 +20,7 @@ from asemd.words import choice, number, take, whole
 KEYWORDS = {"mode": 1, "file": 1, "append": 1, "ave": sampled.ave_count, "start": 1, "beyond": 1, "overwrite": 0, "kind": 1,
             "title1": 1, "title2": 1, "title3": 1}
 BIG = 1.0e20
+KINDS = {"global": "vector", "peratom": "per_atom", "local": "local"}
 
 
 class AveHisto(Sampled):
@@ -68,7 +69,7 @@ class AveHisto(Sampled):
             raise InputError(f"{what}: there must be at least 1 bin, got {bins}")
         if self.weighted and len(self.values) != 2:
             raise InputError(f"{what} needs two values, what is counted and its weights, got {len(self.values)}")
-        self.mode, self.kind = choice(mode, ("scalar", "vector"), f"{what} mode"), choice(kind, ("global", "peratom", "local"), f"{what} kind")
+        self.mode, self.kind = choice(mode, ("scalar", "vector"), f"{what} mode"), choice(kind, KINDS, f"{what} kind")
         self.beyond = choice(beyond, ("ignore", "end", "extra"), f"{what} beyond")
         self.lo, self.hi, self.inner = lo, hi, bins
         width = (hi - lo) / bins
@@ -102,7 +103,7 @@ class AveHisto(Sampled):
             raise InputError(f"{what} needs at least one value after Nbin")
         kind = cls._kind(values, mode, options.get("kind", [""])[0], what)
         for value in values:
-            value.check("scalar" if mode == "scalar" else {"global": "vector", "peratom": "per_atom", "local": "local"}[kind], what)
+            value.check("scalar" if mode == "scalar" else KINDS[kind], what)
         ave, window = sampled.read_ave(options.get("ave", ["one"]), what)
         fix = cls(group, values, lo, hi, bins, every, repeat, freq, mode, kind, options.get("beyond", ["ignore"])[0], ave, window,
                   whole(options.get("start", ["0"])[0], f"{what} start"))
@@ -124,12 +125,12 @@ class AveHisto(Sampled):
     def _kind(values, mode: str, asked: str, what: str) -> str:
         """Where the values come from: what all of them have."""
         if asked:
-            return choice(asked, ("global", "peratom", "local"), f"{what} kind")
+            return choice(asked, KINDS, f"{what} kind")
         if mode == "scalar":
             if any(v.kind == "atom" or not v.gives("scalar") and v.gives("per_atom") for v in values):
                 raise InputError(f"{what} cannot process per-atom values in scalar mode: add mode vector")
             return "global"
-        common = [k for k, name in (("global", "vector"), ("peratom", "per_atom"), ("local", "local")) if all(v.gives(name) for v in values)]
+        common = [k for k, name in KINDS.items() if all(v.gives(name) for v in values)]
         if not common:
             raise InputError(f"{what}: the values must all be global, all per atom or all local: {' '.join(v.word for v in values)}")
         return common[0]

@@ -2,8 +2,8 @@ r"""Average global values over time.
 
 .. math:: \bar a(t) = \frac{1}{N} \sum_{k=0}^{N-1} a(t - k\,m)
 
-with :math:`N` = Nrepeat samples, :math:`m` = Nevery steps apart, known on multiples of Nfreq; then averaged over all results (``ave running``)
-or over the last M of them (``ave window M``).
+with :math:`N` = Nrepeat samples, :math:`m` = Nevery steps apart, known on multiples of Nfreq; then averaged over all results
+(``ave running``) or over the last M of them (``ave window M``).
 
 Source: LAMMPS manual, fix ave/time. Output: a scalar for one number, a vector for several numbers or for one vector, an array for several
 vectors; a file.

@@ -69,7 +69,8 @@ class Print(Fix):
         return fix
 
     def to_lammps(self) -> list[str]:
-        return [*self.words[:1], f'"{self.words[1]}"', *self.words[2:]] if hasattr(self, "words") else [str(self.print_every), f'"{self.text}"']
+        words = getattr(self, "words", [str(self.print_every), str(self.text)])
+        return [words[0], f'"{words[1]}"', *words[2:]]
 
     def begin(self, step: int) -> None:
         """The first step with a line."""

@@ -109,7 +109,8 @@ def check_frequencies(fix: Sampled) -> None:
             other = fix.session.variables.provider.source("f", value.id)
             every = getattr(other, "output_every", 1)
             if fix.sample_every % every:
-                raise InputError(f"fix {fix.style}: {value.word} is known on multiples of {every} steps only, Nevery {fix.sample_every} is none")
+                raise InputError(f"fix {fix.style}: {value.word} is known on multiples of {every} steps only, "
+                                 f"Nevery {fix.sample_every} is none")
 
 
 def keywords(words: list[str], table: Mapping[str, int | Callable[[list[str]], int]], what: str) -> dict[str, list[str]]:

@@ -203,7 +203,7 @@ def columns_of(session, kind: str, id: str, what: str) -> int:
     if isinstance(columns, int):
         return columns
     if session.moment._snapshot is not None:
-        values = np.asarray(session.variables.provider.session.moment.per_atom(id) if kind == "c" else source.per_atom(session.moment.snapshot))
+        values = np.asarray(session.moment.per_atom(id) if kind == "c" else source.per_atom(session.moment.snapshot))
         return values.shape[1] if values.ndim == 2 else 0
     return 0
 
@@ -262,7 +262,7 @@ def snapshot_of(loop, session, needs=()):
     """The present step as computes and variables see it; `session` sees it too."""
     loop.sync_out()
     loop.system.step = loop.step
-    if "energies" in needs or "virials" in needs:
+    if ("energies" in needs and loop.result.energies is None) or ("virials" in needs and loop.result.virials is None):
         loop.engine.per_atom(loop.result)
     if session is not None:
         session.look(loop)

@@ -110,5 +110,6 @@ class Vector(Sampled):
 
     def _at(self, i: int, j: int) -> float:
         if not (1 <= i <= len(self.data) and 1 <= j <= len(self.values)):
-            raise InputError(f"fix {self.id} (style vector): there is no element [{i}][{j}], it has {len(self.data)} rows of {len(self.values)}")
+            raise InputError(f"fix {self.id} (style vector): there is no element [{i}][{j}], it has {len(self.data)} rows of "
+                             f"{len(self.values)}")
         return float(self.data[i - 1][j - 1])
