@@ -2,8 +2,8 @@ r"""Time correlation of values, averaged over all pairs of samples.
 
 .. math:: C_{ij}(k\,m) = \frac{p}{n_k} \sum_t a_i(t) \, a_j(t + k\,m)
 
-for :math:`k` = 0 ... Nrepeat - 1, :math:`m` = Nevery steps between samples, :math:`n_k` pairs of samples and prefactor :math:`p`; written on
-multiples of Nfreq. With ``ave one`` sums begin anew after each output.
+for :math:`k` = 0 ... Nrepeat - 1, :math:`m` = Nevery steps between samples, :math:`n_k` pairs of samples and prefactor :math:`p`; written
+on multiples of Nfreq. With ``ave one`` sums begin anew after each output.
 
 Source: LAMMPS manual, fix ave/correlate. Output: an array with the columns time difference, number of pairs, correlation of each pair of
 values; a file.

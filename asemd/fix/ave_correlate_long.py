@@ -63,8 +63,8 @@ class AveCorrelateLong(AveCorrelate):
         options = sampled.keywords(rest, KEYWORDS, what)
         values = [read(w, session, what).check("scalar", what) for w in expand(names, session)]
         sizes = {n: whole(options[n][0], f"{what} {n}") for n in ("ncorr", "nlen", "ncount") if n in options}
-        fix = cls(group, values, every, freq, options.get("type", ["auto"])[0], start=whole(options.get("start", ["0"])[0], f"{what} start"),
-                  **sizes)
+        start = whole(options.get("start", ["0"])[0], f"{what} start")
+        fix = cls(group, values, every, freq, options.get("type", ["auto"])[0], start=start, **sizes)
         fix._take(words, options, session)
         return fix
 

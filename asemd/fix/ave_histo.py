@@ -1,7 +1,8 @@
 r"""Histogram of values, averaged over time.
 
-Bin :math:`k` of :math:`N` counts the values in :math:`[lo + (k-1) w, lo + k w)` with :math:`w = (hi - lo) / N`; the counts of Nrepeat
-samples are added. Values outside are left out (``beyond ignore``), counted in the first and last bin (``end``) or in two more bins (``extra``).
+Bin :math:`k` of :math:`N` counts the values in :math:`[lo + (k-1) w, lo + k w)` with :math:`w = (hi - lo) / N`; the counts
+of Nrepeat samples are added. Values outside are left out (``beyond ignore``), counted in the first and last bin (``end``) or in two more
+bins (``extra``).
 
 Source: LAMMPS manual, fix ave/histo. Output: a vector of 4 (values counted, values left out, smallest and largest value), an array of 3
 columns (coordinate of the bin, count, fraction); a file.

@@ -72,7 +72,8 @@ class StoreState(Fix):
         return fix
 
     def to_lammps(self) -> list[str]:
-        return self.words if hasattr(self, "words") else [str(self.store_every), *(v if isinstance(v, str) else v.word for v in self.values)]
+        own = [str(self.store_every), *(v if isinstance(v, str) else v.word for v in self.values)]
+        return getattr(self, "words", own)
 
     def next_end(self, step: int) -> int:
         return (step // self.store_every + 1) * self.store_every if self.store_every else sampled.NEVER

@@ -77,6 +77,10 @@ class Value:
         if not self.gives(what):
             shown = {"scalar": "one number", "vector": "a vector", "per_atom": "a value for each atom", "local": "local values"}[what]
             raise InputError(f"{command}: {self.word} does not give {shown}")
+        if self.kind == "c" and what == "scalar" and len(self.index) == 1:
+            size = getattr(self.session.scene.computes[self.id], "size", None)
+            if size and self.index[0] > size:
+                raise InputError(f"{command}: {self.word}: the vector has {size} elements, there is no element {self.index[0]}")
         return self
 
     def extensive(self, what: str = "scalar") -> bool:
