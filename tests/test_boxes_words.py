@@ -29,6 +29,8 @@ def session_of(triclinic: bool, boundary=("pp", "pp", "pp"), dimension: int = 3)
     "deform 1 x trate 0.1 xy wiggle 1.0 5.0 remap x flip yes units box",
     "deform 1 yz variable v_d v_e remap x flip yes units box", "deform 1 remap v flip yes units box",
     "nvt/sllod temp 1.0 2.0 0.5 tchain 1 tloop 1 psllod no", "nvt/sllod temp 1.0 2.0 0.5 tchain 3 tloop 1 drag 0.1 psllod yes",
+    "heat 1 0.5", "heat 2 v_d region half", "ehex 1 0.5 region half hex", "ehex 10 -0.5", "accelerate/cos 0.1",
+    "viscosity 10 x z 20 swap 2 vtarget 1.5", "viscosity 10 y x 4 swap 1 vtarget INF", "thermal/conductivity 10 z 20 swap 3",
 ])
 def test_round_trip(line):
     name, *words = line.split()
@@ -47,6 +49,18 @@ def test_round_trip(line):
     ("deform 1 x erate fast", "number"), ("deform 1 x erate 1 units", "1 value"),
     ("nvt/sllod", "needs temp"), ("nvt/sllod temp 1 1 1 psllod", "1 value"), ("nvt/sllod temp 1 1 1 psllod maybe", "yes or no"),
     ("nvt/sllod temp 1 1 1 tloop 2", "tloop must be 1"), ("nvt/sllod temp 1 1 1 peculiar yes", "unknown keyword"),
+    ("heat 1", "2 values"), ("heat 0 1.0", "at least 1"), ("heat 1 1.0 region hal", "did you mean half"),
+    ("heat 1 1.0 regoin half", "region ID"),
+    ("heat 1 1.0 region half 3", "region ID"), ("heat 1 v_q", "undefined variable q"), ("ehex 1", "2 values"), ("ehex 0 1", "at least 1"),
+    ("ehex 1 v_d", "number"), ("ehex 1 1 constrain", "fix shake"), ("ehex 1 1 com", "fix shake"), ("ehex 1 1 hexe", "did you mean hex"),
+    ("ehex 1 1 region", "1 value"), ("accelerate/cos", "1 value"), ("accelerate/cos 1 2", "1 value"), ("accelerate/cos x", "number"),
+    ("viscosity 10 x z", "4 values"), ("viscosity 0 x z 4", "at least 1"), ("viscosity 10 w z 4", "vdim"), ("viscosity 10 x w 4", "pdim"),
+    ("viscosity 10 x z 5", "even"), ("viscosity 10 x z 2", "at least 4"), ("viscosity 10 x z 4 swap 0", "swap"),
+    ("viscosity 10 x z 4 vtarget 0", "positive"), ("viscosity 10 x z 4 vtarget", "1 value"),
+    ("viscosity 10 x z 4 swpa 1", "did you mean swap"),
+    ("thermal/conductivity 10 z", "3 values"), ("thermal/conductivity 0 z 4", "at least 1"), ("thermal/conductivity 10 q 4", "edim"),
+    ("thermal/conductivity 10 z 3", "even"), ("thermal/conductivity 10 z 4 swap 0", "swap"),
+    ("thermal/conductivity 10 z 4 vtarget 1", "swap Nswap"),
 ])
 def test_errors(line, message):
     name, *words = line.split()
@@ -61,3 +75,14 @@ def test_errors(line, message):
 def test_boxes_that_cannot_be_deformed(line, session, message):
     with pytest.raises(InputError, match=message):
         asemd.fix.Deform.from_lammps("all", line.split(), session)
+
+
+def test_acceleration_in_two_dimensions():
+    with pytest.raises(InputError, match="three dimensions"):
+        asemd.fix.AccelerateCos.from_lammps("all", ["0.1"], session_of(False, dimension=2))
+
+
+def test_extra_words_of_computes():
+    for name in ("temp/deform", "viscosity/cos"):
+        with pytest.raises(InputError, match="takes no arguments"):
+            asemd.compute.find(name).from_lammps("all", ["1"], session_of(False))
