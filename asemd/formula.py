@@ -36,6 +36,7 @@ class Provider(Protocol):
     def vector(self, kind: str, id: str, column: int | None) -> np.ndarray: ...
     def has(self, kind: str, id: str, what: str) -> bool: ...
     def atoms(self, name: str) -> np.ndarray: ...
+    def property(self, name: str, column: int | None) -> np.ndarray: ...
     def row(self, atom_id: int) -> int: ...
     def group(self, name: str) -> np.ndarray: ...
     def region(self, name: str) -> np.ndarray: ...
@@ -146,6 +147,8 @@ class Parser:
             return self.reference(name[0], name[2:])
         if name in CONSTANTS:
             return CONSTANTS[name]
+        if re.match(r"[id]2?_", name):
+            return self.property(name)
         if name == "version":
             return VERSION
         if name in ATOM_VECTORS:
@@ -155,6 +158,17 @@ class Parser:
                 return self.atom_values(values, name)
             return float(values[self.provider.row(index)])
         return float(self.provider.thermo(name))
+
+    def property(self, name: str) -> Value:
+        """``d_name``, ``d2_name[column]`` and those of one atom, ``d_name[id]``, ``d2_name[id][column]``."""
+        index = [i for i in (self.index(), self.index()) if i is not None]
+        columns = name[1] == "2"
+        if len(index) - columns not in (0, 1):
+            raise InputError(f"invalid formula {self.formula!r}: {name} needs {'a column' if columns else 'no more than an atom id'}")
+        values = self.provider.property(name, index[-1] if columns else None)
+        if len(index) > columns:
+            return float(values[self.provider.row(index[0])])
+        return self.atom_values(values, name)
 
     def index(self) -> int | None:
         """``[i]``, where i is a whole number or ``v_name``."""

@@ -206,6 +206,9 @@ class Scene:
         """Fit the group masks to the number of atoms."""
         if self.system is not None and self.groups["all"].size != self.system.n:
             self.groups.resize(self.system.n)
+        for fix in self.fixes.values() if self.system is not None else ():
+            if hasattr(fix, "attach"):
+                fix.attach(self.system)
 
     @property
     def box_changes(self) -> bool:

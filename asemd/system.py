@@ -131,6 +131,11 @@ class System:
         """True if the atom style has molecule ids and bonds."""
         return bool(bonded(self.atom_style)) or not self.topology.is_empty
 
+    @property
+    def has_molecules(self) -> bool:
+        """True if the atoms have molecule ids, by their style or as a property of their own."""
+        return self.molecular or bool(self.counts.get("molecules"))
+
     def copy(self) -> System:
         return copy.deepcopy(self)
 
@@ -187,7 +192,7 @@ class System:
             like = a.get(name, b.get(name))
             parts = [s.get(name, np.zeros((m, *like.shape[1:]), like.dtype)) for s, m in ((a, self.n), (b, other.n))]
             joined[name] = np.concatenate(parts)
-        counts = {name: max(self.counts[name], other.counts[name]) for name in self.counts}
+        counts = {name: max(self.counts[name], other.counts.get(name, 0)) for name in self.counts}
         mass = np.full(counts["ntypes"] + 1, np.nan)
         for s in (other, self):
             known = np.isfinite(s.mass)

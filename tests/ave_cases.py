@@ -109,6 +109,6 @@ REFUSED = {
     "ave/histo 2 3 10 0 5 5 c_ke c_t mode vector": "all per atom or all local", "ave/histo/weight 2 3 10 0 5 5 c_t": "two values",
     "ave/correlate 2 9 10 c_t": "Nevery \\* Nrepeat", "ave/correlate 2 3 10 c_t type upper": "two values",
     "ave/correlate 2 3 10 c_t type all": "expected one of", "ave/correlate/long 2 10 c_t nlen 3 ncount 2": "multiple of ncount",
-    "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative", 
+    "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
     "store/force 1": "no arguments",
 }

@@ -62,7 +62,7 @@ def read(words: list[str], session) -> Settings:
     out.discard = out.discard or ("mixed" if bins else "yes")
     scene = session.scene
     system = scene.need_system(WHAT)
-    if style == "molecule" and not system.molecular:
+    if style == "molecule" and not system.has_molecules:
         raise InputError(f"{WHAT} molecule: atom style {system.atom_style} has no molecules")
     if out.discard == "mixed" and not bins:
         raise InputError(f"{WHAT}: discard mixed is for bins only")

@@ -156,7 +156,7 @@ class Dump(Modify):
 
     def check_scene(self, system) -> None:
         """Raise `InputError` for what these atoms cannot give; before a run."""
-        for name, there, what in (("q", system.q is not None, "charges"), ("mol", system.molecular, "molecules")):
+        for name, there, what in (("q", system.q is not None, "charges"), ("mol", system.has_molecules, "molecules")):
             if name in self.columns and not there:
                 raise InputError(f"dump: atom style {system.atom_style} has no {what} for the column {name}")
 

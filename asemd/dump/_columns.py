@@ -139,7 +139,7 @@ class View:
         return self.system.q[self.rows]
 
     def molecule(self) -> np.ndarray:
-        if not self.system.molecular:
+        if not self.system.has_molecules:
             raise InputError(f"dump: atom style {self.system.atom_style} has no molecules for the column mol")
         return self.system.molecule[self.rows]
 

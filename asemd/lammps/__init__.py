@@ -203,7 +203,8 @@ class Lammps(AtomArrays, Library):
             return self.get_natoms()
         if name in TYPE_COUNTS or name in ITEMS:
             return self.extract_global(name)
-        flags = {"triclinic": lambda: system.box.triclinic, "molecule_flag": lambda: system.molecular, "q_flag": lambda: system.has_charge,
+        flags = {"triclinic": lambda: system.box.triclinic, "molecule_flag": lambda: system.has_molecules,
+                 "q_flag": lambda: system.has_charge,
                  "rmass_flag": lambda: system.rmass is not None, "radius_flag": lambda: "radius" in system.extra,
                  "mu_flag": lambda: "mu" in system.extra}
         if name in flags:

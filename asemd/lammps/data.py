@@ -37,8 +37,8 @@ class DataFile:
         Section -> style named after ``#`` in its heading.
     headings : dict
         Section -> place of its heading.
-    title : str
-        First line.
+    title, fix_lines
+        First line; ID of a fix -> list of (place, words) of its sections.
     """
 
     system: System
@@ -47,6 +47,7 @@ class DataFile:
     styles_hint: dict[str, str] = field(default_factory=dict)
     headings: dict[str, Where] = field(default_factory=dict)
     title: str = ""
+    fix_lines: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
 
 
 def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
@@ -112,7 +113,7 @@ class _Reader(DataText):
         coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
         self.check_hints(self.units)
         return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
-                        {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip())
+                        {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip(), self.fix_lines())
 
     def read_box(self) -> tuple[Box, np.ndarray | None]:
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""

@@ -33,11 +33,12 @@ class DataText:
         Header line -> its numbers; `header_line` has the index of the line.
     sections : dict of str to Section
     fixes : sequence of (ID, header, section)
-        Header lines and sections with these words are for a fix (``read_data fix``); no fix of asemd reads any.
+        Header lines and sections with these words are for a fix (``read_data fix``), if the fix is among `readers`.
     """
 
     def __init__(self, path: str | os.PathLike, atom_style: str, fixes: Sequence[tuple[str, str, str]] = ()):
         self.path, self.lines, self.atom_style, self.fixes = os.fspath(path), read_lines(path), atom_style, fixes
+        self.of_fixes: dict[str, list[Section]] = {}        # ID -> sections for it
         self.header: dict[str, list[float]] = {}
         self.header_line: dict[str, int] = {}
         self.sections: dict[str, Section] = {}
@@ -58,6 +59,11 @@ class DataText:
         """Indices of the lines of a section that hold values."""
         return [i for i in range(section.first, section.last) if self.lines[i].split("#", 1)[0].strip()]
 
+    def fix_lines(self) -> dict[str, list[tuple[Where, list[str]]]]:
+        """ID of a fix -> place and words of each line of its sections."""
+        return {id: [(self.where(i), self.lines[i].split("#", 1)[0].split()) for s in sections for i in self.content(s)]
+                for id, sections in self.of_fixes.items()}
+
     def number(self, word: str) -> int:
         return int(self.header.get(word, [0])[0])
 
@@ -70,7 +76,7 @@ class DataText:
                 if words[0][0].isalpha():
                     break
                 values, word = _leading_numbers(words)
-                if any(header != "NULL" and header in self.lines[i] for _, header, _ in self.fixes):
+                if any(header != "NULL" and header in self.lines[i] for _, header, _, _ in self.fixes):
                     i += 1
                     continue
                 if word not in HEADER:
@@ -87,15 +93,22 @@ class DataText:
 
     def read_sections(self, start: int) -> None:
         """Find the headings."""
-        current = None
+        current: Section | None = None
         for i in self.lines.beginning_with_letters(start).tolist():
             text, _, hint = self.lines[i].partition("#")
             name = " ".join(text.split())
             if name not in SECTIONS:
-                for id, _, section in self.fixes:
-                    if section in name:
+                for id, _, section, reads in self.fixes:
+                    if section in name and not reads:
                         raise self.fail(f"section {name} is for fix {id}, which reads nothing from data files: remove the section", i)
-                if current and (not _is_heading(name) or self.takes_words(current, name)):
+                owner = next((id for id, _, section, _ in self.fixes if section in name), None)
+                if owner is not None:
+                    if current:
+                        current.last = i
+                    current = Section(name, i, i + 1, len(self.lines), "")
+                    self.of_fixes.setdefault(owner, []).append(current)
+                    continue
+                if current and (not _is_heading(name) or self.takes_words(current.name, name)):
                     continue
                 same = [s for s in SECTIONS if s.lower() == name.lower()]
                 similar = nearest(same[0] if same else name, [*SECTIONS, *HEADER])
@@ -105,9 +118,8 @@ class DataText:
             if name in self.sections:
                 raise self.fail(f"section {name} appears twice (lines {self.sections[name].line + 1} and {i + 1})", i)
             if current:
-                self.sections[current].last = i
-            current = name
-            self.sections[name] = Section(name, i, i + 1, len(self.lines), " ".join(hint.split()[:1]))
+                current.last = i
+            current = self.sections[name] = Section(name, i, i + 1, len(self.lines), " ".join(hint.split()[:1]))
 
     def takes_words(self, section: str, text: str) -> bool:
         """Whether a line made of words only can be a line of values: coefficients under a type label."""

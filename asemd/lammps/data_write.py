@@ -23,7 +23,7 @@ MARKS = {category: {mark: name for name, (c, mark) in COEFFS.items() if c == cat
 
 def write_data(path: str | os.PathLike, system: System, interactions: Interactions | None = None, *, pair: str = "ii",
                types: str = "numeric", labels: bool = True, general: bool = False, margins: bool = False,
-               progress: Callable[[int, int], None] | None = None) -> None:
+               progress: Callable[[int, int], None] | None = None, fixes=()) -> None:
     """Write a data file; a path ending in ``.gz`` is compressed.
 
     Parameters
@@ -44,6 +44,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
         Whether shrink-wrapped faces are written such that they keep their margins when the file is read, see `keeping_margins`.
     progress : callable, optional
         Told from time to time how many lines are written, and how many there are.
+    fixes : sequence of Fix
+        Fixes property/atom, which write sections of their own.
 
     Raises
     ------
@@ -58,7 +60,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     """
     if not atom_styles.known(system.atom_style):
         raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
-    if system.rmass is not None and not atom_styles.has(system.atom_style, "density"):
+    written = {name for fix in fixes for name, _ in fix.properties}
+    if system.rmass is not None and not atom_styles.has(system.atom_style, "density") and "rmass" not in written:
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
     inside = _lammps_frame(system)
     if margins:
@@ -70,6 +73,9 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
             for part in parts:
                 f.write(part)
                 f.write("\n")
+            for fix in fixes:
+                columns = {"id": inside.id, **dict(enumerate(fix.columns_in(inside)))}
+                f.writelines(f"{line}\n" for line in _section(fix.heading(), _table(columns, {}, _Told(None, 0))))
     except OSError as e:
         raise InputError(f"write_data: cannot write {path}: {e.strerror or e}") from None
 

@@ -152,6 +152,17 @@ class Providers:
             return s.extra["radius"]
         return (s.x if len(name) == 1 else {"v": s.v, "f": s.f}[name[0]])[:, AXES[name[-1]]]      # x y z, vx .. fz
 
+    def property(self, name: str, column: int | None) -> np.ndarray:
+        """Values (n,) of i_name, d_name, or of a column (from 1) of i2_name, d2_name."""
+        values = self.system.extra.get(name)
+        if values is None:
+            raise InputError(f"atoms have no property {name}, define it with fix property/atom")
+        if column is None:
+            return values.astype(float)
+        if not 1 <= column <= values.shape[1]:
+            raise InputError(f"{name}[{column}]: the property has {values.shape[1]} columns")
+        return values[:, column - 1].astype(float)
+
     def row(self, atom_id: int) -> int:
         rows = np.flatnonzero(self.system.id == atom_id)
         if not rows.size:

@@ -12,7 +12,8 @@ from asemd.words import take
 def run(session, args):
     id, group, style = take(args, 3, "fix")[:3]
     scene = session.scene
-    scene.need_system(f"fix {style}")
+    if scene.system is None and not getattr(catalog.load("fix", style), "before_box", False):
+        scene.need_system(f"fix {style}")
     if not re.fullmatch(r"\w+", id, re.ASCII):
         raise InputError(f"fix: ID {id!r} must have only letters, numbers and underscores")
     scene.groups.mask(group, f"fix {id}")

@@ -126,7 +126,7 @@ def _members(session, system, old: np.ndarray, style: str, words: list[str], wha
 
 
 def _need_molecules(system, what: str) -> None:
-    if not system.molecular:
+    if not system.has_molecules:
         raise InputError(f"{what}: atom_style {system.atom_style} has no molecules")
 
 

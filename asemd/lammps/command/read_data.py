@@ -48,8 +48,10 @@ def run(session, args):
     session.print("Reading data file ...")
     with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
         warnings.simplefilter("always", InputWarning)
+        fixes = [(id, header, id if section == "NULL" else section, hasattr(scene.fixes[id], "read_section"))
+                 for id, header, section in options.fixes]
         data = read_data(path, scene.units, scene.atom_style, scene.boundary, scene.dimension, options.extra, old, options.shift, progress,
-                         options.fixes)
+                         fixes)
     for warning in caught:
         session.warn(str(warning.message))
     if old is None:
@@ -64,6 +66,9 @@ def run(session, args):
         if old.image.any() and not np.array_equal(old.box.cell, new.box.cell):
             session.warn("read_data add: the box grows while atoms have image flags, their unwrapped positions change")
         _join(scene, old, new)
+    scene.sync_groups()
+    for id, lines in data.fix_lines.items():
+        scene.fixes[id].read_section(scene.system, lines)
     if options.group:
         mask = np.isin(scene.system.id, new.id)
         scene.groups[options.group] = scene.groups.get(options.group, False) | mask

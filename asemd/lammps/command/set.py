@@ -1,6 +1,8 @@
 """``set style ID keyword values ...``"""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from asemd.atom_style import volume
@@ -10,6 +12,7 @@ from asemd.random import position_seeds, uniform_at
 from asemd.words import bounds, number, take, whole
 
 LARGEST = 2**62     # no id is above
+CUSTOM = re.compile(r"([id])(2?)_(\w+)(?:\[(\d+)\])?")      # properties of fix property/atom
 KEYWORDS = {"type": 1, "type/fraction": 3, "type/ratio": 3, "type/subset": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1,
             "charge": 1, "mass": 1, "image": 3,
             "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1,
@@ -28,9 +31,10 @@ def run(session, args):
     session.print("Setting atom values ...")
     while words:
         key, what = words[0], f"set {words[0]}"
-        if key not in KEYWORDS:
+        custom = CUSTOM.fullmatch(key)
+        if key not in KEYWORDS and not custom:
             raise InputError(f"set: keyword {key!r} is unknown or not supported{nearest(key, KEYWORDS)}")
-        values = take(words[1:], KEYWORDS[key], what)
+        values = take(words[1:], KEYWORDS.get(key, 1), what)
         count = Setter(session, system, mask, what).apply(key, values)
         session.print(f"  {count} settings made for {key}")
         words = words[1 + len(values):]
@@ -46,7 +50,7 @@ def _selected(scene, system, style: str, name: str) -> np.ndarray:
     elif style == "type":
         values, (first, last) = system.type, bounds(name, 1, system.counts["ntypes"], "set type", system.labels["atom"])
     elif style == "mol":
-        if not system.molecular:
+        if not system.has_molecules:
             raise InputError(f"set mol: atom_style {system.atom_style} has no molecules")
         values, (first, last) = system.molecule, bounds(name, 1, LARGEST, "set mol")
     else:
@@ -77,6 +81,8 @@ class Setter:
             return self._sphere(key, values[0])
         if key == "image":
             return self._image(values)
+        if key not in KEYWORDS:
+            return self._custom(key, values[0])
         if key == "type" and not values[0].startswith("v_"):
             system.type[rows] = self._type(values[0], "atom", system.counts["ntypes"])
             return len(rows)
@@ -87,7 +93,7 @@ class Setter:
                 raise InputError(f"{self.what}: {new[wrong][0]:g} is outside the valid range 1 to {system.counts['ntypes']}")
             system.type[rows] = new.astype(np.int32)
         elif key == "mol":
-            if not system.molecular:
+            if not system.has_molecules:
                 raise InputError(f"{self.what}: atom_style {system.atom_style} has no molecules")
             given = not values[0].startswith("v_")      # a variable's values are cut to whole numbers, as LAMMPS does
             if ((new < 0) | (new > LARGEST) | (given & (new != np.floor(new)))).any():
@@ -106,6 +112,20 @@ class Setter:
         else:
             (system.v if key[0] == "v" else system.x)[rows, "xyz".index(key[-1])] = new
         return len(rows)
+
+    def _custom(self, key: str, word: str) -> int:
+        """A property of fix property/atom."""
+        kind, wide, _, column = CUSTOM.fullmatch(key).groups()
+        array = self.system.extra.get(key.partition("[")[0])
+        if array is None or bool(wide) != (array.ndim == 2):
+            raise InputError(f"{self.what}: atoms have no property {key.partition('[')[0]}, define it with fix property/atom")
+        if bool(column) != bool(wide) or (column and not 1 <= int(column) <= array.shape[1]):
+            raise InputError(f"{self.what}: the property has {array.shape[1] if wide else 'no'} columns")
+        new = self._values(word)
+        if kind == "i" and not word.startswith("v_") and (new != np.floor(new)).any():
+            raise InputError(f"{self.what}: expected a whole number, got {word!r}")
+        (array[:, int(column) - 1] if column else array)[self.rows] = new
+        return len(self.rows)
 
     def _values(self, word: str) -> np.ndarray:
         """One number for all, or the values of a variable."""

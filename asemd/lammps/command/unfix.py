@@ -10,5 +10,7 @@ def run(session, args):
     fixes = session.scene.fixes
     if id not in fixes:
         raise InputError(f"unfix: there is no fix {id}{nearest(id, fixes)}")
-    del fixes[id]
+    fix = fixes.pop(id)
+    if hasattr(fix, "detach") and session.scene.system is not None:
+        fix.detach(session.scene.system)
     session.loop = None

@@ -14,6 +14,7 @@ KEYWORDS = ("pair", "nocoeff", "nofix", "nolabelmap", "types", "triclinic/genera
 def run(session, args):
     scene, system = session.scene, session.scene.need_system("write_data")
     path = take(args, 1, "write_data")[0].replace("*", str(scene.step))
+    fixes = [f for f in scene.fixes.values() if getattr(f, "writedata", False)]
     options, coeffs, words = {}, True, args[1:]
     while words:
         key, *words = words
@@ -31,11 +32,13 @@ def run(session, args):
             if system.rotation is None:
                 raise InputError("write_data triclinic/general: the simulation box is not general triclinic")
             options["general"] = True
-        elif key != "nofix":       # no fix of asemd writes to data files
+        elif key == "nofix":
+            fixes = []
+        else:
             raise InputError(f"write_data: unknown keyword {key!r}{nearest(key, KEYWORDS)}")
     report_mixing(session, "write_data")
     with warnings.catch_warnings(record=True) as caught, session.progress("lines") as progress:
         warnings.simplefilter("always", InputWarning)
-        write_data(path, system, scene.interactions if coeffs else None, progress=progress, **options)
+        write_data(path, system, scene.interactions if coeffs else None, progress=progress, fixes=fixes, **options)
     for warning in caught:
         session.warn(str(warning.message))
