@@ -56,7 +56,7 @@ SCENES = {
     "tilted": "units lj\natom_style atomic" + COMMON.format(lattice="bcc 1.1", box="prism 0 5 0 5 0 5 1.2 0.7 -1.1", z="0.05"),
     "molecules": GAS,
 }
-# words of the compute -> its values: G global array, V global vector, S global scalar, A or B per atom, one or several columns
+# words of the compute -> its values: G global array, V vector, S scalar, A or B per atom, L or M local, one or several columns
 EVERYWHERE = {
     "all rdf 30 * * 1 2": "G", "half rdf 20 1*2 2": "G", "all rdf 25 1 1 cutoff 3.1": "G",
     "all adf 20": "G", "half adf 15 1 1 * 0.0 1.4 0.8 1.9 * 2 2 0 1.6 0 1.6 ordinate cosine": "G",
@@ -69,9 +69,17 @@ EVERYWHERE = {
     "all centro/atom fcc": "A", "half centro/atom 6": "A",
     "a cluster/atom 1.0": "A", "half cluster/atom 0.9": "A",
 }
+EVERYWHERE |= {
+    "all pair/local dist": "L", "half pair/local dist eng force": "M", "a group/group b": "S", "half group/group all": "V",
+    "half group/group a": "S", "all centroid/stress/atom NULL": "B", "half stress/atom NULL virial": "B",
+    "all heat/flux ke pe stress": "V", "half heat/flux ke pe centroid": "V",
+}
 HERE = {     # rdf 2 1: LAMMPS's coordination numbers of unlike types are wrong in two dimensions
-    "crystal": {"all rdf 12 2 1": "G", "all contact/atom": "A", "half contact/atom b": "A"}, "layer": {}, "tilted": {},
-    "molecules": {"all fragment/atom": "A", "a fragment/atom": "A", "a fragment/atom single yes": "A", "half aggregate/atom 1.1": "A"},
+    "crystal": {"all rdf 12 2 1": "G", "all contact/atom": "A", "half contact/atom b": "A", "all entropy/atom 0.15 2.0": "A",
+                "all entropy/atom 0.2 1.5 avg yes 1.1 local yes": "A", "all pair lj/cut": "S"},
+    "layer": {}, "tilted": {"half entropy/atom 0.16 2.2 local yes": "A"},
+    "molecules": {"all fragment/atom": "A", "a fragment/atom": "A", "a fragment/atom single yes": "A", "half aggregate/atom 1.1": "A",
+                  "all pair lj/cut/coul/cut ecoul": "S", "all pair lj/cut/coul/cut evdwl": "S", "a group/group b molecule inter": "V"},
 }
 THEIRS = """
 answer = {}
@@ -85,6 +93,8 @@ for name, (lines, computes) in given["scenes"].items():
     for k, kind in computes.items():
         if kind in "AB":
             value = np.array(lmp.numpy.extract_compute(k, 1, 1 if kind == "A" else 2))[:n][order]
+        elif kind in "LM":
+            value = np.array(lmp.numpy.extract_compute(k, 2, 1 if kind == "L" else 2))
         else:
             value = np.array(lmp.numpy.extract_compute(k, 0, "SVG".index(kind)))
         answer[name][k] = value
@@ -92,18 +102,31 @@ for name, (lines, computes) in given["scenes"].items():
 """
 
 
+HELPERS = ["velocity all create 1.3 87287", "compute ke all ke/atom", "compute pe all pe/atom",
+           "compute stress all stress/atom NULL virial", "compute centroid all centroid/stress/atom NULL virial"]
+
+
+def rows(values: np.ndarray) -> np.ndarray:
+    """Rows of local values in an order that does not depend on the program."""
+    values = np.asarray(values).reshape(len(values), -1)
+    return values[np.argsort(values[:, 0])]
+
+
 def prepare(name: str) -> tuple[list[str], dict[str, str]]:
     """The lines of a scene with its computes, up to the forces, and the kinds of values by ID."""
-    lines, computes, columns, dumped = [line for line in SCENES[name].splitlines() if line], {}, [], []
+    lines, computes, columns, dumped, local = [line for line in SCENES[name].splitlines() if line], {}, [], [], []
+    lines += HELPERS
     for k, (words, kind) in enumerate((EVERYWHERE | HERE[name]).items()):
         lines.append(f"compute c{k} {words}")
         computes[f"c{k}"] = kind
         if kind in "AB":
             dumped.append(f"c_c{k}" + "[1]" * (kind == "B"))
+        elif kind in "LM":
+            local.append(f"dump d{k} all local 1000 /dev/null c_c{k}" + "[1]" * (kind == "M"))
         else:
             columns.append(f"c_c{k}" + {"S": "", "V": "[1]", "G": "[1][1]"}[kind])
     lines += ["comm_modify cutoff 4.0", "thermo_modify norm no", f"dump d all custom 1000 /dev/null id {' '.join(dumped)}",
-              "thermo_style custom step pe " + " ".join(columns), "run 0"]
+              *local, "thermo_style custom step pe " + " ".join(columns), "run 0"]
     return lines, computes
 
 
@@ -118,8 +141,12 @@ def test_like_lammps(name, theirs):
     lmp = ours(lines)
     order = np.argsort(lmp.scene.system.id)
     for (id, kind), words in zip(computes.items(), EVERYWHERE | HERE[name], strict=True):
-        value = lmp.extract_compute(id, 1, 2)[order] if kind in "AB" else lmp.extract_compute(id, 0, "SVG".index(kind))
-        np.testing.assert_allclose(value, theirs[name][id], rtol=1e-11, atol=1e-12 * max(1.0, abs(theirs[name][id]).max()),
+        value, expected = lmp.extract_compute(id, 0 if kind in "SVG" else 2 if kind in "LM" else 1, "SVG".find(kind)), theirs[name][id]
+        if kind in "LM":
+            value, expected = rows(value), rows(expected)
+        elif kind in "AB":
+            value = value[order]
+        np.testing.assert_allclose(value, expected, rtol=1e-11, atol=1e-12 * max(1.0, abs(expected).max()),
                                    err_msg=f"{name}: {words}")
     lmp.close()
 
@@ -145,6 +172,17 @@ def ours(lines) -> Lammps:
     ("cna/atom", "needs 1 value"), ("cna/atom -1", "must not be negative"),
     ("centro/atom 7", "even positive"), ("centro/atom hcp", "whole number"),
     ("centro/atom fcc axis yes", "unknown keyword"), ("cluster/atom", "needs 1 value"), ("aggregate/atom 1", "with bonds"),
+    ("pair lj/cuts", "did you mean lj/cut"), ("pair lj/cut eng", "one of epair"), ("pair lj/cut epair 1", "unexpected"),
+    ("pair/local", "at least one"), ("pair/local dst", "did you mean dist"), ("pair/local p1", "extra quantity"),
+    ("pair/local dist cutoff size", "one of type radius"),
+    ("group/group nobody", "unknown group"), ("group/group a par yes", "did you mean pair"),
+    ("group/group a kspace yes", "no kspace style"),
+    ("group/group a molecule inter", "molecule numbers"), ("entropy/atom 0.2", "needs 2 values"),
+    ("entropy/atom 0.2 0", "must be positive"),
+    ("entropy/atom 0.2 2 avg yes", "needs 1 value"), ("entropy/atom 0.2 2 ave yes 1", "did you mean avg"),
+    ("heat/flux 1 2", "needs 3 values"),
+    ("heat/flux thermo_pe thermo_pe thermo_pe", "not a compute ke/atom"), ("heat/flux a b c", "no compute a"),
+    ("centroid/stress/atom", "ID of a temperature"), ("centroid/stress/atom NULL per", "did you mean pe|unknown keyword"),
     ("fragment/atom", "with bonds"), ("contact/atom c", "unknown group"),
 ])
 def test_mistakes(crystal, line, message):

@@ -86,6 +86,19 @@ def in_slots(state, reach: float) -> SimpleNamespace:
     return _own(state, reach)
 
 
+def cluster_list(state, reach: float):
+    """The engine's `asemd.neighbor.ClusterList`, if it has all pairs within `reach` and nothing is to be left out of it; else None."""
+    engine = state.engine
+    if engine is None or engine.mode != "cluster" or engine.exclusions.partners is not None or len(engine.exclusions.rules):
+        return None
+    return engine.list if _serves(engine, state.system, reach) else None
+
+
+def of_slots(values: np.ndarray, row: np.ndarray) -> np.ndarray:
+    """Values by atom row -> by slot; those of empty slots are 0."""
+    return np.where(row >= 0, values[row], values.dtype.type(0))
+
+
 def _serves(engine, system, reach: float) -> bool:
     """Whether the engine has a list of the present positions that reaches so far."""
     if engine.mode == "none" or engine.state is None or engine.system is not system or engine.settings.outdated:

@@ -81,7 +81,8 @@ class PropertyLocal(Compute):
         """(m,) for one attribute, (m, k) for several; whole numbers."""
         system = state.system
         if self.kind in ("neighbor", "pair"):
-            atoms, types = neighbors(state, self.scene, self.group, self.kind == "pair", self.cutoff == "radius"), None
+            pairs = neighbors(state, self.group, self.kind == "pair", self.cutoff == "radius")
+            atoms, types = np.column_stack([pairs.i, pairs.j]), None
         else:
             atoms, types = local_items(state, self.kind, self.group)
         out = []

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import force_cutoff, half, in_slots, limits
+from asemd.compute._pairs import cluster_list, force_cutoff, half, in_slots, limits, of_slots
 from asemd.errors import InputError
 from asemd.kernels import surroundings as loops
 from asemd.words import bounds, number, take, whole
@@ -75,29 +75,33 @@ class RDF(Compute):
         """Counts (histograms, bins) of pairs, and the cutoff."""
         system = state.system
         cutoff = force_cutoff(state, "compute rdf") if self.cutoff is None else self.cutoff
-        ranges, n = self._ranges(system), system.counts["ntypes"]
-        start, lists = np.zeros((n + 1, n + 1), np.int64), [-1]
-        for a in range(1, n + 1):
-            for b in range(1, n + 1):
-                mine = [k for k, (i, j) in enumerate(ranges) if i[0] <= a <= i[1] and j[0] <= b <= j[1]]
-                if mine:
-                    start[a, b] = len(lists)
-                    lists += [*mine, -1]
-        counts, types = np.zeros((len(ranges), self.bins), np.int64), np.ascontiguousarray(system.type, np.int32)
-        mask, own = np.ascontiguousarray(state.mask(self.group)), self.cutoff is not None
-        width = cutoff / self.bins
-        if limits(state, cutoff, own) is None:
-            f = in_slots(state, cutoff)
-            args = f.x, f.row, f.i, f.j, f.code, f.shifts
-        else:
+        kind = np.where(state.mask(self.group), system.type, 0).astype(np.int32)
+        met = self._met(state, kind, cutoff)
+        met = met + met.transpose(1, 0, 2)      # centre first, then the other one
+        ranges = self._ranges(system)
+        return np.stack([met[i[0]:i[1] + 1, j[0]:j[1] + 1].sum(axis=(0, 1)) for i, j in ranges]), cutoff
+
+    def _met(self, state, kind: np.ndarray, cutoff: float) -> np.ndarray:
+        """How many pairs of each two kinds fall into each bin."""
+        own, n, inverse = self.cutoff is not None, state.system.counts["ntypes"] + 1, self.bins / cutoff
+        if limits(state, cutoff, own) is not None:
             p = half(state, cutoff, own=own)
-            x = np.concatenate([p.d.T, np.zeros((3, 1))], axis=1)
-            m = len(p.i)
-            row = np.concatenate([p.i, p.j]).astype(np.int32)
-            x = np.concatenate([p.d.T, np.zeros((3, m))], axis=1)
-            args = x, row, np.arange(m, dtype=np.int32), np.arange(m, 2 * m, dtype=np.int32), np.zeros(m, np.int32), np.zeros((1, 3))
-        loops.radial(*args, types, mask, start, np.array(lists), 1.0 / width, counts)
-        return counts, cutoff
+            k = np.minimum(np.sqrt(p.r2) * inverse, self.bins).astype(np.int64)
+            counts = np.bincount((kind[p.i].astype(np.int64) * n + kind[p.j]) * (self.bins + 1) + k, minlength=n * n * (self.bins + 1))
+            return counts.reshape(n, n, -1)[:, :, :-1]
+        clusters = cluster_list(state, cutoff)
+        if clusters is None:
+            f, counts = in_slots(state, cutoff), np.zeros((1, n, n, self.bins + 1), np.int64)
+            loops.radial(f.x, of_slots(kind, f.row), f.i, f.j, f.code, f.shifts, inverse, counts[0])
+        else:
+            engine, counts = state.engine, np.zeros((state.engine.threads, n, n, self.bins + 1), np.int64)
+            s, kinds = engine.state, of_slots(kind, engine.state.row)
+
+            def work(t):
+                loops.radial_clusters(s.x, s.row, kinds, clusters.first[t], clusters.entries[t], clusters.own, clusters.span,
+                                      clusters.bounds[t], clusters.bounds[t + 1], clusters.shifts, inverse, counts[t])
+            engine.parallel(work)
+        return counts.sum(axis=0)[:, :, :-1]
 
     def array(self, state) -> np.ndarray:
         """(bins, 1 + 2 histograms): middle of the bin, then g(r) and coordination number of each pair of types."""

@@ -40,15 +40,15 @@ class StressAtom(Compute):
 
     def __init__(self, group: str = "all", temperature: Temp | None = None, terms=None):
         super().__init__(group)
-        self.words, self.terms = tuple(terms or ()), read_terms(terms, "compute stress/atom")
+        self.words, self.terms = tuple(terms or ()), read_terms(terms, f"compute {self.style}")
         self.temperature = temperature
         self.needs = frozenset({"virial", "virials"}) if set(self.terms) - {"ke"} else frozenset()
 
     @classmethod
     def from_lammps(cls, group, words, session):
         if not words:
-            raise InputError("compute stress/atom needs the ID of a temperature compute, or NULL")
-        return cls(group, None if words[0] == "NULL" else find_temperature(words[0], session, "compute stress/atom"), words[1:])
+            raise InputError(f"compute {cls.style} needs the ID of a temperature compute, or NULL")
+        return cls(group, None if words[0] == "NULL" else find_temperature(words[0], session, f"compute {cls.style}"), words[1:])
 
     def to_lammps(self) -> list[str]:
         return [self.temperature.id if self.temperature else "NULL", *self.words]

@@ -227,3 +227,27 @@ def bond_angles(atoms, start, vector, square, legacy, out):
             out[i] = 1.0 if wide >= 11 else 0.0
         elif 11 <= wide <= 12:
             out[i] = 2.0 if fcc < hcp else 3.0
+
+
+@njit(cache=True, nogil=True)
+def entropies(atoms, start, square, sigma, cutoff, density, out):
+    """Pair entropy from Gaussians of width `sigma` on points as far apart, up to `cutoff`, with the density `density (n,)`."""
+    points = int(cutoff / sigma) + 1
+    g = np.zeros(points)
+    for i in atoms:
+        g[:] = 0.0
+        rho = density[i]
+        scale = 1.0 / (rho * 4.0 * math.pi * math.sqrt(2.0 * math.pi) * sigma) if rho > 0.0 else 0.0
+        for p in range(start[i], start[i + 1]):
+            if square[p] >= cutoff * cutoff:
+                continue
+            r = math.sqrt(square[p])
+            at = int(r / sigma)
+            for k in range(max(at - 3, 1), min(at + 3, points - 1) + 1):
+                x = k * sigma
+                g[k] += scale / (x * x) * math.exp(-(r - x) ** 2 / (2.0 * sigma * sigma))
+        total = 0.0
+        for k in range(1, points):
+            part = g[k] * math.log(g[k]) - g[k] + 1.0 if g[k] > 1e-10 else 1.0
+            total += part * (k * sigma) ** 2 * (0.5 if k == points - 1 else 1.0)
+        out[i] = -2.0 * math.pi * rho * total * sigma

@@ -44,29 +44,66 @@ def surroundings(n, i, j, d, r2):
 
 
 @njit(cache=True, nogil=True)
-def radial(x, row, i, j, code, shifts, type_of, member, lists_start, lists, inverse_width, counts):
-    """Count pairs by distance: `counts (histograms, bins)`.
-
-    `lists_start (nt, nt)`, `lists`: for two types the histograms of central type and other type, ended by -1; `member (n,)`.
-    """
-    bins = counts.shape[1]
+def radial(x, kind, i, j, code, shifts, inverse_width, counts):
+    """Count pairs by distance: `counts (kinds, kinds, bins + 1)`, beyond the last bin in one more; ``kind (cap,)`` of each slot."""
+    bins = counts.shape[2] - 1
     for m in range(len(i)):
         a, b, s = i[m], j[m], code[m] >> 2
         u = x[0, a] - (x[0, b] + shifts[s, 0])
         v = x[1, a] - (x[1, b] + shifts[s, 1])
         w = x[2, a] - (x[2, b] + shifts[s, 2])
-        k = int(np.sqrt(u * u + v * v + w * w) * inverse_width)
-        if k >= bins:
-            continue
-        ra, rb = row[a], row[b]
-        if not (member[ra] and member[rb]):
-            continue
-        ta, tb = type_of[ra], type_of[rb]
-        for first, second in ((ta, tb), (tb, ta)):
-            h = lists_start[first, second]
-            while lists[h] >= 0:
-                counts[lists[h], k] += 1
-                h += 1
+        counts[kind[a], kind[b], int(min(np.sqrt(u * u + v * v + w * w) * inverse_width, bins))] += 1
+
+
+@njit(cache=True, nogil=True)
+def radial_clusters(x, row, kind, first, entries, own, span, c0, c1, shifts, inverse_width, counts):
+    """As `radial`, for all pairs of clusters c0..c1-1 of a cluster list without exclusions (see `asemd.kernels.cluster`)."""
+    bins = counts.shape[2] - 1
+    longest = 0
+    for ci in range(c0, c1):
+        longest = max(longest, first[ci + 1] - first[ci])
+    px, py, pz = np.empty(longest), np.empty(longest), np.empty(longest)
+    other, square = np.empty(longest, np.int32), np.empty(longest)
+    near, near_square = np.empty(longest + 1, np.int32), np.empty(longest + 1)
+    flat = counts.reshape(-1)
+    nk = counts.shape[1] * (bins + 1)
+    limit = (bins / inverse_width) ** 2 * (1.0 + 1e-12)
+    for ci in range(c0, c1):
+        f0 = first[ci]
+        n = first[ci + 1] - f0
+        for k in range(n):
+            e = entries[f0 + k]
+            j = np.uint64(e & np.int32(0x3FFFFFF))
+            c = np.uint64(e >> 26)
+            px[k] = x[0, j] + shifts[c, 0]
+            py[k] = x[1, j] + shifts[c, 1]
+            pz[k] = x[2, j] + shifts[c, 2]
+            other[k] = kind[j] * (bins + 1)
+        for a in range(8):
+            s = ci * 8 + a
+            if row[s] < 0:
+                break
+            low, mine, high = span[ci, a - a % 2], own[ci], span[ci, a - a % 2 + 1]
+            x0, y0, z0 = x[0, s], x[1, s], x[2, s]
+            for k in range(low, high):
+                u = x0 - px[k]
+                v = y0 - py[k]
+                w = z0 - pz[k]
+                square[k] = u * u + v * v + w * w
+            m = 0
+            for k in range(low, mine):      # those in reach, without branches to mispredict
+                near[np.uint64(m)] = other[np.uint64(k)]
+                near_square[np.uint64(m)] = square[np.uint64(k)]
+                m += square[np.uint64(k)] < limit
+            for k in range(mine + a + 1, high):      # atoms of the cluster before this one have had their turn
+                near[np.uint64(m)] = other[np.uint64(k)]
+                near_square[np.uint64(m)] = square[np.uint64(k)]
+                m += square[np.uint64(k)] < limit
+            for k in range(m):
+                near[np.uint64(k)] += np.int32(np.sqrt(near_square[np.uint64(k)]) * inverse_width)
+            base = kind[s] * nk
+            for k in range(m):
+                flat[np.uint64(base + near[np.uint64(k)])] += 1
 
 
 @njit(cache=True, nogil=True)

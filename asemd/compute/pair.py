@@ -1,0 +1,80 @@
+"""Energy of one pair style, such as a sub-style of a hybrid: all of it, or its van der Waals or Coulomb part.
+
+Source: LAMMPS manual, compute pair. Units: energy.
+"""
+from __future__ import annotations
+
+from asemd.compute import Compute
+from asemd.errors import InputError, nearest
+from asemd.registry import plain_name
+from asemd.words import choice, take, whole
+
+PARTS = {"epair": ("evdwl", "ecoul"), "evdwl": ("evdwl",), "ecoul": ("ecoul",)}
+
+
+class Pair(Compute):
+    """Energy of a pair style.
+
+    Parameters
+    ----------
+    group : str
+        Makes no difference: all pairs count.
+    name : str
+        A pair style in use.
+    number : int, optional
+        Which one, from 1, if a hybrid has it several times.
+    part : str
+        epair, evdwl or ecoul.
+
+    Raises
+    ------
+    InputError
+        Another part; (when it is evaluated) the style is not in use, or several times.
+    """
+
+    style = "pair"
+    extensive = True
+    needs = frozenset({"energy"})
+
+    def __init__(self, group: str = "all", name: str = "", number: int | None = None, part: str = "epair"):
+        super().__init__(group)
+        self.name, self.number, self.part = plain_name(name), number, choice(part, PARTS, "compute pair")
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        name, rest, number, part = take(words, 1, "compute pair")[0], list(words[1:]), None, "epair"
+        if rest and rest[0].lstrip("-").isdigit():
+            number = whole(rest.pop(0), "compute pair: number of the sub-style")
+        if rest:
+            part = rest.pop(0)
+        if rest:
+            raise InputError(f"compute pair: unexpected word {rest[0]!r}")
+        out = cls(group, name, number, part)
+        out.chosen(session.scene.interactions)
+        return out
+
+    def to_lammps(self) -> list[str]:
+        return [self.name, *([str(self.number)] if self.number else []), self.part]
+
+    def chosen(self, interactions):
+        """The `asemd.uses.Use`, or None for everything."""
+        uses = interactions.uses["pair"]
+        if self.name == interactions.style_name("pair") and uses:
+            return None
+        mine = [use for use in uses if use.style.name == self.name]
+        if not mine:
+            raise InputError(f"compute pair: pair style {self.name} is not in use{nearest(self.name, [u.style.name for u in uses])}")
+        if self.number is None and len(mine) > 1 or self.number is not None and not 1 <= self.number <= len(mine):
+            raise InputError(f"compute pair: pair style {self.name} is in use {len(mine)} times: say which one, from 1 to {len(mine)}")
+        return mine[(self.number or 1) - 1]
+
+    def scalar(self, state) -> float:
+        """The energy, without the tail correction."""
+        engine = state.engine
+        use = self.chosen(engine.interactions)
+        if use is None:
+            return float(sum(state.result.energy[key] for key in PARTS[self.part]))
+        sums = engine.acc.sum(axis=0)
+        mine = [t.index for t in engine.terms if getattr(getattr(t, "owner", None), "use", None) is use]
+        columns = [("evdwl", "ecoul").index(key) for key in PARTS[self.part]]
+        return float(sums[mine][:, columns].sum())
