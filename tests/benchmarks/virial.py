@@ -1,4 +1,4 @@
-"""What the virial of every step costs, which barostats need: processor time of the same run with and without it, in turns, and with energies
+"""What the virial of every step costs, which barostats need: processor time of a run with and without it, in turns, and with the energies
 of every step instead."""
 from __future__ import annotations
 
