@@ -107,6 +107,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._given = (calc, self.dt, list(self.fixes), dict(self.groups), held)
         self._loop = Loop(system, calc.interactions, calc.neighbor_settings(atoms), fixes, groups, self.dt / u["time"], self.nsteps)
         self._forces_are_own = not any("post_force" in fix.hooks() for fix in fixes)
+        self._loop.say = print
         self._loop.watchdog.on = self.watchdog
         self._loop.watchdog.path, self._loop.watchdog.save = self._last_good, self._save
         self._loop.setup(self.nsteps, self.nsteps + steps)

@@ -49,14 +49,14 @@ class Loop:
         self.system, self.interactions, self.settings = system, interactions, settings
         self.fixes, self.groups, self.dt, self.step = list(fixes), groups, float(dt), int(step)
         self.begin = self.end = self.step
+        for f in self.fixes:
+            f.join(self)
         moves = {f.box_moves for f in self.fixes} - {""}
         self.engine = Engine(system, interactions, settings, "shape" if "shape" in moves else "".join(moves))
-        self.units = self.engine.units
-        self.result: Result | None = None
+        self.units, self.result = self.engine.units, None
         self.gone: dict[str, int] = {}        # atoms of each group that left since `setup`, less those that joined
         self.natoms = system.n                # how many there should be: lost ones count
-        self.warn, self.fix_data = warn, ()
-        self._collected = -1
+        self.warn, self.say, self.fix_data, self._collected = warn, str, (), -1       # `say` is told what fixes print: nobody listens yet
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
@@ -308,13 +308,13 @@ class Loop:
     def _thread(self) -> Thread:
         return Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, self.dt, self._sync, self._scratch)
 
-    def _call(self, n: int, name: str) -> None:
+    def _call(self, n: int, name: str, state=None) -> None:
         """One hook of one fix, compiled or not, on all slots."""
         if self._kinds[n][name] and name in tl.COMPILED:
             if self.fixes[n].follows == name:
                 self.fixes[n].follow(self)
             p, a = self.fix_data[n]
-            getattr(self._module[1], f"fix{n}_{name}")(self._thread(), self.engine.state, p, a)
+            getattr(self._module[1], f"fix{n}_{name}")(self._thread(), self.engine.state if state is None else state, p, a)
         else:
             getattr(self.fixes[n], name)(self)
 

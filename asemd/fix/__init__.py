@@ -97,6 +97,8 @@ class Fix:
         The compiled hook before which `follow` is called, in Python, for numbers that change from step to step. Empty: none does.
     needs : set of str
         What its Python hooks want to see of the steps on which they act: ``energy``, ``virial``, ``energies``, ``virials``.
+    minimizing : bool
+        Set while a minimisation goes on.
     id : str
         Set by the session.
     """
@@ -118,6 +120,7 @@ class Fix:
     id: str = ""
     thermo_energy: bool = False
     thermo_virial: bool = False
+    minimizing: bool = False
 
     def __init__(self, group: str = "all"):
         self.group = group
@@ -139,6 +142,12 @@ class Fix:
 
     def prepare(self, loop: Loop) -> None:
         """Called at the start of every run, before its first list."""
+
+    def join(self, loop: Loop) -> None:
+        """Called when a loop is made, before its terms: what a fix changes in ``loop.system`` for them, it changes here."""
+
+    def detach(self, system) -> None:
+        """Called when the fix is taken away: what it has changed in the system is undone."""
 
     def parameters(self, loop: Loop) -> np.ndarray:
         """The numbers ``p`` of the compiled hooks; called at the start of every run. ``p[0]`` is the group bit."""

@@ -39,10 +39,11 @@ def renew(loop: Loop) -> np.ndarray:
         loop._make_module()
     loop._ago = 0
     loop._hook("post_neighbor")
-    kept = system.f.copy()
+    kept, virial = system.f.copy(), e.state.virial.copy()
     e.bonds.hold(True)
     e.forces(True)
     e.bonds.hold(False)
+    e.state.virial[:] = virial      # of fixes
     loop.result = e.collect()
     alone = system.f.copy()
     set_forces(loop, kept)

@@ -174,13 +174,14 @@ class Driver:
             parts = (scene.system, scene.interactions, scene.settings(), fixes,
                      scene.groups, scene.dt)
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
-            loop.warn = session.warn
+            loop.warn, loop.say = session.warn, session.later.append        # what is said in the set-up comes after the list
             loop.watchdog.on = session.switches.watchdog
             loop.watchdog.path = f"{session.log.path}.last_good.dump" if os.path.isfile(session.log.path or "") else ""
             loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
                 checkpoint.resume(loop, state)
             setup_log.report_list(session, loop.engine)
+            loop.say = session.print
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
         else:
             loop.sync_in()      # commands between the runs may have changed velocities

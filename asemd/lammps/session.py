@@ -94,6 +94,7 @@ class Session:
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
         self.list_told: str | None = None       # the last description of the neighbour list
+        self.later: list[str] = []              # lines of the set-up of a run that come after that
         self.partners_told: Any = None          # see asemd.lammps.setup_log.partners_per_atom
         self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
         self.moment = Moment(self.scene, None, self.variables.number, Progress())

@@ -101,10 +101,16 @@ def _mixes_energies(style) -> bool:
 
 
 def report_list(session, engine) -> None:
-    """The neighbour list, where it is another one than before."""
+    """The neighbour list, where it is another one than before, and what fixes told meanwhile."""
+    if engine.mode != "none":
+        _report_list(session, engine)
+    for line in session.later:
+        session.print(line)
+    session.later.clear()
+
+
+def _report_list(session, engine) -> None:
     scene = session.scene
-    if engine.mode == "none":
-        return
     s = scene.neighbor
     text = "\n".join([
         "Neighbor list info ...",

@@ -73,7 +73,7 @@ class Bench:
         """(n,) bool: atoms whose forces fixes change, which say nothing of the force field."""
         out = np.zeros(self.scene.system.n, bool)
         for fix in self.scene.fixes.values():
-            if fix.minimizes and fix.style != "enforce2d":
+            if fix.minimizes and fix.style not in ("enforce2d", "shake", "rattle"):
                 out |= self.scene.groups.mask(fix.group)
         return out
 

@@ -20,6 +20,8 @@ def run(session, args):
     old = scene.fixes.get(id)
     if old is not None and old.style != plain_name(style):
         raise InputError(f"fix {id} exists with style {old.style}: unfix it before it becomes {style}")
+    if old is not None:
+        old.detach(scene.system)
     session.defining = id
     new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
     new.id = id

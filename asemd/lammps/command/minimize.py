@@ -67,7 +67,6 @@ class Minimization(Driver):
         self.arguments = (etol, ftol, maxiter, maxeval)
 
     def run(self) -> None:
-        from asemd.loop import Loop
         session, scene, begin = self.session, self.scene, self.scene.step
         if session.dry:
             session.drive(self)
@@ -82,7 +81,19 @@ class Minimization(Driver):
         if scene.min_style in DAMPED:
             scene.system.v[:] = 0.0
         fixes = [f for f in scene.fixes.values() if f.minimizes]
+        for f in fixes:
+            f.minimizing = True
+        try:
+            self._carry_out(fixes, begin)
+        finally:
+            for f in fixes:
+                f.minimizing = False
+
+    def _carry_out(self, fixes: list, begin: int) -> None:
+        from asemd.loop import Loop
+        session, scene = self.session, self.scene
         loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
+        loop.warn, loop.say = session.warn, session.print
         loop.setup(begin, begin + self.plan.steps)
         setup_log.report_list(session, loop.engine)
         if scene.min_style == "fire":
@@ -131,7 +142,7 @@ class Minimization(Driver):
                           shown)
 
         def look(iteration: int, x, v, energy, forces) -> bool | str:
-            loop.step = scene.step = begin + iteration
+            loop.step = loop._collected = scene.step = begin + iteration
             landscape.step = landscape.next_step = scene.step + 1
             if scene.min_style in DAMPED:
                 system.v[:] = v
@@ -153,7 +164,7 @@ class Minimization(Driver):
             system.v[:] = result.v
         landscape.step = begin + result.steps
         landscape(result.x)
-        loop.step = scene.step = begin + result.steps
+        loop.step = loop._collected = scene.step = begin + result.steps
         told = session.last_thermo_step == scene.step       # by the last iteration's output
         if result.steps:
             self._provide(scene.step, scene.step, fresh=True)

@@ -11,6 +11,6 @@ def run(session, args):
     if id not in fixes:
         raise InputError(f"unfix: there is no fix {id}{nearest(id, fixes)}")
     fix = fixes.pop(id)
-    if hasattr(fix, "detach") and session.scene.system is not None:
+    if session.scene.system is not None:
         fix.detach(session.scene.system)
     session.loop = None
