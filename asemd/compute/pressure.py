@@ -68,7 +68,7 @@ class Pressure(Compute):
         super().__init__(group)
         if group != "all":
             raise InputError(f"compute pressure must use group all, got {group}; compute stress/atom and reduce give that of a group")
-        self.words, self.terms = tuple(terms or ()), read_terms(terms, "compute pressure")
+        self.words, self.terms = tuple(terms or ()), read_terms(terms or (), "compute pressure")
         self.temperature = Temp() if temperature == "default" else temperature
         if self.temperature is None and "ke" in self.terms:
             raise InputError("compute pressure: needs a temperature compute for the kinetic part; give its ID, or the keyword virial")

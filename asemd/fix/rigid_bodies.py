@@ -1,0 +1,196 @@
+"""Which atoms form rigid bodies, and what the bodies are: mass, centre, inertia, orientation and motion from their atoms or from a file."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.kernels.rigid import Bodies
+from asemd.words import number, whole
+
+NO_INERTIA = 1e-7       # a principal moment below this times the largest is none
+
+
+@dataclass
+class Members:
+    """Atom ids of all bodies, one body after the other; atoms of body k are ``first[k]:first[k + 1]``; `label` is its number in files."""
+
+    ids: np.ndarray
+    first: np.ndarray
+    label: np.ndarray
+
+    @property
+    def count(self) -> int:
+        return len(self.label)
+
+
+def by_number(ids: np.ndarray, number: np.ndarray, label: np.ndarray | None = None) -> Members:
+    """Atoms with the same number form a body, in the order of the numbers."""
+    order = np.argsort(number, kind="stable")
+    values, first = np.unique(number[order], return_index=True)
+    return Members(ids[order], np.append(first, len(ids)).astype(np.int64), values if label is None else label)
+
+
+def by_groups(ids: np.ndarray, masks: list[np.ndarray], style: str) -> Members:
+    """Each mask (n,) is a body."""
+    if (np.sum(masks, axis=0) > 1).any():
+        twice = ids[np.flatnonzero(np.sum(masks, axis=0) > 1)[0]]
+        raise InputError(f"fix {style}: atom {twice} belongs to more than one rigid body")
+    first = np.cumsum([0, *(np.count_nonzero(m) for m in masks)]).astype(np.int64)
+    return Members(np.concatenate([ids[m] for m in masks]), first, np.arange(1, len(masks) + 1))
+
+
+def read_file(path: str, style: str) -> dict[int, np.ndarray]:
+    """Body number -> its 20 numbers in the format of ``infile``: mass, centre (3), inertia (6), velocity (3), angular
+    momentum (3), image flags (3)."""
+    try:
+        with open(path) as file:
+            lines = [(k, line.split("#")[0].split()) for k, line in enumerate(file, 1)]
+    except OSError as error:
+        raise InputError(f"fix {style} infile: cannot open {path}: {error.strerror}") from None
+    lines = [(k, words) for k, words in lines if words]
+    if not lines or len(lines[0][1]) != 1:
+        raise InputError(f"fix {style} infile: the first line of {path} must be the number of lines that follow")
+    count = whole(lines[0][1][0], f"fix {style} infile {path}")
+    if len(lines) - 1 < count:
+        raise InputError(f"fix {style} infile: {path} announces {count} bodies and has {len(lines) - 1}")
+    out = {}
+    for k, words in lines[1:1 + count]:
+        if len(words) != 20:
+            raise InputError(f"fix {style} infile: line {k} of {path} has {len(words)} values, not 20 (ID mass x y z ixx iyy izz ixy ixz "
+                             "iyz vx vy vz lx ly lz ix iy iz)")
+        out[whole(words[0], f"fix {style} infile {path} line {k}")] = np.array([number(w, f"{path} line {k}") for w in words[1:]])
+    return out
+
+
+def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (nb, 3), the smallest first, and eigenvectors (nb, 3, 3) as rows, of symmetric matrices, by Jacobi's method.
+
+    Each rotation removes the largest off-diagonal element: where eigenvalues coincide, the axes are those that LAMMPS finds.
+    """
+    m, e = tensors.copy(), np.tile(np.eye(3), (len(tensors), 1, 1))
+    pairs, all_of = np.array([(0, 1), (0, 2), (1, 2)]), np.arange(len(m))
+    for _ in range(60):
+        off = np.abs(np.stack([m[:, i, j] for i, j in pairs], axis=1))
+        i, j = pairs[off.argmax(axis=1)].T
+        a, b, c = m[all_of, i, i], m[all_of, j, j], m[all_of, i, j]
+        live = (a + c != a) | (b + c != b)
+        if not live.any():
+            break
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            kappa = (b - a) / (2.0 * c)
+            t = 1.0 / (np.sqrt(1.0 + kappa * kappa) + np.abs(kappa))
+        t = np.where(b == a, 1.0, np.where(c == 0.0, 0.0, np.where(kappa < 0.0, -t, t))) * live
+        cosine = 1.0 / np.sqrt(1.0 + t * t)
+        turn = np.tile(np.eye(3), (len(m), 1, 1))
+        turn[all_of, i, i] = turn[all_of, j, j] = cosine
+        turn[all_of, i, j], turn[all_of, j, i] = -cosine * t, cosine * t
+        m = np.einsum("nij,njk,nlk->nil", turn, m, turn)
+        m[all_of, i, j] = m[all_of, j, i] = 0.0
+        e = np.einsum("nij,njk->nik", turn, e)
+    moments = np.einsum("nii->ni", m)
+    order = np.argsort(moments, axis=1, kind="stable")
+    return np.take_along_axis(moments, order, 1), np.take_along_axis(e, order[:, :, None], 1)
+
+
+def quaternions(e: np.ndarray) -> np.ndarray:
+    """(nb, 4) orientations of axes (nb, 3, 3)."""
+    d = np.einsum("nii->ni", e)
+    square = np.empty((len(e), 4))
+    square[:, 0] = 0.25 * (d.sum(axis=1) + 1.0)
+    for k, (a, b) in enumerate(((1, 2), (0, 2), (0, 1)), 1):
+        square[:, k] = square[:, 0] - 0.5 * (d[:, a] + d[:, b])
+    x, y, z = e[:, 1, 2] - e[:, 2, 1], e[:, 2, 0] - e[:, 0, 2], e[:, 0, 1] - e[:, 1, 0]
+    xy, xz, yz = e[:, 0, 1] + e[:, 1, 0], e[:, 0, 2] + e[:, 2, 0], e[:, 1, 2] + e[:, 2, 1]
+    four = 4.0 * square
+    table = np.stack([np.stack(row, axis=1) for row in ((four[:, 0], x, y, z), (x, four[:, 1], xy, xz), (y, xy, four[:, 2], yz),
+                                                        (z, xz, yz, four[:, 3]))], axis=1)
+    q = table[np.arange(len(e)), np.argmax(square >= 0.25, axis=1)]
+    return q / np.linalg.norm(q, axis=1, keepdims=True)
+
+
+def build(system, members: Members, style: str, file: dict[int, np.ndarray] | None = None) -> Bodies:
+    """The bodies as the atoms of `system` (in sync) have them, or as `file` says.
+
+    Raises
+    ------
+    InputError
+        An atom of a body that is gone, or moments of inertia that the atoms cannot have.
+    """
+    first, nb = members.first, members.count
+    rows = system.index_of(members.ids).astype(np.int64)
+    size = np.diff(first)
+    body = np.repeat(np.arange(nb), size)
+    m, v = system.atom_masses()[rows], system.v[rows]
+    r = system.box.unwrap(system.x, system.image)[rows]
+
+    def total(a):
+        return np.add.reduceat(a, first[:-1], axis=0)
+    mass = total(m)
+    center = total(m[:, None] * r) / mass[:, None]
+    image = np.zeros((nb, 3), np.int32)
+    given = {k: file[int(n)] for k, n in enumerate(members.label) if int(n) in file} if file else {}
+    for k, values in given.items():
+        mass[k], center[k], image[k] = values[0], values[1:4], values[16:19].astype(np.int32)
+    system.box.wrap(center, image)
+    d = r - image[body] @ system.box.cell - center[body]
+    tensor = np.einsum("i,ij->i", m, d * d)[:, None, None] * np.eye(3) - np.einsum("i,ia,ib->iab", m, d, d)
+    tensor = total(tensor)
+    for k, values in given.items():
+        xx, yy, zz, xy, xz, yz = values[4:10]
+        tensor[k] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+    moments, axes = principal(tensor)
+    moments[moments < NO_INERTIA * moments.max(axis=1, keepdims=True)] = 0.0
+    axes[:, 2] *= np.where(np.einsum("ni,ni->n", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2]) < 0.0, -1.0, 1.0)[:, None]
+    place = np.einsum("iab,ib->ia", axes[body], d)
+    if not given:
+        _check_moments(moments, total(np.einsum("i,ij->i", m, place**2)[:, None] - m[:, None] * place**2), style)
+    velocity = total(m[:, None] * v) / mass[:, None]
+    momentum = total(m[:, None] * np.cross(d, v))
+    if file:        # LAMMPS takes no motion from the atoms then
+        velocity, momentum = np.zeros((nb, 3)), np.zeros((nb, 3))
+        for k, values in given.items():
+            velocity[k], momentum[k] = values[10:13], values[13:16]
+    moves = np.ones((nb, 6))
+    if system.dimension == 2:
+        moves[:, 2:5] = 0.0
+    box = np.tile(np.concatenate([system.box.origin, system.box.cell.ravel()]), (nb, 1))
+    return Bodies(mass, center, velocity, np.zeros((nb, 3)), np.zeros((nb, 3)), momentum, np.zeros((nb, 3)), moments,
+                  np.ascontiguousarray(axes), quaternions(axes), np.zeros((nb, 4)), image.astype(float), moves, np.zeros((nb, 6)),
+                  np.zeros((nb, 6)), box, first, rows, place, np.zeros((len(rows), 6)))
+
+
+def _check_moments(moments: np.ndarray, again: np.ndarray, style: str) -> None:
+    """The atoms in their places have the moments of the body."""
+    largest = moments.max(axis=1, keepdims=True)
+    wrong = (np.abs(moments - again) > 1e-6 * np.where(largest > 0.0, largest, 1.0)).any(axis=1)
+    if wrong.any():
+        raise InputError(f"fix {style}: rigid body {np.flatnonzero(wrong)[0] + 1} has bad principal moments of inertia")
+
+
+def unwrapped(system, b: Bodies, body: np.ndarray) -> np.ndarray:
+    """(m, 3) positions of the atoms beside the wrapped centres of their bodies."""
+    return system.x[b.rows] + (system.image[b.rows] - b.image[body]) @ system.box.cell
+
+
+def follow(b: Bodies, origin: np.ndarray, vectors: np.ndarray) -> None:
+    """Centres of mass keep their places relative to a box that has changed to this one."""
+    new = np.concatenate([origin, vectors.ravel()])
+    old = np.flatnonzero((b.box != new).any(axis=1))
+    if len(old):
+        cells = b.box[old, 3:].reshape(-1, 3, 3)
+        fraction = np.linalg.solve(np.swapaxes(cells, 1, 2), (b.x[old] - b.box[old, :3])[:, :, None])[:, :, 0]
+        b.x[old], b.box[old] = origin + fraction @ vectors, new
+
+
+def farthest(system, members: Members) -> float:
+    """Largest distance of an atom from the one in the middle of its body."""
+    r = system.box.unwrap(system.x, system.image)[system.index_of(members.ids)]
+    body = np.repeat(np.arange(members.count), np.diff(members.first))
+    low, high = (np.minimum, np.maximum)
+    middle = 0.5 * (low.reduceat(r, members.first[:-1], axis=0) + high.reduceat(r, members.first[:-1], axis=0))
+    away = ((r - middle[body]) ** 2).sum(axis=1)
+    order = np.lexsort((members.ids, away, body))
+    owner = order[members.first[:-1]]
+    return float(np.sqrt(((r - r[owner][body]) ** 2).sum(axis=1).max()))

@@ -1,0 +1,14 @@
+"""Many small rigid bodies: `asemd.fix.rigid_nvt.RigidNVT` without an array of all bodies.
+
+Source: LAMMPS manual, fix rigid/nvt/small.
+"""
+from __future__ import annotations
+
+from asemd.fix.rigid_nvt import RigidNVT
+
+
+class RigidNVTSmall(RigidNVT):
+    """Rigid bodies; see `asemd.fix.rigid_nvt.RigidNVT` for the arguments."""
+
+    style = "rigid/nvt/small"
+    small = True
