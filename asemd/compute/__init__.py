@@ -61,6 +61,10 @@ class Compute:
     def array(self, state) -> np.ndarray:
         raise InputError(f"compute {self.id} (style {self.style}) has no global array")
 
+    def array_columns(self) -> int | None:
+        """How many columns `array` has, which is known before a run; None if there is no array."""
+        return None
+
     def per_atom(self, state) -> np.ndarray:
         """(n,) or (n, k), by atom row; zero outside the group."""
         raise InputError(f"compute {self.id} (style {self.style}) has no per-atom values")

@@ -40,6 +40,9 @@ class Chunked(Compute):
             raise InputError(f"compute {self.style} needs the ID of a compute chunk/atom")
         self.chunks = chunks
 
+    def array_columns(self) -> int | None:
+        return getattr(self, "columns", None)
+
     @property
     def needs(self) -> frozenset[str]:
         return self.chunks.needs

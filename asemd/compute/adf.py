@@ -88,6 +88,9 @@ class ADF(Compute):
                       list(ORDINATES).index(self.ordinate), counts, centres)
         return counts, centres
 
+    def array_columns(self) -> int | None:
+        return 1 + 2 * max(1, len(self.triples))
+
     def array(self, state) -> np.ndarray:
         """(bins, 1 + 2 histograms)."""
         counts, centres = self.histogram(state)

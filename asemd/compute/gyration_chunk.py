@@ -50,6 +50,9 @@ class GyrationChunk(Chunked):
             raise InputError(f"compute {self.id} (gyration/chunk tensor) has an array: write c_{self.id}[1][1]")
         return np.sqrt(np.trace(self.pieces(state).gyration(), axis1=1, axis2=2))
 
+    def array_columns(self) -> int | None:
+        return self.columns if self.tensor else None
+
     def array(self, state) -> np.ndarray:
         """(chunks, 6) xx yy zz xy xz yz."""
         if not self.tensor:

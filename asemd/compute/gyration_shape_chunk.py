@@ -49,6 +49,9 @@ class GyrationShapeChunk(Compute):
     def to_lammps(self) -> list[str]:
         return [self.gyration.id]
 
+    def array_columns(self) -> int | None:
+        return self.columns
+
     def array(self, state) -> np.ndarray:
         """(chunks, 6) three eigenvalues, asphericity, acylindricity, anisotropy."""
         return shape(self.gyration.pieces(state).gyration())

@@ -103,6 +103,9 @@ class RDF(Compute):
             engine.parallel(work)
         return counts.sum(axis=0)[:, :, :-1]
 
+    def array_columns(self) -> int | None:
+        return 1 + 2 * max(1, len(self.pairs))
+
     def array(self, state) -> np.ndarray:
         """(bins, 1 + 2 histograms): middle of the bin, then g(r) and coordination number of each pair of types."""
         counts, cutoff = self.histogram(state)

@@ -79,6 +79,9 @@ class ReduceChunk(Chunked):
             raise InputError(f"compute {self.id} (reduce/chunk) has an array: write c_{self.id}[1][1]")
         return self._column(self.inputs[0], state)
 
+    def array_columns(self) -> int | None:
+        return len(self.inputs) if len(self.inputs) > 1 else None
+
     def array(self, state) -> np.ndarray:
         """(chunks, inputs) for several."""
         if len(self.inputs) == 1:

@@ -78,6 +78,9 @@ class Slice(Compute):
             raise InputError(f"compute {self.id} (slice) has an array: write c_{self.id}[1][1]")
         return self._column(self.inputs[0], state)
 
+    def array_columns(self) -> int | None:
+        return len(self.inputs) if len(self.inputs) > 1 else None
+
     def array(self, state) -> np.ndarray:
         """(elements, inputs)."""
         if len(self.inputs) == 1:

@@ -123,6 +123,9 @@ class TempChunk(Temp):
         at, pieces = self._pieces(state)
         return v - np.where(at[:, None] > 0, np.append(self._motion(pieces, v), np.zeros((1, 3)), axis=0)[at - 1], 0.0)
 
+    def array_columns(self) -> int | None:
+        return len(self.values) or None
+
     def array(self, state) -> np.ndarray:
         """(chunks, values)."""
         if not self.values:

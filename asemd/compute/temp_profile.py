@@ -108,6 +108,9 @@ class TempProfile(Temp):
             raise InputError(f"compute {self.id} (temp/profile with out bin) has no global vector")
         return super().vector(state)
 
+    def array_columns(self) -> int | None:
+        return 2 if self.out == "bin" else None
+
     def array(self, state) -> np.ndarray:
         """(bins, 2) atoms and temperature of each bin."""
         if self.out != "bin":

@@ -242,8 +242,8 @@ def _width(session, kind: str, id: str, vectors: bool) -> int | None:
         return provider.vector_length(kind, id)
     if vectors and provider.has(kind, id, "array"):
         columns = getattr(source, "array_columns", None)
-        if columns is None and kind == "c":
-            columns = np.asarray(session.moment.array(id)).shape[1]
+        if kind == "c":
+            columns = source.array_columns()
         if columns is None:
             raise InputError(f"{kind}_{id}[*]: the number of columns is not known, write them out")
         return columns() if callable(columns) else columns
