@@ -29,6 +29,24 @@ CASES = {
     "temp/berendsen": ([NVE, "fix 2 all temp/berendsen 300 400 20"], ["f_2"]),
     "temp/berendsen other temperature": ([NVE, "fix 2 some temp/berendsen 300 300 20", "fix_modify 2 temp thermo_temp"], ["f_2"]),
     "temp/berendsen variable": ([NVE, "fix 2 some temp/berendsen v_warm 300 20"], ["f_2"]),
+    **{f"{fix.split()[0]} without the bias of {temp}": (
+        ["velocity all set 0.004 0.002 0.0 sum yes", f"compute t {temp}", NVE, f"fix 2 {group} {fix}", "fix_modify 2 temp t", "compute p all pressure t"],
+        ["c_t", "c_p", *(["c_t[1]", "c_t[4]"] if "out bin" not in temp else []), *(["f_2"] if tally else [])])
+       for group, fix, temp, tally in (
+           ("all", "temp/berendsen 300 400 20", "all temp/com", True),
+           ("some", "temp/berendsen v_warm 300 20", "some temp/partial 1 0 1", True),
+           ("all", "temp/berendsen 300 300 20", "all temp/region half", True),
+           ("some", "temp/rescale 3 300 400 10 0.7", "some temp/rotate", True),
+           ("all", "temp/rescale 2 300 400 10 0.7", "all temp/profile 1 1 0 xz 2 2", True),
+           ("all", "temp/rescale 2 300 400 10 0.7", "all temp/profile 1 0 0 y 2 out bin", True),
+           ("all", "temp/berendsen 300 300 20", "all temp/ramp vy -0.004 0.008 x 2 9 units box", True),
+           ("all", "langevin 0 0 50 77", "all temp/com", False),
+           ("some", "langevin 0 0 50 77 tally yes zero yes", "some temp/partial 0 1 1", True),
+           ("all", "langevin 0 0 50 77 scale 2 0.5", "all temp/region half", False))},
+    **{f"velocity {words} bias {temp}": (["velocity all set 0.01 0.02 NULL sum yes", f"compute t {temp}",
+                                          f"velocity {words} temp t bias yes", NVE], ["c_t"])
+       for words in ("all create 200 1234", "some create 200 1234 sum yes", "all scale 77")
+       for temp in ("all temp/com", "some temp/partial 1 0 1", "all temp/region half")},
     "setforce": (["fix 2 some setforce 0.1 NULL 0.0", NVE], ["f_2[1]", "f_2[2]", "f_2[3]"]),
     "setforce region": (["fix 2 some setforce 0.1 NULL 0.0 region half", NVE], ["f_2[1]", "f_2[2]", "f_2[3]"]),
     "setforce variables": (["fix 2 all setforce v_one v_along NULL", NVE], ["f_2[1]", "f_2[2]", "f_2[3]"]),

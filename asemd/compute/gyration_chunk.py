@@ -47,7 +47,7 @@ class GyrationChunk(Chunked):
     def vector(self, state) -> np.ndarray:
         """(chunks,) radii."""
         if self.tensor:
-            raise InputError(f"compute {self.id} (gyration/chunk tensor) has an array: write c_{self.id}[1][1]")
+            raise InputError(f"compute {self.id} ({self.style} tensor) has an array: write c_{self.id}[1][1]")
         return np.sqrt(np.trace(self.pieces(state).gyration(), axis1=1, axis2=2))
 
     def array_columns(self) -> int | None:
@@ -56,6 +56,6 @@ class GyrationChunk(Chunked):
     def array(self, state) -> np.ndarray:
         """(chunks, 6) xx yy zz xy xz yz."""
         if not self.tensor:
-            raise InputError(f"compute {self.id} (gyration/chunk) has a vector: write c_{self.id}[1]")
+            raise InputError(f"compute {self.id} ({self.style}) has a vector: write c_{self.id}[1]")
         tensors = self.pieces(state).gyration()
         return np.stack([tensors[:, i, j] for i, j in COMPONENTS], axis=1)

@@ -38,7 +38,7 @@ class MSDChunk(Chunked):
         self.setup(state)
         now = self.pieces(state).com
         if len(now) != len(self.original):
-            raise InputError(f"compute {self.id} (msd/chunk): there were {len(self.original)} chunks, now {len(now)}; "
+            raise InputError(f"compute {self.id} ({self.style}): there were {len(self.original)} chunks, now {len(now)}; "
                              "let compute chunk/atom have nchunk once")
         d = now - self.original
         products = d * d

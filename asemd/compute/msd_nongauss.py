@@ -2,7 +2,7 @@ r"""Mean squared and fourth-power displacement of a group, and the non-Gaussian 
 
 .. math:: \alpha = \frac{3 \langle \Delta r^4 \rangle}{5 \langle \Delta r^2 \rangle^2} - 1
 
-It is zero for Brownian motion. Keywords and original positions are those of compute msd.
+It is zero for Brownian motion. Keyword com and original positions are those of compute msd.
 
 Source: LAMMPS manual, compute msd/nongauss. Units: distance squared, distance to the fourth, none.
 """
@@ -26,6 +26,7 @@ class MSDNonGauss(MSD):
 
     style = "msd/nongauss"
     size = 3        # elements of the vector
+    KEYWORDS = ("com",)
 
     def vector(self, state) -> np.ndarray:
         """(3,) mean square, mean fourth power, non-Gaussian parameter."""

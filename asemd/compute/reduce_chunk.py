@@ -40,7 +40,7 @@ class ReduceChunk(Chunked):
         super().__init__(group, chunks)
         self.mode, self.inputs = choice(mode, MODES, "compute reduce/chunk mode"), list(inputs)
         if not self.inputs:
-            raise InputError("compute reduce/chunk needs at least one value, for example: c_ID")
+            raise InputError(f"compute {self.style} needs at least one value, for example: c_ID")
         for i in self.inputs:
             i.must_give("per_atom")
 
@@ -76,7 +76,7 @@ class ReduceChunk(Chunked):
     def vector(self, state) -> np.ndarray:
         """(chunks,) for one input."""
         if len(self.inputs) > 1:
-            raise InputError(f"compute {self.id} (reduce/chunk) has an array: write c_{self.id}[1][1]")
+            raise InputError(f"compute {self.id} ({self.style}) has an array: write c_{self.id}[1][1]")
         return self._column(self.inputs[0], state)
 
     def array_columns(self) -> int | None:
@@ -85,5 +85,5 @@ class ReduceChunk(Chunked):
     def array(self, state) -> np.ndarray:
         """(chunks, inputs) for several."""
         if len(self.inputs) == 1:
-            raise InputError(f"compute {self.id} (reduce/chunk) has a vector: write c_{self.id}[1]")
+            raise InputError(f"compute {self.id} ({self.style}) has a vector: write c_{self.id}[1]")
         return np.column_stack([self._column(i, state) for i in self.inputs])

@@ -102,7 +102,7 @@ class TempChunk(Temp):
         return float(state.system.dimension) if self.adof is None else self.adof
 
     def dof(self, state) -> float:
-        _, pieces = self._pieces(state)
+        _, pieces = self._pieces(state.snapshot() if hasattr(state, "snapshot") else state)
         return max(self._dof_of_atom(state) * len(pieces.rows) + self.cdof * pieces.count, 0.0)
 
     def _weights(self, state) -> np.ndarray:

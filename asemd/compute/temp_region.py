@@ -25,7 +25,7 @@ class TempRegion(Temp):
     """
 
     style = "temp/region"
-    bias = hides = True
+    bias = True
 
     def __init__(self, group: str = "all", region=None):
         super().__init__(group)

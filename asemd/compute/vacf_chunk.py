@@ -38,7 +38,7 @@ class VACFChunk(Chunked):
         self.setup(state)
         now = self.pieces(state).vcm
         if len(now) != len(self.original):
-            raise InputError(f"compute {self.id} (vacf/chunk): there were {len(self.original)} chunks, now {len(now)}; "
+            raise InputError(f"compute {self.id} ({self.style}): there were {len(self.original)} chunks, now {len(now)}; "
                              "let compute chunk/atom have nchunk once")
         products = now * self.original
         return np.column_stack([products, products.sum(axis=1)])
