@@ -30,7 +30,8 @@ CASES = {
     "temp/berendsen other temperature": ([NVE, "fix 2 some temp/berendsen 300 300 20", "fix_modify 2 temp thermo_temp"], ["f_2"]),
     "temp/berendsen variable": ([NVE, "fix 2 some temp/berendsen v_warm 300 20"], ["f_2"]),
     **{f"{fix.split()[0]} without the bias of {temp}": (
-        ["velocity all set 0.004 0.002 0.0 sum yes", f"compute t {temp}", NVE, f"fix 2 {group} {fix}", "fix_modify 2 temp t", "compute p all pressure t"],
+        ["velocity all set 0.004 0.002 0.0 sum yes",
+         f"compute t {temp}", NVE, f"fix 2 {group} {fix}", "fix_modify 2 temp t", "compute p all pressure t"],
         ["c_t", "c_p", *(["c_t[1]", "c_t[4]"] if "out bin" not in temp else []), *(["f_2"] if tally else [])])
        for group, fix, temp, tally in (
            ("all", "temp/berendsen 300 400 20", "all temp/com", True),
