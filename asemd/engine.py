@@ -170,6 +170,7 @@ class Engine:
         self.state = new._replace(f=self.buffers[0])
         self.held = aligned((3, capacity))
         self.moved = aligned((capacity,))      # squared displacement of each slot since the list was built, for lists that may be outdated
+        self.torques: dict[int, np.ndarray] = {}      # (n, 3) that fixes add, by fix
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
 
     def __getstate__(self):
@@ -358,7 +359,7 @@ class Engine:
         if self.box_moves:
             live_box.take(self)
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
-        store_torques(self.terms, y)
+        store_torques(self.terms, y, self.torques.values())
         self.bonds.carry_back()
 
     def per_atom(self, result: Result) -> Result:

@@ -109,14 +109,16 @@ class DipoleTerm(BondedTerm):
         return super().describe(engine, item, value)
 
 
-def store_torques(terms: list, system) -> None:
-    """The torques of the last evaluation, as ``system.extra["torque"]`` (n, 3)."""
+def store_torques(terms: list, system, more=()) -> None:
+    """The torques of the last evaluation, as ``system.extra["torque"]`` (n, 3); `more` are further arrays of that shape."""
     turning = [t for t in terms if isinstance(t, DipoleTerm)]
     if turning or "torque" in system.extra:
         torque = system.extra.setdefault("torque", np.zeros((system.n, 3)))
         torque[:] = 0.0
         for t in turning:
             torque[t.row[t.row >= 0]] += t.torque.sum(axis=0)[:, t.row >= 0].T
+        for other in more:
+            torque += other
 
 
 class FactorTerm(Term):

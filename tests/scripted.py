@@ -36,13 +36,13 @@ def write_data(path: Path, dimension: int = 3, style: str = "bond") -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
-def script(data: Path, dimension: int = 3, style: str = "bond") -> str:
+def script(data: Path, dimension: int = 3, style: str = "bond", boundary: str = "p p p") -> str:
     return f"""
 units real
 dimension {dimension}
 atom_style {style}
 atom_modify map array sort 0 0
-boundary p p p
+boundary {boundary}
 pair_style lj/cut 5.0
 bond_style harmonic
 read_data {data}
@@ -67,7 +67,7 @@ def measure(lammps_class, case: dict) -> list[dict]:
     """Run the commands, then each stretch; returns positions, velocities and the values of equal-style formulas after each stretch."""
     lmp = lammps_class(cmdargs=["-screen", "none", "-log", "none"])
     try:
-        for line in (script(Path(case["data"]), case.get("dimension", 3), case.get("atom_style", "bond")) + "\n".join(case["commands"])).splitlines():
+        for line in (script(Path(case["data"]), case.get("dimension", 3), case.get("atom_style", "bond"), case.get("boundary", "p p p")) + "\n".join(case["commands"])).splitlines():
             if line.strip():
                 lmp.command(line)
         values = case.get("values", [])

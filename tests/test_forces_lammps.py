@@ -56,6 +56,19 @@ CASES = {
     "efield variables": (["fix 2 some efield v_along v_one -0.1 energy v_well", "fix_modify 2 energy yes virial yes", NVE],
                          ["f_2", *THREE, "pe", "press"]),
     "efield potential": (["fix 2 some efield v_one 0.0 -0.1 potential v_well", NVE], ["f_2", *THREE]),
+    "wall/reflect f": ([NVE, "fix 2 all wall/reflect xlo EDGE xhi EDGE ylo EDGE yhi EDGE zlo EDGE zhi EDGE"], []),
+    "wall/reflect variable f": ([NVE, "lattice sc 1.5", "variable top equal 8.0-0.001*step",
+                                 "fix 2 all wall/reflect xlo 0.1 xhi v_top yhi 7.9 units lattice",
+                                 "fix 3 all wall/reflect ylo EDGE zlo EDGE zhi EDGE"], []),
+    "oneway": ([NVE, "fix 2 some oneway 3 half -y"], []),
+    "recenter": ([NVE, "fix 2 some recenter INIT NULL 5.5 shift all"], ["f_2", *THREE]),
+    "recenter fraction": ([NVE, "fix 2 some recenter 0.4 INIT NULL units fraction"], ["f_2", *THREE]),
+    "move linear": (["run 0", "reset_timestep 7", "fix 2 some move linear 0.01 NULL -0.3"], []),
+    "move wiggle": (["fix 2 some move wiggle 0.5 NULL 3.0 25"], []),
+    "move rotate": (["lattice sc 1.3", "fix 2 some move rotate 3 4 5 1 -1 0.5 333"], []),
+    "move transrot": (["fix 2 some move transrot 0.01 0.02 -0.03 3 4 5 1 -1 0.5 333 units box"], []),
+    "move variable": (["variable dx atom 0.01*step*y/12", "variable vx equal 0.01*step", "variable vz atom 0.001*x",
+                       "fix 2 some move variable v_dx NULL NULL v_vx NULL v_vz"], []),
 }
 CHARGES = ["set type 1 charge 0.5", "set type 2 charge -0.8", "set type 3 charge 0.2"]
 RUNS = ["run 20", "run 10 start 0 stop 60"]
@@ -75,7 +88,7 @@ def make_cases(folder) -> dict[str, dict]:
         if "efield" in name:
             commands = CHARGES + commands
         out[name] = {"data": str(folder / ("charged" if "efield" in name else f"data{dimension}")), "dimension": dimension, "commands": commands,
-                     "atom_style": "full" if "efield" in name else "bond", "values": values, "runs": RUNS}
+                     "boundary": "f f f" if name[-1] == "f" else "p p p", "atom_style": "full" if "efield" in name else "bond", "values": values, "runs": RUNS}
     return out
 
 

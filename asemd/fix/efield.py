@@ -90,7 +90,10 @@ class EField(Forcing):
         nothing = np.zeros((1, 3))
         if own is not None:
             own = self.a = np.column_stack([own, np.zeros(len(own))])
-        return (np.zeros((1, 5)) if own is None else own, extra.get("mu", nothing), extra.get("torque", nothing))
+        torque = np.zeros((loop.system.n, 3)) if "mu" in extra else nothing
+        if "mu" in extra:
+            loop.engine.torques[id(self)] = torque
+        return (np.zeros((1, 5)) if own is None else own, extra.get("mu", nothing), torque)
 
     def follow(self, loop) -> None:
         super().follow(loop)
@@ -110,6 +113,8 @@ class EField(Forcing):
                 row = s.row[i]
                 if some:
                     if own[row, 0] == 0.0:
+                        if dipoles:
+                            torque[row, 0] = torque[row, 1] = torque[row, 2] = 0.0
                         continue
                     ex, ey, ez = own[row, 1], own[row, 2], own[row, 3]
                 q = unit * s.q[i]
@@ -129,11 +134,11 @@ class EField(Forcing):
                     if p[1] != 0.0:
                         tally(th, s, i, fx, fy, fz)
                 if dipoles:
-                    torque[row, 0] += ez * mu[row, 1] - ey * mu[row, 2]
-                    torque[row, 1] += ex * mu[row, 2] - ez * mu[row, 0]
-                    torque[row, 2] += ey * mu[row, 0] - ex * mu[row, 1]
+                    torque[row, 0] = unit * (ez * mu[row, 1] - ey * mu[row, 2])
+                    torque[row, 1] = unit * (ex * mu[row, 2] - ez * mu[row, 0])
+                    torque[row, 2] = unit * (ey * mu[row, 0] - ex * mu[row, 1])
                     if constant:
-                        energy -= ex * mu[row, 0] + ey * mu[row, 1] + ez * mu[row, 2]
+                        energy -= unit * (ex * mu[row, 0] + ey * mu[row, 1] + ez * mu[row, 2])
         energy = reduce_sum(th, energy)
         x, y, z = reduce_sum(th, x), reduce_sum(th, y), reduce_sum(th, z)
         if th.tid == 0:

@@ -93,7 +93,7 @@ def restrain_dihedral(s, p, at, done):
     fi, fm = slope * g / u2, -slope * g / v2
     push(s, i, fi * ux, fi * uy, fi * uz)
     push(s, m, fm * vx, fm * vy, fm * vz)
-    tx, ty, tz = fg * fi * ux + hg * fm * vx, fg * fi * uy + hg * fm * vy, fg * fi * uz + hg * fm * vz
+    tx, ty, tz = -fg * fi * ux - hg * fm * vx, -fg * fi * uy - hg * fm * vy, -fg * fi * uz - hg * fm * vz
     push(s, j, tx - fi * ux, ty - fi * uy, tz - fi * uz)
     push(s, k, -tx - fm * vx, -ty - fm * vy, -tz - fm * vz)
     return strength * (1.0 + math.cos(n * phi - p[at + 7]))
