@@ -91,7 +91,7 @@ def interpolate(x, lo, delta, first, rows, mode, nodes):
 
 
 def inner_table(table, n: int, spline: bool) -> tuple[float, float, float, np.ndarray]:
-    """First node, last node, spacing and nodes (n, 4) of the inner table for values x, energy, force and slopes of the force at the ends."""
+    """First node, last node, spacing and nodes (n, 4) of the inner table for x, energy, force and slopes of the force at the ends."""
     x, e, f, first, last = table
     delta = (x[-1] - x[0]) / (n - 1)
     r = x[0] + np.arange(n) * delta

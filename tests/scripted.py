@@ -30,7 +30,8 @@ def write_data(path: Path, dimension: int = 3, style: str = "bond") -> None:
     z = f"0 {LENGTH}" if dimension == 3 else "-0.5 0.5"
     lines = ["generated", "", f"{natoms} atoms", f"{len(bonds)} bonds", "3 atom types", "1 bond types", "", f"0 {LENGTH} xlo xhi",
              f"0 {LENGTH} ylo yhi", f"{z} zlo zhi", "", "Masses", "", "1 12.0", "2 1.0", "3 16.0", "", f"Atoms # {style}", ""]
-    lines += [f"{i + 1} {i // 4 + 1} {kinds[i]}{' 0' * (style == 'full')} {x[i, 0]:.17g} {x[i, 1]:.17g} {x[i, 2]:.17g} 0 0 0" for i in range(natoms)]
+    charge = " 0" * (style == "full")
+    lines += [f"{i + 1} {i // 4 + 1} {kinds[i]}{charge} {x[i, 0]:.17g} {x[i, 1]:.17g} {x[i, 2]:.17g} 0 0 0" for i in range(natoms)]
     lines += ["", "Velocities", ""] + [f"{i + 1} {v[i, 0]:.17g} {v[i, 1]:.17g} {v[i, 2]:.17g}" for i in range(natoms)]
     lines += ["", "Bonds", ""] + [f"{k + 1} 1 {i} {j}" for k, (i, j) in enumerate(bonds)]
     path.write_text("\n".join(lines) + "\n")
@@ -67,7 +68,8 @@ def measure(lammps_class, case: dict) -> list[dict]:
     """Run the commands, then each stretch; returns positions, velocities and the values of equal-style formulas after each stretch."""
     lmp = lammps_class(cmdargs=["-screen", "none", "-log", "none"])
     try:
-        for line in (script(Path(case["data"]), case.get("dimension", 3), case.get("atom_style", "bond"), case.get("boundary", "p p p")) + "\n".join(case["commands"])).splitlines():
+        text = script(Path(case["data"]), case.get("dimension", 3), case.get("atom_style", "bond"), case.get("boundary", "p p p"))
+        for line in (text + "\n".join(case["commands"])).splitlines():
             if line.strip():
                 lmp.command(line)
         values = case.get("values", [])

@@ -38,7 +38,8 @@ CASES = {
                               [*SEVEN, "press", "pxz"]),
     "smd cfor couple": (["group others type 2", "fix 2 some smd cfor 5.0 couple others auto auto auto 1.5", NVE], SEVEN),
     "smd cfor couple along": (["group others type 2", "fix 2 some smd cfor 5.0 couple others 1 2 NULL 1.5", NVE], SEVEN),
-    **{f"wall/{style}": ([f"fix 2 some wall/{style} xlo EDGE {xlo} 3.5 yhi 13 {yhi} 3.5 pbc yes units box", "fix_modify 2 energy yes virial yes",
+    **{f"wall/{style}": ([f"fix 2 some wall/{style} xlo EDGE {xlo} 3.5 yhi 13 {yhi} 3.5 pbc yes units box",
+                          "fix_modify 2 energy yes virial yes",
                          NVE], ["f_2", "f_2[1]", "f_2[2]", "pe", "press", "pxx"])
        for style, xlo, yhi in (("lj93", "0.1 0.7", "0.2 1.1"), ("lj126", "0.01 0.7", "v_one 1.1"), ("lj1043", "0.1 0.7", "0.2 1.1"),
                                ("harmonic", "0.1 0.7", "0.2 1.1"), ("morse", "0.1 0.7 2.0", "0.2 1.1 2.0"),
@@ -85,10 +86,11 @@ def make_cases(folder) -> dict[str, dict]:
     for name, (commands, values) in CASES.items():
         dimension = 2 if "2d" in name else 3
         commands = [c.replace("TABLE", str(folder / "wall.table")) for c in commands]
-        if "efield" in name:
-            commands = CHARGES + commands
-        out[name] = {"data": str(folder / ("charged" if "efield" in name else f"data{dimension}")), "dimension": dimension, "commands": commands,
-                     "boundary": "f f f" if name[-1] == "f" else "p p p", "atom_style": "full" if "efield" in name else "bond", "values": values, "runs": RUNS}
+        charged = "efield" in name
+        commands = CHARGES * charged + commands
+        out[name] = {"data": str(folder / ("charged" if charged else f"data{dimension}")), "dimension": dimension, "commands": commands,
+                     "boundary": "f f f" if name.endswith(" f") else "p p p", "atom_style": "full" if charged else "bond",
+                     "values": values, "runs": RUNS}
     return out
 
 

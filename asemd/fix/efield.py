@@ -1,13 +1,14 @@
 r"""A uniform electric field on charges and dipoles, or one that varies in space and time.
 
-.. math:: F_i \leftarrow F_i + q_i E, \qquad T_i \leftarrow T_i + \mu_i \times E, \qquad E_{pot} = -\sum_i (q_i\, E \cdot r_i + \mu_i \cdot E)
+.. math:: F_i \leftarrow F_i + q_i E, \qquad T_i \leftarrow T_i + \mu_i \times E,
+          \qquad E_{pot} = -\sum_i (q_i\, E \cdot r_i + \mu_i \cdot E)
 
 with unwrapped positions. Components may be variables; then ``energy v_name`` gives the energy of each atom or ``potential v_name`` the
 potential at each atom, of which the energy is the charge times that; without them it is 0. Variables of style atom are not for dipoles.
 The virial (``fix_modify ID virial yes``) is that of a constant field, as in LAMMPS.
 
-Source: LAMMPS manual, fix efield. Units: force/charge (V/Angstrom in units real and metal). Output: a scalar, the energy; a vector of 3, the
-total force of the field.
+Source: LAMMPS manual, fix efield. Units: force/charge (V/Angstrom in units real and metal). Output: a scalar, the energy; a vector of 3,
+the total force of the field.
 """
 from __future__ import annotations
 

@@ -5,8 +5,8 @@ r"""Keep the centre of mass of a group where it is, by moving atoms at the begin
 The place: ``INIT`` where the centre was when the fix was defined, NULL (None): that direction is left alone. It stands after the fixes
 that move the atoms.
 
-Source: LAMMPS manual, fix recenter. Arguments: x y z; shift group, the atoms that are moved; units box, lattice or fraction. Output: a scalar,
-the length of the last shift; a vector of 3, the shift.
+Source: LAMMPS manual, fix recenter. Arguments: x y z; shift group, the atoms that are moved; units box, lattice or fraction. Output: a
+scalar, the length of the last shift; a vector of 3, the shift.
 """
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ class Recenter(Forcing):
         scene = session.scene
         spacings = scene.lattice.spacings if options["units"] == "lattice" and scene.lattice is not None else np.ones(3)
         special = {"INIT": "INIT", "NULL": None}
-        fix = cls(group, [special[w] if w in special else number(w, f"{what} {'xyz'[d]}") * float(spacings[d]) for d, w in enumerate(place)],
-                  options["shift"])
+        fix = cls(group, [special[w] if w in special else number(w, f"{what} {'xyz'[d]}") * float(spacings[d])
+                          for d, w in enumerate(place)], options["shift"])
         fix.fraction, fix.words = options["units"] == "fraction", list(words)
         fix.centre = fix.present(scene.system, scene.groups.mask(group))
         return fix

@@ -1,6 +1,7 @@
 r"""Restraints of distances, angles and torsions between given atoms, bonded or not.
 
-.. math:: E_{bond} = K (r - r_0)^2, \quad E_{lbound} = K (r - r_0)^2 \;\text{for}\; r < r_0, \quad E_{angle} = K (\theta - \theta_0)^2, \quad
+.. math:: E_{bond} = K (r - r_0)^2, \quad E_{lbound} = K (r - r_0)^2 \;\text{for}\; r < r_0, \quad
+          E_{angle} = K (\theta - \theta_0)^2, \quad
           E_{dihedral} = K [1 + \cos(n \phi - \phi_0)]
 
 K, and the distance of bond and lbound, ramp from start to stop over the run (``run start/stop``).

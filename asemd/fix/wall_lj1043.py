@@ -1,11 +1,13 @@
 r"""Walls of the integrated Lennard-Jones potential of lattice planes.
 
-.. math:: E = 2 \pi \epsilon \left[ \tfrac25 (\sigma / r)^{10} - (\sigma / r)^4 - \frac{\sqrt2 \sigma^3}{3 (r + 0.61 \sigma / \sqrt2)^3} \right]
+.. math:: E = 2 \pi \epsilon \left[ \tfrac25
+          (\sigma / r)^{10} - (\sigma / r)^4 - \frac{\sqrt2 \sigma^3}{3 (r + 0.61 \sigma / \sqrt2)^3} \right]
 
 for atoms at a distance :math:`r < r_c` in front of the wall, less the value at the cutoff.
 
-Source: LAMMPS manual, fix wall/lj1043. Arguments: face, position, epsilon, sigma, cutoff for each wall, all but the cutoff numbers or
-variables; ``units box`` or ``lattice``; ``pbc yes`` for periodic directions. Output: a scalar, the energy; a vector, the force on each wall.
+Source: LAMMPS manual, fix wall/lj1043. Arguments: face, position, epsilon, sigma, cutoff for each wall, all but the cutoff
+numbers or variables; ``units box`` or ``lattice``; ``pbc yes`` for periodic directions.
+Output: a scalar, the energy; a vector, the force on each wall.
 """
 from __future__ import annotations
 

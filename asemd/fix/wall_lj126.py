@@ -4,8 +4,9 @@ r"""Walls with the Lennard-Jones potential of one particle.
 
 for atoms at a distance :math:`r < r_c` in front of the wall, less the value at the cutoff.
 
-Source: LAMMPS manual, fix wall/lj126. Arguments: face, position, epsilon, sigma, cutoff for each wall, all but the cutoff numbers or
-variables; ``units box`` or ``lattice``; ``pbc yes`` for periodic directions. Output: a scalar, the energy; a vector, the force on each wall.
+Source: LAMMPS manual, fix wall/lj126. Arguments: face, position, epsilon, sigma, cutoff for each wall, all but the cutoff
+numbers or variables; ``units box`` or ``lattice``; ``pbc yes`` for periodic directions.
+Output: a scalar, the energy; a vector, the force on each wall.
 """
 from __future__ import annotations
 

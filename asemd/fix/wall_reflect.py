@@ -62,7 +62,8 @@ class WallReflect(Fix):
                 positions[word] = value
             words = words[2:]
         check_periodic(cls.style, positions, session.scene.need_system("fix wall/reflect").box)
-        fix = cls(group, {face: read_position(face, word, lattice, session, f"fix wall/reflect {face}") for face, word in positions.items()})
+        fix = cls(group, {face: read_position(face, word, lattice, session, f"fix wall/reflect {face}")
+                          for face, word in positions.items()})
         fix.words = given
         return fix
 
