@@ -92,6 +92,34 @@ dump_modify d2 sort id
 dump d3 all custom 10 dump3.txt id f_sf[1] f_sf[2] f_sf[3] f_sf2[1] f_sf2[3]
 dump_modify d3 sort id
 """,
+    "ave/chunk": """
+compute cx all chunk/atom bin/1d x lower 0.25
+compute cy all chunk/atom bin/1d y lower 0.25 units box
+compute cxy all chunk/atom bin/2d x lower 0.5 y lower 0.5 units reduced
+compute cty all chunk/atom type
+variable idm atom id%5
+compute ccom all chunk/atom v_idm compress yes nchunk every ids every
+compute csp all chunk/atom bin/1d x lower 0.5 nchunk every
+compute tb all temp/com
+fix ch all ave/chunk 2 3 10 cx vx density/number density/mass temp c_ke file ch1.txt
+fix ch2 all ave/chunk 2 3 10 cy vx temp norm sample ave running file ch2.txt format " %10.4f"
+fix ch3 all ave/chunk 2 3 10 cxy density/number temp vx norm none ave window 3 file ch3.txt
+fix ch4 some ave/chunk 5 2 10 cty mass c_s[1] v_ax temp adof 2.5 cdof 1.0 file ch4.txt title1 "" title3 "# q"
+fix ch5 all ave/chunk 5 2 10 ccom density/number temp fx file ch5.txt ave running overwrite
+fix ch6 all ave/chunk 2 3 10 csp temp vx file ch6.txt bias tb
+thermo_style custom step temp f_ch[1][3] f_ch[2][4] f_ch4[1][4] f_ch5[2][3]
+""",
+    "property/atom": """
+fix p1 all property/atom d_a i_b d2_c 2 mol
+fix p2 all property/atom q ghost yes writedata no
+set atom 3*7 d_a 3.25 i_b 4 d2_c[2] 7.5 mol 5 charge 0.25
+set atom 2 d_a v_ax
+variable x atom d_a+i_b+d2_c[2]
+variable y equal d2_c[4][2]+d_a[4]+i_b[5]
+dump d all custom 10 dump.txt id mol q d_a i_b d2_c[1] d2_c[2] v_x
+dump_modify d sort id
+thermo_style custom step temp v_y
+""",
 }
 # words after ``fix x all`` and what the message must have
 REFUSED = {
@@ -109,6 +137,8 @@ REFUSED = {
     "ave/histo 2 3 10 0 5 5 c_ke c_t mode vector": "all per atom or all local", "ave/histo/weight 2 3 10 0 5 5 c_t": "two values",
     "ave/correlate 2 9 10 c_t": "Nevery \\* Nrepeat", "ave/correlate 2 3 10 c_t type upper": "two values",
     "ave/correlate 2 3 10 c_t type all": "expected one of", "ave/correlate/long 2 10 c_t nlen 3 ncount 2": "multiple of ncount",
-    "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
+    "ave/chunk 2 3 10 t vx": "not chunk/atom", "ave/chunk 2 3 10 none vx": "no compute none", "property/atom": "at least one property",
+    "property/atom foo": "unknown", "property/atom d2_c": "columns", "property/atom d2_c 0": "at least 1", "property/atom i_a d_a": "twice",
+    "property/atom d_a ghost": "yes or no", "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
     "store/force 1": "no arguments",
 }

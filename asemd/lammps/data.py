@@ -33,10 +33,8 @@ class DataFile:
         As the file has it, or together with the one it extends, before shrink-wrapped faces move to the atoms.
     coeffs : dict
         Section -> list of (place, words); types as numbers, without comments.
-    styles_hint : dict
-        Section -> style named after ``#`` in its heading.
-    headings : dict
-        Section -> place of its heading.
+    styles_hint, headings
+        Section -> style named after ``#`` in its heading, and its place.
     title, fix_lines
         First line; ID of a fix -> list of (place, words) of its sections.
     """
