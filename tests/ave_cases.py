@@ -139,6 +139,7 @@ REFUSED = {
     "ave/correlate 2 3 10 c_t type all": "expected one of", "ave/correlate/long 2 10 c_t nlen 3 ncount 2": "multiple of ncount",
     "ave/chunk 2 3 10 t vx": "not chunk/atom", "ave/chunk 2 3 10 none vx": "no compute none", "property/atom": "at least one property",
     "property/atom foo": "unknown", "property/atom d2_c": "columns", "property/atom d2_c 0": "at least 1", "property/atom i_a d_a": "twice",
-    "property/atom d_a ghost": "yes or no", "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
+    "property/atom d_a ghost": "yes or no",
+    "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
     "store/force 1": "no arguments",
 }

@@ -88,7 +88,8 @@ class AveChunk(Sampled):
         chunks = find_chunks(words[3], what, session)
         names, rest = sampled.split(words[4:], (*WORDS, *SPECIAL))
         options = sampled.keywords(rest, KEYWORDS, what)
-        values = [w if w in SPECIAL else read(w, session, what, WORDS).check("per_atom", what) for w in expand(names, session, vectors=True)]
+        values = [w if w in SPECIAL else read(w, session, what, WORDS).check("per_atom", what)
+                  for w in expand(names, session, vectors=True)]
         ave, window = sampled.read_ave(options.get("ave", ["one"]), what)
         flow = find_temperature(options["bias"][0], session, what) if "bias" in options else None
         fix = cls(group, chunks, values, every, repeat, freq, options.get("norm", ["all"])[0], ave, window, "", flow,
