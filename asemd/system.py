@@ -59,9 +59,7 @@ class System:
         missing follows from the arrays.
     labels : dict, optional
         Type labels: kind (atom bond angle dihedral improper) -> {type: label}.
-    units, atom_style, dimension, step
-    extra : dict, optional
-        Further per-atom arrays (n, ...) by name.
+    units, atom_style, dimension, step, extra (further per-atom arrays (n, ...) by name)
     torn : list of (kind, type, ids)
         Bonded items that lost atoms but are still listed with those that stayed, the first of the ids of a bond, the second of others.
     rotation : (3, 3) float, optional
@@ -131,10 +129,7 @@ class System:
         """True if the atom style has molecule ids and bonds."""
         return bool(bonded(self.atom_style)) or not self.topology.is_empty
 
-    @property
-    def has_molecules(self) -> bool:
-        """True if the atoms have molecule ids, by their style or as a property of their own."""
-        return self.molecular or bool(self.counts.get("molecules"))
+    has_molecules = property(lambda self: self.molecular or bool(self.counts.get("molecules")), doc="True if the atoms have molecule ids.")
 
     def copy(self) -> System:
         return copy.deepcopy(self)

@@ -1,0 +1,263 @@
+"""Change coefficients of the force field, charges or diameters during a run, by variables.
+
+``pair STYLE COEFFICIENT I J v_name``, ``bond|angle|dihedral|improper STYLE COEFFICIENT TYPE v_name``, ``atom charge|diameter v_name``; on
+the first step of a run and on multiples of N (N = 0: on the first step only). ``scale yes``: the variable multiplies what the coefficient
+was. Pairs of types without own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. ``mass yes``:
+masses follow diameters, densities stay.
+
+Source: LAMMPS manual, fix adapt.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.engine import Engine
+from asemd.errors import InputError, nearest
+from asemd.fix import Fix, sampled
+from asemd.fix.formula import Formula
+from asemd.kernels.pair import cluster_tuple, uniform_rows, varying_rows
+from asemd.population import retie
+from asemd.words import bounds, take, whole, yes_no
+
+BONDED = ("bond", "angle", "dihedral", "improper")
+OPTIONS = {"reset": 1, "scale": 1, "mass": 1}
+
+
+class Adapt(Fix):
+    """Change coefficients during a run.
+
+    Parameters
+    ----------
+    group : str
+        The atoms whose charges or diameters change.
+    every : int
+        Steps between two changes; 0: only when a run begins.
+    pair : sequence of (style, coefficient, i, j, value)
+        `i` and `j`: types, or ranges such as ``"*"`` and ``"1*3"``; values are functions of the loop that return a number.
+    bond, angle, dihedral, improper : sequence of (style, coefficient, type, value)
+    charge, diameter : callable, optional
+        Functions of the loop that return a number or one per atom.
+    scale, reset, mass : bool
+        Values are factors; what was changed goes back after a run; masses follow diameters.
+
+    Raises
+    ------
+    InputError
+        Nothing to change, a negative interval; in a run: a style or coefficient that is not there.
+    """
+
+    style = "adapt"
+    levels = "outermost"
+
+    def __init__(self, group: str = "all", every: int = 1, pair=(), bond=(), angle=(), dihedral=(), improper=(), charge=None, diameter=None,
+                 scale: bool = False, reset: bool = False, mass: bool = False):
+        super().__init__(group)
+        if every < 0:
+            raise InputError(f"fix adapt: N must not be negative, got {every}")
+        self.adapt_every, self.pair = every, [tuple(p) for p in pair]
+        self.bonded = {c: [tuple(b) for b in given] for c, given in zip(BONDED, (bond, angle, dihedral, improper))}
+        self.charge, self.diameter, self.scale, self.reset, self.mass = charge, diameter, scale, reset, mass
+        if not self.pair and not any(self.bonded.values()) and charge is None and diameter is None:
+            raise InputError("fix adapt needs at least one of pair, bond, angle, dihedral, improper, atom")
+        self._kept: list[tuple] = []        # dictionaries of coefficients, or arrays, and what they had
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        what = "fix adapt"
+        every, left, given = whole(take(words, 1, what)[0], f"{what} N"), list(words[1:]), {}
+        system = session.scene.need_system(what)
+        while left and left[0] not in OPTIONS:
+            key, *left = left
+            if key == "pair":
+                style, name, i, j, value = take(left, 5, f"{what} pair")
+                for word in (i, j):
+                    bounds(word, 1, system.counts["ntypes"], f"{what} pair", system.labels["atom"])
+                given.setdefault("pair", []).append((style, name, i, j, cls._variable(value, session)))
+                left = left[5:]
+            elif key in BONDED:
+                style, name, t, value = take(left, 4, f"{what} {key}")
+                bounds(t, 1, system.counts[f"n{key}types"], f"{what} {key}", system.labels[key])
+                given.setdefault(key, []).append((style, name, t, cls._variable(value, session)))
+                left = left[4:]
+            elif key == "atom":
+                name, value = take(left, 2, f"{what} atom")
+                if name not in ("charge", "diameter"):
+                    raise InputError(f"{what} atom: {name!r} is unknown or not supported, it must be charge or diameter")
+                if name == "charge" and system.q is None:
+                    raise InputError(f"{what} atom charge: atom_style {system.atom_style} has no charges")
+                if name == "diameter" and "radius" not in system.extra:
+                    raise InputError(f"{what} atom diameter: atom_style {system.atom_style} has no radius")
+                given[name] = cls._variable(value, session, atoms=True)
+                left = left[2:]
+            elif key == "kspace":
+                raise InputError(f"{what} kspace: there is no kspace_style that could be scaled; run this script with LAMMPS")
+            else:
+                raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, ('pair', *BONDED, 'atom', *OPTIONS))}")
+        options = {k: yes_no(v[0], f"{what} {k}") for k, v in sampled.keywords(left, OPTIONS, what).items()}
+        fix = cls(group, every, **given, **options)
+        fix.words = list(words)
+        fix._check(session.scene.interactions)
+        return fix
+
+    @staticmethod
+    def _variable(word: str, session, atoms: bool = False) -> Formula:
+        if not word.startswith("v_"):
+            raise InputError(f"fix adapt: the value must be a variable v_name, got {word!r}")
+        style = session.variables.find(word[2:]).style
+        if style not in (("equal", "internal", "python", "atom") if atoms else ("equal", "internal", "python")):
+            raise InputError(f"fix adapt: variable {word[2:]} has style {style}, it must be equal{' or atom' * atoms}")
+        return Formula(word[2:], session)
+
+    def to_lammps(self) -> list[str]:
+        if not hasattr(self, "words"):
+            raise InputError("fix adapt: Python functions cannot be written as a script")
+        return self.words
+
+    def _check(self, interactions) -> None:
+        """Refuse styles and coefficients that are not there."""
+        for style, name, *_ in self.pair:
+            self._uses(interactions, "pair", style, name)
+        for category, given in self.bonded.items():
+            for style, name, *_ in given:
+                self._uses(interactions, category, style, name)
+
+    @staticmethod
+    def _uses(interactions, category: str, style: str, name: str) -> list:
+        uses = [u for u in interactions.uses[category] if style in (u.label, u.style.name)]
+        if not uses:
+            known = [u.label for u in interactions.uses[category]]
+            raise InputError(f"fix adapt: there is no {category} style {style!r} in use{nearest(style, known)}")
+        coefficients = [p.name for p in uses[0].style.coeff
+                        if p.unit not in ("word", "path", "integer") and not p.name.startswith("cut")]
+        if name not in coefficients:
+            raise InputError(f"fix adapt: {category} style {style} has no coefficient {name!r} that can change, it has "
+                             f"{' '.join(coefficients) or 'none'}")
+        return uses
+
+    # ---- hooks
+    def next_step(self, step: int) -> int:
+        return (step // self.adapt_every + 1) * self.adapt_every if self.adapt_every else sampled.NEVER
+
+    def setup(self, loop) -> None:
+        """The first change; forces are computed again."""
+        self._check(loop.interactions)
+        self._kept = []
+        self._change(loop)
+        loop.engine.forces(True)
+        loop._collect()
+        for n in range(loop.fixes.index(self)):
+            if "post_force" in loop._kinds[n]:
+                loop._call(n, "post_force")
+        loop._collect()
+        loop.sync_out()
+
+    def pre_force(self, loop) -> None:
+        """Change what is due."""
+        self._change(loop)
+
+    def finish(self, loop) -> None:
+        if self.reset:
+            for holder, key, value in reversed(self._kept):
+                holder[key] = value
+            self._kept = []
+            self._follow(loop)
+            loop.engine.forces(True)
+            loop.sync_out()
+
+    def _set(self, holder, key, value) -> None:
+        """Set one coefficient or array, and remember what it was."""
+        before = [old for h, k, old in self._kept if h is holder and k == key]
+        if not before:
+            before = [np.copy(holder[key]) if isinstance(holder[key], np.ndarray) else holder[key]]
+            self._kept.append((holder, key, before[0]))
+        new = value * before[0] if self.scale else value
+        holder[key] = float(new) if not isinstance(before[0], np.ndarray) else new
+
+    def _change(self, loop) -> None:
+        system, counts = loop.system, loop.system.counts
+        coefficients = False
+        for style, name, i, j, value in self.pair:
+            number, (ilo, ihi), (jlo, jhi) = float(value(loop)), *(_range(t, counts["ntypes"], system.labels["atom"]) for t in (i, j))
+            pairs = [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]
+            for use in self._uses(loop.interactions, "pair", style, name):
+                for pair in pairs:
+                    if name in use.coeff.get(pair, ()):
+                        self._set(use.coeff[pair], name, number)
+                        coefficients = True
+        for category, given in self.bonded.items():
+            for style, name, t, value in given:
+                number, (lo, hi) = float(value(loop)), _range(t, counts[f"n{category}types"], system.labels[category])
+                for use in self._uses(loop.interactions, category, style, name):
+                    for k in range(lo, hi + 1):
+                        if name in use.coeff.get(k, ()):
+                            self._set(use.coeff[k], name, number)
+                            coefficients = True
+        if self.charge is not None or self.diameter is not None:
+            self._change_atoms(loop)
+        if coefficients or self.charge is not None:
+            self._follow(loop)
+
+    def _change_atoms(self, loop) -> None:
+        system, mask = loop.system, loop.groups[self.group]
+        own = vars(system)
+        if self.charge is not None:
+            self._set(own, "q", _masked(system.q, mask, self.charge(loop), self.scale))
+        if self.diameter is not None:
+            before = system.extra["radius"].copy()
+            half = self.diameter(loop) * (1.0 if self.scale else 0.5)
+            self._set(system.extra, "radius", _masked(before, mask, half, self.scale))
+            if self.mass and system.rmass is not None:
+                ratio = np.divide(system.extra["radius"], before, out=np.ones_like(before), where=before > 0.0)
+                self._kept.append((own, "rmass", system.rmass.copy()))
+                system.rmass = system.rmass * ratio**3
+
+    def _follow(self, loop) -> None:
+        """Running terms take the coefficients and charges as they are now."""
+        e = loop.engine
+        if self.charge is not None or not _in_place(e, loop.interactions, loop.system):
+            retie(loop)
+            loop._make_module()
+
+
+def _masked(old: np.ndarray, mask: np.ndarray, value, factor: bool) -> np.ndarray:
+    """New values of the atoms of a group, the others as they are; factors are 1 for those."""
+    return np.where(mask, value, 1.0 if factor else old)
+
+
+def _range(word: str, most: int, labels) -> tuple[int, int]:
+    return bounds(str(word), 1, most, "fix adapt", labels)
+
+
+def _in_place(e: Engine, interactions, system) -> bool:
+    """Put new coefficients into the running terms; False if they need other lists or kernels."""
+    new = [t for t in interactions.pair_terms(system.counts["ntypes"], e.units) if t.style.parts]
+    for kind, *pair in e.settings.exclude:
+        if kind == "type":
+            for t in new:
+                t.exclude(*pair)
+    if len(new) != len(e.pair_terms):
+        return False
+    for old, fresh in zip(e.pair_terms, new):
+        a, b = old.tables, fresh.tables
+        same = fresh.style is old.style and a.rows.shape == b.rows.shape and np.shape(a.constants) == np.shape(b.constants)
+        if not same or np.abs(a.rows[old.cut_rows] - b.rows[old.cut_rows]).max(initial=0.0) or len(a.arrays):
+            return False
+        if any(getattr(t, "uniform", None) not in (None, uniform_rows(b.rows)) for t in e.terms if getattr(t, "owner", None) is old):
+            return False
+    for old, fresh in zip(e.pair_terms, new):
+        old.tables.rows[:] = fresh.tables.rows
+        np.copyto(np.asarray(old.tables.constants), fresh.tables.constants)
+        old.filled.update(fresh.filled)
+        for t in e.terms:
+            if getattr(t, "owner", None) is old and hasattr(t, "uniform"):
+                if hasattr(t, "rows"):
+                    t.rows = varying_rows(old.tables.rows, t.uniform)
+                t.p = cluster_tuple(old.tables.rows, old.tables.constants, t.uniform, getattr(t, "single", False))
+    for t in e.terms:
+        if getattr(t, "packed", None) is not None:
+            fresh = t.style.pack(t.use.settings, t.use.coeff, t.packed.coeff.shape[1] - 1, e.units)
+            if fresh.coeff.shape != t.packed.coeff.shape or len(fresh.arrays):
+                return False
+            t.packed.coeff[:] = fresh.coeff
+    e.thread_arguments = None
+    return True
