@@ -70,6 +70,10 @@ CASES = {
     "move transrot": (["fix 2 some move transrot 0.01 0.02 -0.03 3 4 5 1 -1 0.5 333 units box"], []),
     "move variable": (["variable dx atom 0.01*step*y/12", "variable vx equal 0.01*step", "variable vz atom 0.001*x",
                        "fix 2 some move variable v_dx NULL NULL v_vx NULL v_vz"], []),
+    **{f"indent {shape}": ([*more, f"fix 2 some indent 0.5 {shape}", "fix_modify 2 energy yes", NVE], ["f_2", *THREE, "pe"])
+       for shape, more in (("sphere 6 1 5 4", []), ("sphere v_top 5 4 2.0 side in", ["variable top equal 1.0+0.1*step", "lattice sc 1.5"]),
+                           ("cylinder y 6 1 3 units box", []), ("cylinder x v_one 4 2 side in", ["lattice custom 1.1 a1 1 0 0 a2 0 2 0 a3 0 "
+                           "0 1.5 basis 0 0 0"]), ("plane y 4 lo", []), ("plane z v_one hi", ["lattice sc 11.0"]))},
 }
 CHARGES = ["set type 1 charge 0.5", "set type 2 charge -0.8", "set type 3 charge 0.2"]
 RUNS = ["run 20", "run 10 start 0 stop 60"]

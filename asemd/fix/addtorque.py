@@ -49,7 +49,7 @@ class AddTorque(Forcing):
 
     style = "addtorque"
     minimizes = False
-    outputs, size, first = 4, 3, 4
+    told, size, first = 4, 3, 4
     modifies = ("energy",)
 
     def __init__(self, group: str = "all", torque=(0.0, 0.0, 0.0)):

@@ -30,7 +30,7 @@ class AveForce(Forcing):
     """
 
     style = "aveforce"
-    outputs = size = 3
+    told = size = 3
 
     def __init__(self, group: str = "all", force=(0.0, 0.0, 0.0), region=None):
         super().__init__(group, force, region)

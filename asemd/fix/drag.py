@@ -37,7 +37,7 @@ class Drag(Forcing):
 
     style = "drag"
     minimizes = False
-    outputs = size = 3
+    told = size = 3
 
     def __init__(self, group: str = "all", point=(0.0, 0.0, 0.0), force: float = 0.0, delta: float = 0.0):
         super().__init__(group, point)

@@ -42,7 +42,7 @@ class EField(Forcing):
     """
 
     style = "efield"
-    outputs, size, first = 4, 3, 4
+    told, size, first = 4, 3, 4
     modifies = ("energy", "virial")
     by_atom = True
 

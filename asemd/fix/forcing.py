@@ -1,7 +1,7 @@
 """What fixes that change forces by a compiled hook share: numbers that may be variables, a region, energy and virial for the totals.
 
 The numbers of the hooks: ``p[0]`` the group bit, ``p[1]`` whether the virial counts, ``p[2]`` whether the per-atom numbers are in use, from
-``p[3]`` on what the hook tells (`outputs` of them), then the values and what `numbers` returns. Per-atom numbers: column 0 says whether an
+``p[3]`` on what the hook tells (`told` of them), then the values and what `numbers` returns. Per-atom numbers: column 0 says whether an
 atom is in the region, the others are the values by atom.
 """
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Forcing(Fix):
     minimizes = True
     levels = "one"
     extensive = True
-    outputs: ClassVar[int] = 0          # how many numbers the hook tells
+    told: ClassVar[int] = 0          # how many numbers the hook tells
     size: ClassVar[int] = 0             # elements of the vector
     first: ClassVar[int] = 3            # where the vector begins in ``p``
     modifies: ClassVar[tuple[str, ...]] = ()    # of fix_modify: energy, virial
@@ -45,7 +45,7 @@ class Forcing(Fix):
     def __init__(self, group: str = "all", values: tuple[Value | None, ...] = (), region=None):
         super().__init__(group)
         self.values, self.region, self.region_id = tuple(values), region, getattr(region, "id", "")
-        self.p = np.zeros(3 + self.outputs)
+        self.p = np.zeros(3 + self.told)
         self.a: np.ndarray | None = None
         if region is not None or any(callable(v) for v in self.values):
             self.follows = "post_force"
@@ -91,7 +91,7 @@ class Forcing(Fix):
         return []
 
     def parameters(self, loop: Loop) -> np.ndarray:
-        told = self.p[3:3 + self.outputs]
+        told = self.p[3:3 + self.told]
         values = [0.0 if v is None or callable(v) else v for v in self.values]
         head = [loop.group_bit(self.group), self.thermo_virial, bool(self.uses_atoms())]
         self.p = np.array([*head, *told, *values, *self.numbers(loop)], float)
@@ -123,9 +123,14 @@ class Forcing(Fix):
                 elif np.ndim(now):
                     raise InputError(f"fix {self.id} (style {self.style}): variable {write(value)} must be of style equal")
                 else:
-                    self.p[3 + self.outputs + k] = now
+                    self.p[3 + self.told + k] = now
 
-    # ---- outputs ------------------------------------------------------------------------------------------------------------------------
+    # ---- outputs ---------------------------------------------------------------------------------------------------------------------
+    @property
+    def outputs(self) -> set[str]:
+        """Which of scalar and vector it has."""
+        return ({"scalar"} if type(self).scalar is not Fix.scalar else set()) | ({"vector"} if self.size else set())
+
     def vector(self, i: int) -> float:
         if not self.size:
             return super().vector(i)

@@ -26,7 +26,7 @@ class Freeze(Forcing):
     style = "freeze"
     minimizes = False
     levels = "every"
-    outputs = size = 3
+    told = size = 3
 
     def parameters(self, loop) -> np.ndarray:
         if "torque" not in loop.system.extra:

@@ -47,7 +47,7 @@ class Gravity(Forcing):
 
     style = "gravity"
     minimizes = False
-    outputs = 1
+    told = 1
     modifies = ("energy",)
 
     def __init__(self, group: str = "all", magnitude=1.0, kind: str = "vector", arguments=(0.0, 0.0, -1.0), disable: bool = False):

@@ -39,7 +39,7 @@ class Recenter(Forcing):
     style = "recenter"
     minimizes = False
     levels = "every"
-    outputs, size, first = 4, 3, 4
+    told, size, first = 4, 3, 4
 
     def __init__(self, group: str = "all", place=("INIT", "INIT", "INIT"), shift: str | None = None):
         super().__init__(group)

@@ -119,7 +119,7 @@ class Restrain(Forcing):
     """
 
     style = "restrain"
-    outputs, size, first = 4, 3, 4
+    told, size, first = 4, 3, 4
     modifies = ("energy",)
 
     def __init__(self, group: str = "all", restraints=()):

@@ -53,7 +53,7 @@ class SMD(Forcing):
 
     style = "smd"
     minimizes = False
-    outputs, size = 7, 7
+    told, size = 7, 7
     modifies = ("virial",)
 
     def __init__(self, group: str = "all", k: float = 1.0, velocity: float = 0.0, force: float | None = None, point=(0.0, 0.0, 0.0),

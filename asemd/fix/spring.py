@@ -44,7 +44,7 @@ class Spring(Forcing):
 
     style = "spring"
     minimizes = True
-    outputs, size, first = 5, 4, 4
+    told, size, first = 5, 4, 4
     modifies = ("energy",)
 
     def __init__(self, group: str = "all", k: float = 1.0, point=(0.0, 0.0, 0.0), length: float = 0.0, couple: str = ""):

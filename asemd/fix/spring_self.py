@@ -39,7 +39,7 @@ class SpringSelf(Forcing):
     """
 
     style = "spring/self"
-    outputs = 1
+    told = 1
     modifies = ("energy",)
     by_atom = True
 

@@ -117,7 +117,7 @@ class Wall(Forcing):
         An unknown face, no walls, a wrong number of coefficients, a cutoff that is not positive.
     """
 
-    outputs = 8
+    told = 8
     first = 4
     modifies = ("energy", "virial")
     names: ClassVar[tuple[str, ...]] = ("epsilon", "sigma")
