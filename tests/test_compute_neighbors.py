@@ -1,6 +1,8 @@
 """Computes that look at the neighbours of atoms: LAMMPS's numbers in liquids, crystals, layers, tilted cells and molecules."""
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from wheel import ask
@@ -76,8 +78,11 @@ EVERYWHERE |= {
 }
 HERE = {     # rdf 2 1: LAMMPS's coordination numbers of unlike types are wrong in two dimensions
     "crystal": {"all rdf 12 2 1": "G", "all contact/atom": "A", "half contact/atom b": "A", "all entropy/atom 0.15 2.0": "A",
-                "all entropy/atom 0.2 1.5 avg yes 1.1 local yes": "A", "all pair lj/cut": "S"},
-    "layer": {}, "tilted": {"half entropy/atom 0.16 2.2 local yes": "A"},
+                "all entropy/atom 0.2 1.5 avg yes 1.1 local yes": "A", "all pair lj/cut": "S", "all voronoi/atom": "B",
+                "a voronoi/atom surface b edge_histo 7": "B", "all voronoi/atom neighbors yes face_threshold 0.1": "M",
+                "all ti lj/cut 1 v_f v_g": "S"},
+    "layer": {"all voronoi/atom edge_histo 7": "V"}, "tilted": {"half voronoi/atom edge_threshold 0.2 face_threshold 0.2 edge_histo 8": "V",
+               "half voronoi/atom face_threshold 0.2": "B", "half entropy/atom 0.16 2.2 local yes": "A"},
     "molecules": {"all fragment/atom": "A", "a fragment/atom": "A", "a fragment/atom single yes": "A", "half aggregate/atom 1.1": "A",
                   "all pair lj/cut/coul/cut ecoul": "S", "all pair lj/cut/coul/cut evdwl": "S", "a group/group b molecule inter": "V"},
 }
@@ -102,14 +107,15 @@ for name, (lines, computes) in given["scenes"].items():
 """
 
 
-HELPERS = ["velocity all create 1.3 87287", "compute ke all ke/atom", "compute pe all pe/atom",
+HELPERS = ["variable f equal 0.7", "variable g equal 1.3", "velocity all create 1.3 87287",
+           "compute ke all ke/atom", "compute pe all pe/atom",
            "compute stress all stress/atom NULL virial", "compute centroid all centroid/stress/atom NULL virial"]
 
 
 def rows(values: np.ndarray) -> np.ndarray:
     """Rows of local values in an order that does not depend on the program."""
     values = np.asarray(values).reshape(len(values), -1)
-    return values[np.argsort(values[:, 0])]
+    return values[np.lexsort(values.round(11).T[::-1])]
 
 
 def prepare(name: str) -> tuple[list[str], dict[str, str]]:
@@ -183,7 +189,11 @@ def ours(lines) -> Lammps:
     ("heat/flux 1 2", "needs 3 values"),
     ("heat/flux thermo_pe thermo_pe thermo_pe", "not a compute ke/atom"), ("heat/flux a b c", "no compute a"),
     ("centroid/stress/atom", "ID of a temperature"), ("centroid/stress/atom NULL per", "did you mean pe|unknown keyword"),
-    ("fragment/atom", "with bonds"), ("contact/atom c", "unknown group"),
+    ("fragment/atom", "with bonds"), ("voronoi/atom surface nobody", "unknown group"), ("voronoi/atom radius v_x", "not supported"),
+    ("voronoi/atom face_treshold 1", "did you mean face_threshold"),
+    ("voronoi/atom edge_histo 0", "positive"), ("ti lj/cut 1 v_f", "4 words"),
+    ("ti lj/cut 1 v_f 3", "expected a variable"), ("ti lj/cutt 1 v_f v_g", "did you mean lj/cut"), ("ti kspace 1 v_f v_g", "no kspace"),
+    ("ti tail 1 v_f v_g", "for all types"), ("ti", "at least one"), ("contact/atom c", "unknown group"),
 ])
 def test_mistakes(crystal, line, message):
     with pytest.raises(InputError, match=message):
@@ -203,7 +213,7 @@ def test_beyond_the_pair_style(crystal, line, kind):
 
 @pytest.fixture(scope="module")
 def crystal():
-    lmp = ours([line for line in SCENES["crystal"].splitlines() if line] + ["run 0"])
+    lmp = ours([line for line in SCENES["crystal"].splitlines() if line] + [*HELPERS, "run 0"])
     yield lmp
     lmp.close()
 
@@ -247,3 +257,15 @@ def test_rdf_of_mdanalysis(crystal):
     scale = (state.system.n - 1) / state.system.n       # it divides by all atoms, the central one too
     np.testing.assert_allclose(g[:, 0], theirs.bins, rtol=1e-6)
     np.testing.assert_allclose(g[:, 1] * scale, theirs.rdf, rtol=2e-2, atol=5e-2)      # single precision moves pairs to the next bin
+
+
+def test_voronoi_cells_fill_the_box():
+    """Also those of few atoms, with walls, and where copies of an atom touch."""
+    from asemd.box import Box
+    from asemd.compute.voronoi_atom import _cells
+    rng = np.random.default_rng(5)
+    for n, boundary in ((1, "pp"), (2, "pp"), (30, "pp"), (30, "ff")):
+        box = Box.from_lammps((0, 0, 0), (3.0, 4.0, 5.0), tilt=(0.0, 0.0, 0.0), boundary=("pp", "pp", boundary))
+        system = SimpleNamespace(x=rng.uniform(0.0, 1.0, (n, 3)) * [3, 4, 5], box=box, dimension=3)
+        cells = _cells(system, np.arange(n), np.ones(n, bool), 0.0)
+        assert sum(volume for _, volume, _ in cells) == pytest.approx(60.0, rel=1e-12), (n, boundary)

@@ -17,6 +17,9 @@ CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 PARTIAL = {
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
+    ("compute", "group/group"): "no kspace",
+    ("compute", "ti"): "pair styles and the whole tail correction",
+    ("compute", "voronoi/atom"): "no occupation, no radius",
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",

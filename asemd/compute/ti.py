@@ -1,0 +1,109 @@
+r"""Derivative of the energy by a coupling parameter, for thermodynamic integration.
+
+.. math:: \frac{dU}{d\lambda} = \sum \frac{U_s}{f(\lambda)} \frac{df}{d\lambda}
+
+summed over terms: pair styles whose energy :math:`U_s` is scaled by :math:`f(\lambda)` (as with fix adapt), and the tail correction. Of a
+pair style count the shares of the atoms of some types. A term whose f is zero counts as zero.
+
+Source: LAMMPS manual, compute ti; Eike and Maginn, J. Chem. Phys. 124, 164503 (2006). Units: energy.
+"""
+from __future__ import annotations
+
+from asemd.compute import Compute
+from asemd.compute._pairs import force_cutoff, half, interactions
+from asemd.errors import InputError, nearest
+from asemd.registry import plain_name
+from asemd.words import bounds, take
+
+
+class TI(Compute):
+    """Derivative by a coupling parameter.
+
+    Parameters
+    ----------
+    group : str
+        Makes no difference.
+    terms : sequence of (name, types, f, slope)
+        Pair style or ``tail``, type or range, names of equal-style variables (``v_name``).
+    variables : asemd.variable.Variables
+        Where they are.
+
+    Raises
+    ------
+    InputError
+        No terms; variables that are missing or of another style; a pair style that is not in use (when it is evaluated).
+    """
+
+    style = "ti"
+    extensive = True
+    needs = frozenset({"energy"})
+
+    def __init__(self, group: str = "all", terms=(), variables=None):
+        super().__init__(group)
+        if not terms:
+            raise InputError("compute ti needs at least one term: pair style, types, v_name1, v_name2")
+        self.terms, self.variables = [(plain_name(name), str(types), f, slope) for name, types, f, slope in terms], variables
+        for *_, f, slope in self.terms:
+            for word in (f, slope):
+                if not word.startswith("v_"):
+                    raise InputError(f"compute ti: expected a variable v_name, got {word!r}")
+                if variables is None or variables.find(word[2:]).style != "equal":
+                    raise InputError(f"compute ti: variable {word[2:]} must have the style equal")
+
+    def __getstate__(self):
+        return {**self.__dict__, "variables": None}
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        if len(words) % 4:
+            raise InputError(f"compute ti: each term needs 4 words (pair style, types, v_name1, v_name2), got {' '.join(words)}")
+        terms = [take(words[k:], 4, "compute ti") for k in range(0, len(words), 4)]
+        for name, *_ in terms:
+            if name == "kspace":
+                raise InputError("compute ti kspace: there is no kspace style")
+        out = cls(group, terms, session.variables)
+        for name, types, *_ in out.terms:
+            if name != "tail":
+                _chosen(session.scene.interactions, name)
+            low, high = _types(session.scene.need_system("compute ti"), types)
+            if name == "tail" and (low, high) != (1, session.scene.system.counts["ntypes"]):
+                raise InputError("compute ti tail: the tail correction is one number for all types: use tail *")
+        return out
+
+    def to_lammps(self) -> list[str]:
+        return [word for term in self.terms for word in term]
+
+    def scalar(self, state) -> float:
+        """dU/dlambda."""
+        if self.variables is None:
+            raise InputError(f"compute {self.id or 'ti'}: its variables need a session")
+        total, pairs = 0.0, None
+        for name, types, f, slope in self.terms:
+            scale, change = self.variables.number(f[2:]), self.variables.number(slope[2:])
+            if scale == 0.0:
+                continue
+            low, high = _types(state.system, types)
+            if name == "tail":
+                energy = state.result.energy["etail"]
+            else:
+                if pairs is None:
+                    pairs = half(state, force_cutoff(state, "compute ti"))
+                uses = _chosen(state.engine.interactions, name)
+                values, _ = interactions(state, pairs, only=lambda term, uses=uses: any(term.use is use for use in uses))
+                inside = (low <= state.system.type) & (state.system.type <= high)
+                energy = float((0.5 * values * (inside[pairs.i].astype(float) + inside[pairs.j])).sum())
+            total += energy / scale * change
+        return total
+
+
+def _types(system, word: str) -> tuple[int, int]:
+    return bounds(word, 1, system.counts["ntypes"], "compute ti: type", system.labels.get("atom"))
+
+
+def _chosen(interactions, name: str) -> list:
+    """The pair styles of that name; all of them for that of the hybrid."""
+    uses = interactions.uses["pair"]
+    mine = [use for use in uses if use.style.name == name or name == interactions.style_name("pair")]
+    if not mine:
+        raise InputError(f"compute ti: pair style {name} is not in use{nearest(name, [use.style.name for use in uses])}")
+    return mine

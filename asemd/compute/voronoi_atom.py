@@ -1,0 +1,205 @@
+"""Voronoi cell of each atom: volume and number of faces; surfaces, histograms of edges and lists of neighbours too.
+
+Cells are those of ``scipy.spatial.Voronoi`` with copies of the atoms around the box; faces that are not periodic end the cells. In two
+dimensions the box is one layer, whose copies give every cell two faces more. Source: LAMMPS manual, compute voronoi/atom. Units: volume,
+area.
+"""
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from asemd.compute import Compute
+from asemd.errors import InputError, nearest
+from asemd.words import number, take, whole, yes_no
+
+KEYWORDS = ("only_group", "surface", "edge_histo", "edge_threshold", "face_threshold", "neighbors", "peratom")
+CLOSED = 1e-9       # edges shorter than this, relative to the largest cell width, are points
+
+
+class VoronoiAtom(Compute):
+    """Voronoi cells.
+
+    Parameters
+    ----------
+    group : str
+        The atoms it reports.
+    only_group : bool
+        As if there were no atoms outside the group.
+    surface : str, optional
+        The area of the faces towards atoms of this group becomes a third column.
+    edge_histo : int, optional
+        Count faces by their number of edges up to this one, as a global vector; the last element has those with more.
+    edge_threshold, face_threshold : float
+        Shorter edges and smaller faces are not counted (in the histogram all faces are).
+    neighbors : bool
+        Local rows: ID of an atom, of its neighbour, area of their face; 0 stands for a wall.
+
+    Raises
+    ------
+    InputError
+        Negative thresholds.
+    """
+
+    style = "voronoi/atom"
+
+    def __init__(self, group: str = "all", only_group: bool = False, surface: str | None = None, edge_histo: int | None = None,
+                 edge_threshold: float = 0.0, face_threshold: float = 0.0, neighbors: bool = False, peratom: bool = True):
+        super().__init__(group)
+        if edge_threshold < 0.0 or face_threshold < 0.0 or (edge_histo is not None and edge_histo < 1):
+            raise InputError("compute voronoi/atom: thresholds must not be negative, and edge_histo must be positive")
+        self.only_group, self.surface, self.edge_histo, self.neighbors, self.peratom = only_group, surface, edge_histo, neighbors, peratom
+        self.edge_threshold, self.face_threshold = edge_threshold, face_threshold
+        self._last: tuple = (None, None)
+
+    def __getstate__(self):
+        return {**self.__dict__, "_last": (None, None)}
+
+    @classmethod
+    def from_lammps(cls, group, words, session):
+        rest, given, what = list(words), {}, "compute voronoi/atom"
+        while rest:
+            word = rest.pop(0)
+            if word in ("occupation", "radius"):
+                raise InputError(f"{what} {word} is not supported: run this script with LAMMPS")
+            if word not in KEYWORDS:
+                raise InputError(f"{what}: unknown keyword {word!r}{nearest(word, KEYWORDS)}")
+            if word == "only_group":
+                given[word] = True
+                continue
+            value = take(rest, 1, f"{what} {word}")[0]
+            rest.pop(0)
+            if word == "surface":
+                session.scene.groups.mask(value, what)
+                given[word] = value
+            elif word == "edge_histo":
+                given[word] = whole(value, f"{what} {word}")
+            elif word in ("neighbors", "peratom"):
+                given[word] = yes_no(value, f"{what} {word}")
+            else:
+                given[word] = number(value, f"{what} {word}")
+        return cls(group, **given)
+
+    def to_lammps(self) -> list[str]:
+        out = ["only_group"] * self.only_group + (["surface", self.surface] if self.surface else [])
+        out += ["edge_histo", str(self.edge_histo)] if self.edge_histo else []
+        out += ["edge_threshold", repr(self.edge_threshold), "face_threshold", repr(self.face_threshold)]
+        return [*out, "neighbors", "yes" if self.neighbors else "no", "peratom", "yes" if self.peratom else "no"]
+
+    def per_atom_columns(self) -> int:
+        return 2 + (self.surface is not None)
+
+    def local_columns(self):
+        return 3 if self.neighbors else None
+
+    def cells(self, state) -> list[tuple[int, float, list[tuple[int, float, int]]]]:
+        """Of each atom of the group: its row, volume, and faces (row of the neighbour or -1, area, number of edges)."""
+        if self._last[0] is state:
+            return self._last[1]
+        mask = state.mask(self.group)
+        rows = np.flatnonzero(mask) if self.only_group else np.arange(state.system.n)
+        out = [] if not len(rows) else _cells(state.system, rows, mask[rows], self.edge_threshold)
+        self._last = (state, out)
+        return out
+
+    def per_atom(self, state) -> np.ndarray:
+        """(n, 2 or 3) volume, number of faces, area towards the other group; zero outside the group."""
+        if not self.peratom:
+            return super().per_atom(state)
+        out = np.zeros((state.system.n, self.per_atom_columns()))
+        towards = state.mask(self.surface) if self.surface else None
+        for row, volume, faces in self.cells(state):
+            counted = [face for face in faces if face[1] > self.face_threshold]
+            out[row, :2] = volume, len(counted)
+            if self.surface:
+                out[row, 2] = sum(area for other, area, _ in faces if area >= self.face_threshold and (other < 0 or towards[other]))
+        return out
+
+    def vector(self, state) -> np.ndarray:
+        """(edge_histo + 1,) faces by their number of edges."""
+        if self.edge_histo is None:
+            return super().vector(state)
+        edges = [n for _, _, faces in self.cells(state) for _, _, n in faces if n > 0]
+        return np.bincount(np.minimum(np.array(edges, int), self.edge_histo + 1) - 1, minlength=self.edge_histo + 1).astype(float)
+
+    def local(self, state) -> np.ndarray:
+        """(m, 3) ID of an atom, of its neighbour, area of the face."""
+        if not self.neighbors:
+            return super().local(state)
+        ids = state.system.id
+        rows = [(ids[row], ids[other] if other >= 0 else 0, area) for row, _, faces in self.cells(state) for other, area, _ in faces
+                if area > self.face_threshold]
+        return np.array(rows, float).reshape(-1, 3)
+
+
+def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float) -> list:
+    """Cells among the atoms `rows` of those that are `wanted`; see `VoronoiAtom.cells`."""
+    from scipy.spatial import Voronoi
+    box, periodic = system.box, np.array(system.box.periodic, bool)
+    x, image = system.x[rows].copy(), np.zeros((len(rows), 3), np.int32)
+    if system.dimension == 2:
+        periodic[2] = True
+    box.wrap(x, image)
+    s = (x - box.origin) @ box.inverse
+    widths = 1.0 / np.linalg.norm(box.inverse, axis=0)
+    reach = 2.5 * (box.volume / len(rows)) ** (1 / 3)
+    while True:
+        points, owner = _surrounded(s, periodic, reach / widths)
+        found = Voronoi(points @ box.cell + box.origin)
+        far = _furthest(found, np.flatnonzero(wanted))
+        if 2.0 * far <= reach:      # no atom beyond can cut a cell
+            break
+        reach = 2.1 * far if np.isfinite(far) else 2.0 * reach
+    faces: dict[int, list] = {k: [] for k in np.flatnonzero(wanted).tolist()}
+    volume = dict.fromkeys(faces, 0.0)
+    tiny = max(CLOSED * float(widths.max()), shortest)
+    for (a, b), corners in zip(found.ridge_points, found.ridge_vertices, strict=True):
+        if a not in faces and b not in faces:
+            continue
+        v = found.vertices[corners]
+        area = 0.5 * float(np.linalg.norm(np.cross(v[1:-1] - v[0], v[2:] - v[0]).sum(axis=0)))
+        length = np.linalg.norm(v - np.roll(v, 1, axis=0), axis=1)
+        height = 0.5 * float(np.linalg.norm(found.points[a] - found.points[b]))
+        for one, other in ((int(a), int(b)), (int(b), int(a))):
+            if one in faces:
+                volume[one] += area * height / 3.0
+                faces[one].append((int(rows[owner[other]]) if owner[other] >= 0 else -1, area, int((length > tiny).sum())))
+    least = (CLOSED * float(widths.max())) ** 2
+    return [(int(rows[k]), volume[k], [f for f in faces[k] if f[1] > least]) for k in faces]
+
+
+def _surrounded(s: np.ndarray, periodic: np.ndarray, margin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fractional positions with copies as far as `margin` around the box, and whose copies they are.
+
+    Walls are mirrors: the cells of an atom and its mirror image meet in the wall; such images belong to nobody (-1).
+    """
+    points, owner = s, np.arange(len(s))
+    for a in range(3):
+        copies, owners = [points], [owner]
+        if periodic[a]:
+            for k in itertools.chain(range(-int(np.ceil(margin[a])), 0), range(1, int(np.ceil(margin[a])) + 1)):
+                copies.append(points + k * np.eye(3)[a])
+                owners.append(owner)
+        else:
+            for wall in (0.0, 1.0):
+                mirrored = points.copy()
+                mirrored[:, a] = 2.0 * wall - points[:, a]
+                copies.append(mirrored)
+                owners.append(np.full(len(points), -1))
+        points, owner = np.concatenate(copies), np.concatenate(owners)
+        near = (points[:, a] > -margin[a]) & (points[:, a] < 1.0 + margin[a])
+        near[:len(s)] = True
+        points, owner = points[near], owner[near]
+    return points, owner
+
+
+def _furthest(found, atoms: np.ndarray) -> float:
+    """The largest distance of a corner from its atom; infinite for an open cell."""
+    far = 0.0
+    for k in atoms:
+        region = found.regions[found.point_region[k]]
+        if -1 in region or not region:
+            return np.inf
+        far = max(far, float(np.linalg.norm(found.vertices[region] - found.points[k], axis=1).max()))
+    return far
