@@ -372,7 +372,7 @@ class Loop:
         e = self.engine
         e.bonds.hold(False)
         self.sync_in()
-        if not e.k.moved(e.state.x, e.held, e.ns) <= (0.5 * self.settings.skin) ** 2:
+        if not e.k.moved(e.state.x, e.held, e.ns) <= max(0.0, 0.5 * (self.settings.skin - corner_moves(e.state.box))) ** 2:
             e.rebuild()
             self._make_module()
         e.forces(True)

@@ -51,14 +51,30 @@ CASES = {
                        ["c_c", *(f"c_c[{k}]" for k in range(1, 8)), "c_d", "c_d[7]", "press"]),
     "deform v lengths": ([NVE, "fix 2 all deform 1 x erate 0.004 y trate -0.004 z volume remap v"], BOX),
 }
+RELAX = {
+    "relax iso": (["fix 1 all box/relax iso 1000.0 vmax 0.001"], ["f_1", *BOX]),
+    "relax aniso": (["min_style sd", "fix 1 all box/relax aniso 1000.0 vmax 0.002 fixedpoint 0 0 0"], ["f_1", *BOX]),
+    "relax couple": (["fix 1 all box/relax x 1000.0 y 1000.0 z 500.0 couple xy vmax 0.002 nreset 2"], ["f_1", *BOX]),
+    "relax partial": (["min_modify line backtrack", "fix 1 some box/relax x 0.0 dilate partial"], ["f_1", *BOX]),
+    "relax tri": (["change_box all triclinic", "fix 1 all box/relax tri 1000.0 vmax 0.001"], ["f_1", *BOX]),
+    "relax stress": (["change_box all triclinic xy final 1.0 xz final -0.5", "min_modify norm max",
+                      "fix 1 all box/relax x 1000.0 y 500.0 xy 200.0 scalexz no vmax 0.001 nreset 3"], ["f_1", *BOX]),
+    "relax 2d": (["fix 1 all box/relax iso 1000.0 vmax 0.001", "fix 2 all enforce2d"], ["f_1", *BOX]),
+}
 
 
 @pytest.fixture(scope="module")
 def cases(tmp_path_factory):
     folder = tmp_path_factory.mktemp("boxes")
-    write_data(folder / "data3")
-    return {name: {"data": str(folder / "data3"), "commands": commands, "values": values, "runs": ["run 20", "run 30 start 0 stop 60"]}
-            for name, (commands, values) in CASES.items()}
+    out = {}
+    for dimension in (2, 3):
+        write_data(folder / f"data{dimension}", dimension)
+    for table, runs in ((CASES, ["run 20", "run 30 start 0 stop 60"]), (RELAX, ["minimize 0 0 6 100", "minimize 0 0 4 100"])):
+        for name, (commands, values) in table.items():
+            dimension = 2 if "2d" in name else 3
+            out[name] = {"data": str(folder / f"data{dimension}"), "dimension": dimension, "commands": commands, "values": values,
+                         "runs": runs}
+    return out
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +84,7 @@ def expected(cases, tmp_path_factory):
     return by_lammps(cases, tmp_path_factory.mktemp("lammps"))
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", [*CASES, *RELAX])
 def test_like_lammps(name, cases, expected):
     from asemd.lammps import Lammps
     for ours, theirs in zip(measure(Lammps, cases[name]), expected[name], strict=True):

@@ -30,6 +30,7 @@ def session_of(triclinic: bool, boundary=("pp", "pp", "pp"), dimension: int = 3)
     "deform 1 yz variable v_d v_e remap x flip yes units box", "deform 1 remap v flip yes units box",
     "nvt/sllod temp 1.0 2.0 0.5 tchain 1 tloop 1 psllod no", "nvt/sllod temp 1.0 2.0 0.5 tchain 3 tloop 1 drag 0.1 psllod yes",
     "heat 1 0.5", "heat 2 v_d region half", "ehex 1 0.5 region half hex", "ehex 10 -0.5", "accelerate/cos 0.1",
+    "box/relax x 1.0 y 1.0 couple xy dilate partial vmax 0.001 nreset 5 scaleyz no scalexz yes scalexy no fixedpoint 0.0 1.0 0.0",
     "viscosity 10 x z 20 swap 2 vtarget 1.5", "viscosity 10 y x 4 swap 1 vtarget INF", "thermal/conductivity 10 z 20 swap 3",
 ])
 def test_round_trip(line):
@@ -54,6 +55,10 @@ def test_round_trip(line):
     ("heat 1 1.0 region half 3", "region ID"), ("heat 1 v_q", "undefined variable q"), ("ehex 1", "2 values"), ("ehex 0 1", "at least 1"),
     ("ehex 1 v_d", "number"), ("ehex 1 1 constrain", "fix shake"), ("ehex 1 1 com", "fix shake"), ("ehex 1 1 hexe", "did you mean hex"),
     ("ehex 1 1 region", "1 value"), ("accelerate/cos", "1 value"), ("accelerate/cos 1 2", "1 value"), ("accelerate/cos x", "number"),
+    ("box/relax", "target pressure"), ("box/relax couple xyz", "target pressure for each|needs a target"), ("box/relax iso", "1 value"),
+    ("box/relax iso 1 vmax 0", "vmax"), ("box/relax iso 1 nreset -1", "nreset"), ("box/relax x 1 y 2 couple xy", "same target"),
+    ("box/relax x 1 couple xy", "each of these"), ("box/relax iso 1 dilate some", "dilate"), ("box/relax iso 1 foo 2", "unknown keyword"),
+    ("box/relax xy 1 scalexy yes", "relaxed and scaled"), ("box/relax iso 1 fixedpoint 0 0", "3 values"),
     ("viscosity 10 x z", "4 values"), ("viscosity 0 x z 4", "at least 1"), ("viscosity 10 w z 4", "vdim"), ("viscosity 10 x w 4", "pdim"),
     ("viscosity 10 x z 5", "even"), ("viscosity 10 x z 2", "at least 4"), ("viscosity 10 x z 4 swap 0", "swap"),
     ("viscosity 10 x z 4 vtarget 0", "positive"), ("viscosity 10 x z 4 vtarget", "1 value"),
@@ -75,6 +80,14 @@ def test_errors(line, message):
 def test_boxes_that_cannot_be_deformed(line, session, message):
     with pytest.raises(InputError, match=message):
         asemd.fix.Deform.from_lammps("all", line.split(), session)
+
+
+@pytest.mark.parametrize(("words", "session", "message"), [
+    ("xy 1", session_of(False), "triclinic"), ("x 1", session_of(False, ("ff", "pp", "pp")), "direction x is not periodic"),
+    ("z 1", session_of(False, dimension=2), "two dimensions"), ("xz 1", session_of(True, ("pp", "pp", "ff")), "direction z")])
+def test_boxes_that_cannot_be_relaxed(words, session, message):
+    with pytest.raises(InputError, match=message):
+        asemd.fix.BoxRelax.from_lammps("all", words.split(), session)
 
 
 def test_acceleration_in_two_dimensions():

@@ -61,6 +61,9 @@ class Problem:
         if thermodynamic output is normalised (units lj), else 1.
     shown : callable, optional
         ``iteration -> bool``: whether output is due, which wants energy and forces where the iteration ends (hftn takes steps back).
+    box : object, optional
+        If rows of `x0` behind those of the atoms are a box (cg and sd): ``start(x)`` is told of each line search, ``longest(direction)``
+        gives its longest step, ``accept(iteration, x)`` whether the energy has another reference after it, `n` the number of atoms.
     """
 
     x0: np.ndarray
@@ -70,6 +73,7 @@ class Problem:
     units: Any = None
     norm: float = 1.0
     shown: Callable[[int], bool] | None = None
+    box: Any = None
 
     @property
     def ftm2v(self) -> float:

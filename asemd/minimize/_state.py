@@ -96,16 +96,23 @@ class State:
         slope = float(np.vdot(self.f, h)) / self.problem.norm
         if slope <= 0.0:
             return DOWNHILL
-        largest = float(np.abs(h).max())
-        if largest == 0.0:
+        box = self.problem.box
+        if not h.any():
             return ZEROFORCE
-        alpha = self.options.dmax / largest
+        largest = float(np.abs(h if box is None else h[:box.n]).max())
+        alpha = self.options.dmax / largest if largest > 0.0 else ALPHA_MAX
         if self.options.line != "forcezero":
             alpha = min(ALPHA_MAX, alpha)
+        if box is not None:
+            alpha = min(alpha, box.longest(h))
+            box.start(self.x)
         lines = {"quadratic": self._quadratic, "backtrack": self._backtrack, "forcezero": self._force_zero}
         if self.options.line not in lines:
             raise InputError(f"min_modify line {self.options.line} is for spins, which are not supported: choose {' '.join(lines)}")
-        return lines[self.options.line](h, slope, alpha)
+        why = lines[self.options.line](h, slope, alpha)
+        if box is not None and not why and box.accept(self.iterations, self.x):
+            self._look()
+        return why
 
     def _slope(self, h: np.ndarray) -> float:
         return float(np.vdot(self.f, h)) / self.problem.norm

@@ -3,12 +3,10 @@ from __future__ import annotations
 
 import time
 
-import numpy as np
-
 from asemd.errors import InputError
 from asemd.lammps import log, restart, setup_log
 from asemd.lammps.driver import Driver, Plan, check, memory
-from asemd.lammps.live_coefficients import live_coefficients
+from asemd.lammps.landscape import BoxLandscape, Landscape
 from asemd.minimize import WALLTIME, Problem, find
 from asemd.moment import Progress
 from asemd.words import number, whole
@@ -27,33 +25,6 @@ def run(session, args):
     if session.switches.cap is not None:
         limits[0] = min(limits[0], session.switches.cap)
     Minimization(session, etol, ftol, *limits).run()
-
-
-class Landscape:
-    """Energy and forces as a function of unwrapped positions, with the fixes that act in minimisations.
-
-    The neighbour list is rebuilt only when some atom has moved more than half the skin.
-    """
-
-    def __init__(self, loop, session):
-        self.loop, self.system, self.session = loop, loop.system, session
-        self.live = live_coefficients(session)
-        self.image = loop.system.image.copy()
-        self.step = loop.step
-        self.next_step = loop.step + 1
-        self.x0 = loop.system.x.copy()
-
-    def __call__(self, x: np.ndarray) -> tuple[float, np.ndarray]:
-        loop, system = self.loop, self.system
-        system.x[:] = x - (system.image - self.image) @ system.box.cell
-        for fix in self.live:       # variables see the step of the iteration
-            loop.step = self.session.scene.step = system.step = self.step
-            self.session.moment.forget()
-            fix.update(loop)
-            self.step = self.next_step
-        result = loop.evaluate()
-        fixes = sum(f.scalar() for f in loop.fixes if f.thermo_energy)
-        return result.potential + fixes, system.f
 
 
 class Minimization(Driver):
@@ -130,7 +101,12 @@ class Minimization(Driver):
         self._watch("start", self.plan.steps)
         self.progress.started = time.perf_counter()
         self.output_seconds = 0.0
-        landscape = Landscape(loop, session)
+        relax = [f for f in loop.fixes if f.style == "box/relax"]
+        if len(relax) > 1:
+            raise InputError("minimize: there is more than one fix box/relax")
+        if relax and scene.min_style not in ("cg", "sd"):
+            raise InputError(f"minimize: fix box/relax does not work with min_style {scene.min_style}; use cg or sd")
+        landscape = BoxLandscape(loop, session, relax[0]) if relax else Landscape(loop, session)
         system, norm = scene.system, scene.thermo.is_normalised(scene.units)
         def due(step: int) -> bool:
             return self._is_thermo(step) or any(d.schedule.next == step for d in scene.dumps.values())
@@ -139,7 +115,7 @@ class Minimization(Driver):
             return iteration == self.plan.steps or due(begin + iteration) or restart.due(session, begin + iteration)
 
         problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0,
-                          shown)
+                          shown, landscape if relax else None)
 
         def look(iteration: int, x, v, energy, forces) -> bool | str:
             loop.step = loop._collected = scene.step = begin + iteration
