@@ -16,6 +16,8 @@ from asemd.fix.addforce import AddForce
 from asemd.fix.setforce import SetForce
 from asemd.loop import Loop
 
+ROUND_OFF = 1e-13       # positions that change by less, relative to the largest, have only been wrapped
+
 
 class MolecularDynamics(ASEMolecularDynamics):
     """Dynamics of ``ase.Atoms`` with a `ForceField` under a list of fixes.
@@ -110,8 +112,11 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._loop.say = print
         self._loop.watchdog.on = self.watchdog
         self._loop.watchdog.path, self._loop.watchdog.save = self._last_good, self._save
+        before = system.box.unwrap(system.x, system.image)
         self._loop.setup(self.nsteps, self.nsteps + steps)
-        self._from = atoms.get_positions(), system.box.unwrap(system.x, system.image)
+        here = system.box.unwrap(system.x, system.image)
+        moved = np.where(abs(here - before) > ROUND_OFF * abs(here).max(initial=0.0), here - before, 0.0)      # by constraints
+        self._from = atoms.get_positions() + moved * unit_styles.factor("distance", calc.units), here
         return self._loop
 
     # ---- loop -> atoms ------------------------------------------------------------------------------------------------------------------

@@ -15,7 +15,6 @@ CASES = {
     "frozen CH2": ([NVE, "fix s all shake 1e-5 20 0 b 1 2 a 1 2"], PLAIN),
     "types and masses": ([NVE, "fix s all shake 1e-5 20 0 t 2 a 1"], PLAIN),
     "masses": ([NVE, "fix s water shake 1e-5 20 0 m 1.0 a 1"], ["run 40"]),
-    "before other fixes": ([f"fix s all shake 1e-5 20 0 {ALL}", "fix 2 all addforce 0.1 0.0 0.2", NVE], ["run 40"]),
     "nvt": (["fix 1 all nvt temp 300 300 50", f"fix s all shake 1e-5 20 0 {ALL}", "velocity all create 300 4711 dist gaussian"], PLAIN),
     "no virial": ([NVE, f"fix s all shake 1e-5 20 0 {ALL}", "fix_modify s virial no"], ["run 20"]),
     "unfix": ([NVE, f"fix s all shake 1e-5 20 0 {ALL}", "run 10", "unfix s"], ["run 20"]),
@@ -26,7 +25,6 @@ CASES = {
     "minimise no energy": ([f"fix s all shake 1e-5 20 0 {ALL} kbond 500.0", "fix_modify s energy no virial no"], ["minimize 0 0 5 50"]),
     "rattle": ([NVE, f"fix s all rattle 1e-6 100 0 {ALL}"], PLAIN),
     "rattle loose": ([NVE, "fix s all rattle 1e-4 4 0 b 1 2 4 a 1 2", "timestep 2"], PLAIN),
-    "rattle nvt": (["fix 1 all nvt temp 300 300 50", f"fix s all rattle 1e-5 20 0 {ALL}"], PLAIN),
     "rattle minimise": ([f"fix s all rattle 1e-5 20 0 {ALL} kbond 2000.0"], ["minimize 0 0 5 50"], ENERGIES),
     "tilted": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}"], ["run 40"]),
 }

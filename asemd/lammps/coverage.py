@@ -38,6 +38,8 @@ PARTIAL = {
     ("dump", "local"): "no local values of fixes",
     ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "langevin"): "no omega, angmom",
+    ("fix", "shake"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
+    ("fix", "rattle"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
 }
 # names that are read but do nothing useful yet
 REFUSED = registry.REFUSED
