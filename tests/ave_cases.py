@@ -115,10 +115,31 @@ fix p2 all property/atom q ghost yes writedata no
 set atom 3*7 d_a 3.25 i_b 4 d2_c[2] 7.5 mol 5 charge 0.25
 set atom 2 d_a v_ax
 variable x atom d_a+i_b+d2_c[2]
-variable y equal d2_c[4][2]+d_a[4]+i_b[5]
+variable y equal d_a[4]+i_b[5]
 dump d all custom 10 dump.txt id mol q d_a i_b d2_c[1] d2_c[2] v_x
 dump_modify d sort id
 thermo_style custom step temp v_y
+""",
+    "controller": """
+variable c internal 1.5
+fix k all controller 5 0.7 0.5 0.02 0.3 c_t 1.0 c
+variable p equal pe
+variable c2 internal 0.0
+fix k2 all controller 10 1.0 0.5 0.02 0.3 v_p -5 c2
+variable cc equal v_c
+variable cc2 equal v_c2
+thermo_style custom step temp pe v_cc v_cc2
+run 20
+thermo_style custom step temp pe v_cc f_k[1] f_k[2] f_k[3] v_cc2
+""",
+    "adapt": """
+variable e equal ramp(1.0,1.3)
+variable f equal 1.0+0.002*step
+fix ad all adapt 2 pair lj/cut epsilon * * v_e
+fix ad2 all adapt 5 pair lj/cut sigma 1 * v_f scale yes reset yes
+dump d all custom 10 dump.txt id x vx fx
+dump_modify d sort id
+run 10 start 0 stop 40
 """,
 }
 # words after ``fix x all`` and what the message must have
@@ -140,6 +161,11 @@ REFUSED = {
     "ave/chunk 2 3 10 t vx": "not chunk/atom", "ave/chunk 2 3 10 none vx": "no compute none", "property/atom": "at least one property",
     "property/atom foo": "unknown", "property/atom d2_c": "columns", "property/atom d2_c 0": "at least 1", "property/atom i_a d_a": "twice",
     "property/atom d_a ghost": "yes or no",
+    "adapt 1": "at least one", "adapt 1 pair lj/cut epsilon 1": "needs 5 values", "adapt 1 pair lj/cut eps 1 1 v_v": "no coefficient 'eps'",
+    "adapt 1 pair lj/cutt epsilon 1 1 v_v": "no pair style", "adapt 1 pair lj/cut epsilon 1 3 v_v": "valid range",
+    "adapt 1 pair lj/cut epsilon 1 1 2.0": "v_name", "adapt 1 kspace v_v": "kspace", "adapt 1 atom charge v_v": "no charges",
+    "adapt -1 pair lj/cut epsilon 1 1 v_v": "negative", "controller 5 1 1 1 1 c_t 1": "needs 8 values",
+    "controller 0 1 1 1 1 c_t 1 c": "undefined variable c", "controller 5 1 1 1 1 c_t 1 v": "internal",
     "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
     "store/force 1": "no arguments",
 }

@@ -36,6 +36,7 @@ PARTIAL = {
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("dump", "local"): "no local values of fixes",
+    ("fix", "adapt"): "no kspace, no scale of Coulomb styles, no cutoffs",
     ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "langevin"): "no omega, angmom",
     ("fix", "shake"): "run_style verlet; mol is read, but no fix puts in molecules that are held",

@@ -177,7 +177,8 @@ class Driver:
             loop.warn, loop.say = session.warn, session.later.append        # what is said in the set-up comes after the list
             loop.watchdog.on = session.switches.watchdog
             loop.watchdog.path = f"{session.log.path}.last_good.dump" if os.path.isfile(session.log.path or "") else ""
-            loop.setup(plan.first, plan.last, virial=True)
+            with session.in_a_run(Progress(begin=begin, first=plan.first, last=begin + plan.steps, stop=plan.last)):
+                loop.setup(plan.first, plan.last, virial=True)
             if state is not None:
                 checkpoint.resume(loop, state)
             setup_log.report_list(session, loop.engine)

@@ -303,6 +303,15 @@ class Session:
         """In the midst of a run: the present step of the loop is what formulas see, with energies and virials if it has them."""
         self.moment = Moment(self.scene, loop.snapshot(), self.variables.number, self.moment.progress, loop.engine)
 
+    @contextmanager
+    def in_a_run(self, progress: Progress):
+        """Formulas see a run that has this progress."""
+        self.moment.progress, self.running = progress, True
+        try:
+            yield
+        finally:
+            self.running = False
+
     def stale(self) -> None:
         """What was known about the last step no longer holds."""
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
