@@ -36,6 +36,8 @@ CASES = {
                     "fix 2 all deform 2 xy erate 0.03 yz erate -0.001 remap v"], ["f_1", *(f"f_1[{k}]" for k in range(1, 13))]),
     "sllod stretch": (["fix 1 all nvt/sllod temp 300 400 50", "compute t all temp/deform", "compute_modify t extra/dof 0",
                        "fix 2 all deform 1 y trate 0.001 x volume z volume remap v", "fix_modify 1 temp t"], ["f_1", "c_t"]),
+    "deform levels": ([TILTED, "run_style respa 2 2 bond 1 pair 2", "fix 2 all deform 2 xy erate 0.03 remap v",
+                       "fix 1 all nvt/sllod temp 300 300 50"], ["f_1", *BOX]),
     "heat": ([NVE, "fix 2 all heat 1 0.5"], ["f_2", "etotal"]),
     "heat region": ([NVE, "fix 2 all heat 2 -0.2 region half", "fix 3 some heat 3 0.1"], ["f_2", "f_3"]),
     "heat variables": ([NVE, "variable h equal 0.001*step", "fix 2 all heat 1 v_h", "fix 3 all heat 2 v_along region half"],

@@ -32,7 +32,6 @@ class AccelerateCos(Fix):
     """
 
     style = "accelerate/cos"
-    levels = "outermost"
 
     def __init__(self, group: str = "all", acceleration: float = 0.0):
         super().__init__(group)

@@ -74,34 +74,33 @@ class EHEX(Heat):
         return super().to_lammps() + ["hex"] * self.hex
 
     def chosen(self, loop) -> np.ndarray:
-        """(n,) which atoms it acts on now; those that have just left the box count where they come back."""
-        loop.sync_out()
-        mask, system = loop.groups[self.group], loop.system
+        """(m,) slots of the atoms it acts on now; those that have just left the box count where they come back."""
+        s = loop.state
+        slots = np.flatnonzero(s.mask[:loop.nslots] & np.int32(loop.group_bit(self.group)))
         if self.region is None:
-            return mask
-        x = system.x.copy()
-        system.box.wrap(x, system.image.copy())
-        return mask & self.region.inside(x)
+            return slots
+        x = s.x[:, slots].T.copy()
+        loop.system.box.wrap(x, np.zeros(x.shape, np.int32))
+        return slots[self.region.inside(x)]
 
     def end_of_step(self, loop) -> None:
         """Scale the velocities and correct the positions."""
-        mask, system, ftm2v = self.chosen(loop), loop.system, loop.units.ftm2v
-        mass, v, f = system.atom_masses()[mask], system.v[mask], system.f[mask] * ftm2v
+        slots, s, ftm2v = self.chosen(loop), loop.state, loop.units.ftm2v
+        mass, v, f = s.mass[slots], s.v[:, slots], s.f[:, slots] * ftm2v
         total = mass.sum()
         if not total > 0.0:
             raise SimulationError(f"step {loop.step}: fix {self.id} (style ehex): there are no atoms in region {self.region_id}")
-        drift = np.einsum("i,ij->j", mass, v) / total
+        drift = (v @ mass / total)[:, None]
         thermal = v - drift
-        kinetic = 0.5 * np.einsum("i,ij,ij->", mass, thermal, thermal)
+        kinetic = 0.5 * float((thermal * thermal).sum(axis=0) @ mass)
         power = self.rate * ftm2v * self.every
         square = 1.0 + power * loop.dt / kinetic if kinetic > 0.0 else -1.0
         if square < 0.0:
             raise SimulationError(f"step {loop.step}: fix {self.id} (style ehex): the kinetic energy went negative")
         self.factor = math.sqrt(square)
         if not self.hex:
-            work = np.einsum("ij,ij->", f, thermal)
+            work = float((f * thermal).sum())
             eta = 0.5 * power / kinetic * thermal
-            shift = eta / kinetic * (power / 48.0 + work / 6.0) - power / (12.0 * kinetic) * (f / mass[:, None] - f.sum(axis=0) / total)
-            system.x[mask] -= loop.dt**3 * shift
-        system.v[mask] = self.factor * v - (self.factor - 1.0) * drift
-        loop.sync_in()
+            shift = eta / kinetic * (power / 48.0 + work / 6.0)
+            s.x[:, slots] -= loop.dt**3 * (shift - power / (12.0 * kinetic) * (f / mass - f.sum(axis=1, keepdims=True) / total))
+        s.v[:, slots] = self.factor * v - (self.factor - 1.0) * drift

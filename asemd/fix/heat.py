@@ -68,27 +68,27 @@ class Heat(Fix):
             raise InputError(f"fix {self.id} (style {self.style}): group {self.group} has no atoms")
 
     def chosen(self, loop) -> np.ndarray:
-        """(n,) which atoms it acts on now."""
-        loop.sync_out()
-        mask = loop.groups[self.group]
-        return mask if self.region is None else mask & self.region.inside(loop.system.x)
+        """(m,) slots of the atoms it acts on now."""
+        s = loop.state
+        slots = np.flatnonzero(s.mask[:loop.nslots] & np.int32(loop.group_bit(self.group)))
+        return slots if self.region is None else slots[self.region.inside(s.x[:, slots].T)]
 
     def end_of_step(self, loop) -> None:
         """Scale the velocities."""
         rate = self.rate(loop) if callable(self.rate) else self.rate
-        mask, system, units = self.chosen(loop), loop.system, loop.units
-        mass, v = system.atom_masses()[mask], system.v[mask]
+        slots, s = self.chosen(loop), loop.state
+        mass, v = s.mass[slots], s.v[:, slots]
         total = mass.sum()
-        drift = np.einsum("i,ij->j", mass, v) / total if total > 0.0 else np.zeros(3)
-        thermal = 0.5 * np.einsum("i,ij,ij->", mass, v - drift, v - drift)
-        square = 1.0 + np.broadcast_to(rate, system.n)[mask] * self.every * loop.dt * units.ftm2v / thermal if thermal > 0.0 else None
-        if square is None or (square < 0.0).any():
-            raise SimulationError(f"step {loop.step}: fix {self.id} (style {self.style}): "
-                                  + ("there is no kinetic energy to scale" if square is None else "the kinetic energy went negative"))
+        thermal = v - (v @ mass / total)[:, None] if total > 0.0 else v
+        kinetic = 0.5 * float((thermal * thermal).sum(axis=0) @ mass)
+        if not kinetic > 0.0:
+            raise SimulationError(f"step {loop.step}: fix {self.id} (style {self.style}): there is no kinetic energy to scale")
+        square = 1.0 + (rate[s.row[slots]] if np.ndim(rate) else rate) * self.every * loop.dt * loop.units.ftm2v / kinetic
+        if np.min(square) < 0.0:
+            raise SimulationError(f"step {loop.step}: fix {self.id} (style {self.style}): the kinetic energy went negative")
         factor = np.sqrt(square)
-        self.factor = float(factor.mean()) if factor.size else 0.0
-        system.v[mask] = factor[:, None] * v - np.einsum("i,ij->j", mass * (factor - 1.0), v) / total
-        loop.sync_in()
+        self.factor = float(np.mean(factor))
+        s.v[:, slots] = factor * v - (v @ (mass * (factor - 1.0)) / total)[:, None]
 
     def scalar(self) -> float:
         """The last factor."""

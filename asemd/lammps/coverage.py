@@ -37,6 +37,8 @@ PARTIAL = {
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("dump", "local"): "no local values of fixes",
     ("fix", "adapt"): "no kspace, no scale of Coulomb styles, no cutoffs",
+    ("fix", "ehex"): "no constrain, com (clusters of fix shake)",
+    ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
     ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "langevin"): "no omega, angmom",
     ("fix", "shake"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
