@@ -68,7 +68,7 @@ EVERYWHERE = {
     "all orientorder/atom": "B", "half orientorder/atom nnn NULL degrees 2 4 6 wl yes wl/hat yes components 6 cutoff 1.5": "B",
     "all orientorder/atom nnn 5 degrees 2 1 3": "B",
     "all cna/atom 1.3": "A", "half cna/atom 1.5": "A",
-    "all centro/atom fcc": "A", "half centro/atom 6": "A",
+    "all ackland/atom": "A", "all ackland/atom legacy yes": "A", "all centro/atom fcc": "A", "half centro/atom 6": "A",
     "a cluster/atom 1.0": "A", "half cluster/atom 0.9": "A",
 }
 EVERYWHERE |= {
@@ -176,6 +176,7 @@ def ours(lines) -> Lammps:
     ("orientorder/atom nnn 0", "must be positive"),
     ("hexorder/atom degree -1", "must not be negative"), ("hexorder/atom nn 5", "did you mean nnn"),
     ("cna/atom", "needs 1 value"), ("cna/atom -1", "must not be negative"),
+    ("ackland/atom legacy", "needs 1 value"), ("ackland/atom old yes", "did you mean legacy"),
     ("centro/atom 7", "even positive"), ("centro/atom hcp", "whole number"),
     ("centro/atom fcc axis yes", "unknown keyword"), ("cluster/atom", "needs 1 value"), ("aggregate/atom 1", "with bonds"),
     ("pair lj/cuts", "did you mean lj/cut"), ("pair lj/cut eng", "one of epair"), ("pair lj/cut epair 1", "unexpected"),

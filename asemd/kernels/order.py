@@ -209,24 +209,36 @@ def bond_angles(atoms, start, vector, square, legacy, out):
         packed = abs(1.0 - chi[6] / 24.0)
         fcc = 0.61 * (abs(chi[0] + chi[1] - 6.0) + chi[2]) / 6.0
         hcp = (abs(chi[0] - 3.0) + abs(chi[0] + chi[1] + chi[2] + chi[3] - 9.0)) / 12.0
-        if chi[0] == 7:
-            bcc = 0.0
-        elif chi[0] == 6:
-            fcc = 0.0
-        elif chi[0] <= 3:
-            hcp = 0.0
         if legacy:
-            unknown = chi[7] > 0.0
-        else:
-            unknown = chi[7] > 0.0
-        if unknown:
-            continue
-        if chi[4] < 3.0:
-            out[i] = 4.0 if 11 <= wide <= 13 else 0.0
-        elif bcc <= packed:
-            out[i] = 1.0 if wide >= 11 else 0.0
-        elif 11 <= wide <= 12:
-            out[i] = 2.0 if fcc < hcp else 3.0
+            if chi[0] == 7:
+                bcc = 0.0
+            elif chi[0] == 6:
+                fcc = 0.0
+            elif chi[0] <= 3:
+                hcp = 0.0
+            if chi[7] > 0.0:
+                continue
+            if chi[4] < 3.0:
+                out[i] = 4.0 if 11 <= wide <= 13 else 0.0
+            elif bcc <= packed:
+                out[i] = 1.0 if wide >= 11 else 0.0
+            elif 11 <= wide <= 12:
+                out[i] = 2.0 if fcc < hcp else 3.0
+        elif chi[7] == 0.0 and near >= 11:
+            if chi[0] == 7:
+                out[i] = 1.0
+            elif chi[0] == 6:
+                out[i] = 2.0
+            elif chi[0] == 3:
+                out[i] = 3.0
+            elif near <= 12:
+                if wide == 12 and chi[4] < 3.0:
+                    out[i] = 4.0
+                elif wide <= 12 and bcc <= packed:
+                    out[i] = 1.0
+                else:
+                    out[i] = 2.0 if fcc < hcp else 3.0
+
 
 
 @njit(cache=True, nogil=True)
