@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scripted import by_lammps, have_lammps, measure, write_data
+from scripted import by_lammps, have_lammps, measure, script, write_data
 
 NVE = "fix 1 all nve"
 THREE, FOUR, SEVEN = ([f"f_2[{k}]" for k in range(1, n + 1)] for n in (3, 4, 7))
@@ -72,9 +72,14 @@ CASES = {
                        "fix 2 some move variable v_dx NULL NULL v_vx NULL v_vz"], []),
     **{f"indent {shape}": ([*more, f"fix 2 some indent 0.5 {shape}", "fix_modify 2 energy yes", NVE], ["f_2", *THREE, "pe"])
        for shape, more in (("sphere 6 1 5 4", []), ("sphere v_top 5 4 2.0 side in", ["variable top equal 1.0+0.1*step", "lattice sc 1.5"]),
-                           ("cylinder y 6 1 3 units box", []), ("cylinder x v_one 4 2 side in", ["lattice custom 1.1 a1 1 0 0 a2 0 2 0 a3 0 "
-                           "0 1.5 basis 0 0 0"]), ("plane y 4 lo", []), ("plane z v_one hi", ["lattice sc 11.0"]))},
+                           ("cylinder y 6 1 3 units box", []),
+                           ("cylinder x v_one 4 2 side in",
+                           ["lattice custom 1.1 a1 1 0 0 a2 0 2 0 a3 0 0 1.5 basis 0 0 0"]),
+                           ("plane y 4 lo", []), ("plane z v_one hi", ["lattice sc 11.0"]))},
 }
+# a fix that acts in Python, on nobody: only the hooks are compiled, not the loop around them
+BY_PYTHON = ["group nobody subtract all all", "fix 9 nobody setforce v_one NULL NULL"]
+COMPILED = ("gravity vector", "wall/lj93")
 CHARGES = ["set type 1 charge 0.5", "set type 2 charge -0.8", "set type 3 charge 0.2"]
 RUNS = ["run 20", "run 10 start 0 stop 60"]
 
@@ -91,7 +96,7 @@ def make_cases(folder) -> dict[str, dict]:
         dimension = 2 if "2d" in name else 3
         commands = [c.replace("TABLE", str(folder / "wall.table")) for c in commands]
         charged = "efield" in name
-        commands = CHARGES * charged + commands
+        commands = CHARGES * charged + commands + BY_PYTHON * (name not in COMPILED)
         out[name] = {"data": str(folder / ("charged" if charged else f"data{dimension}")), "dimension": dimension, "commands": commands,
                      "boundary": "f f f" if name.endswith(" f") else "p p p", "atom_style": "full" if charged else "bond",
                      "values": values, "runs": RUNS}
@@ -119,3 +124,18 @@ def test_like_lammps(name, cases, expected):
             assert abs(a - b).max() <= 2e-12 * abs(b).max(), key
         for formula, a, b in zip(cases[name]["values"], ours["values"], theirs["values"], strict=True):
             assert a == pytest.approx(b, rel=1e-10, abs=1e-9), formula
+
+
+def test_numerical_forces(cases):
+    from asemd.lammps import Lammps
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    more = ["group few id 3 17 40", "fix 1 all nve", "fix 2 few numdiff 2 1e-4", "run 3"]
+    for line in script(cases["aveforce"]["data"]).splitlines() + more:
+        if line.strip():
+            lmp.command(line)
+    fix, system = lmp.session.scene.fixes["2"], lmp.session.scene.system
+    assert not fix.values[system.id == 4].any()
+    lmp.command("run 1 pre no")       # on a multiple of 2, forces are those at the same positions
+    few = np.isin(system.id, (3, 17, 40))
+    assert abs(fix.values[few] - system.f[few]).max() < 1e-6 * abs(system.f).max()
+    lmp.close()
