@@ -39,14 +39,14 @@ def droplet(path, dt: float, steps: int, fix: str) -> np.ndarray:
     """Total energies of a droplet of water without cutoffs, 20 of them."""
     lmp = start(path, "pair_style lj/cut/coul/cut 40.0", "pair_coeff 1 1 0.1553 3.166", "pair_coeff * 2*3 0.0 1.0",
                 "change_box all boundary f f f", "change_box all x delta -100 100 y delta -100 100 z delta -100 100",
-                "fix 1 all nve", f"fix s all {fix}", "velocity all create 150 1234", "timestep 0.5", "run 400", "velocity all scale 150", f"timestep {dt}", "run 20")
+                "fix 1 all nve", f"fix s all {fix}", "velocity all create 150 1234", "timestep 0.5", "run 400",
+                "velocity all scale 150", f"timestep {dt}", "run 20")
     energies = []
     for _ in range(20):
         lmp.command(f"run {steps // 20}")
         energies.append(lmp.get_thermo("etotal"))
-    loop = lmp.session.loop if hasattr(lmp, "session") else None
-    if loop is not None:
-        assert loop.fixes[-1].constraint_error(loop) < 1e-6
+    loop = lmp.session.loop
+    assert loop.fixes[-1].constraint_error(loop) < 1e-6
     lmp.close()
     return np.array(energies)
 
@@ -177,3 +177,15 @@ def test_with_ase(data):
     d -= scene.LENGTH * np.round(d / scene.LENGTH)
     assert np.linalg.norm(d, axis=1) == pytest.approx(1.0, abs=1e-6)
     assert np.array_equal(before, atoms.topology.bond_types)
+
+
+def test_scripts_for_lammps(data):
+    """What LAMMPS knows is written, what it does not is refused; levels are refused."""
+    session = start(data / "data.across", "fix 1 all nve", f"fix s all shake 1e-4 20 0 {WATER}").session
+    from asemd.lammps import convert
+    session.execute("run_style respa 2 2 bond 1 pair 2")
+    with pytest.raises(InputError, match="respa does not work with fix s"):
+        session.execute("run 0")
+    session.execute(f"fix s all shake 1e-4 20 0 {WATER} settle yes")
+    with pytest.raises(InputError, match="settle of fix s"):
+        convert._of_lammps(session.scene)

@@ -1,6 +1,7 @@
 """Fix shake and rattle move atoms as LAMMPS does: every kind of cluster, several tolerances, with thermostats and minimisation."""
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import shake_scene as scene
 from shake_scene import ALL, NVE, VALUES
@@ -60,3 +61,23 @@ def test_like_lammps(name, cases, expected):
             assert abs(a - b).max() <= limit * abs(b).max(), (what, stretch)
         for formula, a, b in zip(cases[name][3], ours[3], theirs[3], strict=True):
             assert a == pytest.approx(b, rel=1e-8, abs=1e-6), (formula, stretch)
+
+
+def test_virials_of_atoms(cases):
+    """Each atom's share in the virial of its cluster."""
+    from asemd.lammps import Lammps
+    lines = [line for line in cases["all kinds"][0].splitlines() if line.strip()]
+    lines += [NVE, f"fix s all shake 1e-6 100 0 {ALL}", "compute s all stress/atom NULL virial", "thermo 10", "run 10"]
+    theirs = ask("""
+lmp = start()
+for line in given["lines"]:
+    lmp.command(line)
+answer = np.array(lmp.gather("c_s", 1, 6)).reshape(-1, 6)
+""", lines=lines)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in lines:
+        lmp.command(line)
+    seen = lmp.session.moment.snapshot
+    ours = lmp.session.scene.computes["s"].per_atom(seen)[np.argsort(seen.system.id)]
+    lmp.close()
+    assert abs(ours - theirs).max() < 1e-11 * abs(theirs).max()
