@@ -226,8 +226,8 @@ def evaluate(moment: Moment, word: str, norm: bool) -> float:
             raise InputError(f"unknown thermo keyword {word!r}{nearest(word, KEYWORDS)}")
         value = value_of(moment, *reference)
         source = {"c": moment.scene.computes, "f": moment.scene.fixes, "v": {}}[reference[0]].get(reference[1])
-        if reference[0] == "c" and reference[2] and getattr(source, "style", "").startswith("temp"):
-            extensive = True        # the kinetic energies of the tensor; the temperature itself is not
+        if reference[0] == "c" and len(reference[2]) == 1 and getattr(source, "style", "").startswith("temp"):
+            extensive = True        # the kinetic energies of the tensor; temperatures, also those of an array, are not
         elif hasattr(source, "extensive_at"):
             extensive = source.extensive_at(reference[2])
         else:

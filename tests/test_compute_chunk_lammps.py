@@ -100,6 +100,7 @@ TILTED = {
 }
 FIRST = {"pq": ("all property/atom type", [])}
 STRAIGHT = {
+    "msda": ("all msd average yes", [VECTOR]), "msdca": ("some msd com yes average yes", [VECTOR]),
     "t": ("all temp/region half", [SCALAR, VECTOR]), "c1": ("all chunk/atom bin/1d x lower 0.8", [ATOM]),
     "c1u": ("all chunk/atom bin/1d z upper 1.3 units box", [ATOM]), "c2": ("all chunk/atom bin/2d x 0.7 2.3 z center 4 units box", [ATOM]),
     "c3": ("all chunk/atom bin/3d x lower 3 y lower 4 z lower 5 units box bound y 2 7 discard yes", [ATOM]),
@@ -208,3 +209,18 @@ def test_like_lammps(scene, id, results):
             assert a.shape == b.shape, name
             scale = abs(b[abs(b) < 1e19]).max(initial=0.0)
             assert np.allclose(a, b, rtol=1e-11, atol=1e-12 * scale, equal_nan=True), (name, abs(a - b).max())
+
+
+def test_arrays_of_temperatures_are_not_divided(tmp_path):
+    """``thermo_modify norm yes`` divides the tensor, which grows with the system, by the number of atoms."""
+    from asemd.lammps import Lammps
+    write_data(tmp_path / "data", None)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in [line for line in START.format(data=tmp_path / "data").splitlines() if line]:
+        lmp.command(line)
+    for line in ("compute c all chunk/atom molecule", "compute t all temp/chunk c temp", "thermo_style custom c_t[1] c_t[1][1]",
+                 "thermo_modify norm yes", "run 0"):
+        lmp.command(line)
+    moment, row = lmp.session.moment, lmp.session.last_thermo
+    assert row["c_t[1]"] == moment.vector("t")[0] / 64 and row["c_t[1][1]"] == moment.array("t")[0, 0] > 0.0
+    lmp.close()

@@ -28,7 +28,6 @@ class CountType(Compute):
     """
 
     style = "count/type"
-    extensive = True
 
     def __init__(self, group: str = "all", mode: str = "atom"):
         super().__init__(group)

@@ -58,6 +58,10 @@ class MSD(Compute):
         """The positions of now are the original ones."""
         self.original, self.samples, self.seen = Original(system, self._positions(system, mask)), 0, None
 
+    def setup(self, state) -> None:
+        """The first step of a run counts again for the mean, as in LAMMPS."""
+        self.seen = None
+
     def _positions(self, system, mask: np.ndarray) -> np.ndarray:
         return unwrapped(system) - Pieces(system, mask).com[0] if self.com else unwrapped(system)
 
