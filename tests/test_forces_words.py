@@ -41,7 +41,7 @@ def lmp():
     "restrain bond 1 2 1.0 2.0 3.0 4.0 angle 1 2 1 1.0 1.0 90.0 dihedral 1 2 1 2 1.0 1.0 90.0 mult 2",
     "wall/lj93 ylo v_e 1.0 1.0 2.5 units box", "wall/morse zhi EDGE 1.0 1.0 1.0 2.5", "wall/lepton zhi EDGE k*r^2;k=2 2.5",
     "wall/reflect ylo EDGE yhi v_e", "oneway 3 ball -x", "recenter INIT NULL 5.0 units box", "move rotate 0 0 0 0 0 1 10.0",
-    "indent 1.0 cylinder x 1.0 v_e 2.0 side in",
+    "indent 1.0 cylinder x 1.0 v_e 2.0 side in", "numdiff 5 0.001", "dt/reset 2 NULL 1.0 0.1 emax 3.0 units box",
 ])
 def test_round_trip(line, lmp):
     style, *words = line.split()
@@ -73,7 +73,8 @@ def test_round_trip(line, lmp):
     ("recenter 1 1", "3 values"), ("recenter 1 1 1 units mile", "expected one of"), ("recenter 1 1 1 shitf all", "did you mean shift"),
     ("move liner 1 1 1", "did you mean linear"), ("move wiggle 1 1 1 0", "period"), ("move rotate 0 0 0 0 0 0 1", "rotation vector"),
     ("move variable 1 1 1 1 1 1", "variable or NULL"), ("move linear 1 1 1 unit box", "unknown words"),
-    ("indent 1", "needs one of"), ("indent 1 sphere 1 1 1", "4 values"), ("indent 1 sphere 1 1 1 -1", "negative"),
+    ("numdiff 0 0.1", "at least 1"), ("numdiff 1", "2 values"), ("dt/reset 1 NULL NULL", "4 values"), ("dt/reset 0 NULL NULL 1", "at least 1"),
+    ("dt/reset 1 2 1 1", "below Tmax"), ("dt/reset 1 NULL NULL 1 emx 2", "did you mean emax"), ("indent 1", "needs one of"), ("indent 1 sphere 1 1 1", "4 values"), ("indent 1 sphere 1 1 1 -1", "negative"),
     ("indent 1 plane x 1 up", "expected one of"), ("indent 1 shpere 1 1 1 1", "did you mean sphere"),
 ])
 def test_errors(line, message, lmp):
