@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_compute_chunk_lammps import START, write_data
+from test_compute_chunk_lammps import FIRST, START, TILTED, write_data
 
 from asemd.errors import InputError
 from asemd.lammps import Lammps
@@ -72,3 +72,19 @@ def test_errors(words, message, scene):
     with pytest.raises(InputError, match=message) as e:
         scene.command(f"compute bad all {words}")
     assert "\n" not in str(e.value) and "bad" not in scene.session.scene.computes
+
+
+def test_words_make_the_same_compute_again(tmp_path):
+    data = tmp_path / "data"
+    write_data(data, (3.0, -2.0, 1.5))
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(START.format(data=data))
+    computes = FIRST | TILTED | {f"old{k}": (f"all {old.replace('c_k', 'c_ke')}", []) for k, old in enumerate(PAIRS)}
+    for id, (words, _) in computes.items():
+        lmp.command(f"compute {id} {words}")
+        made = lmp.session.scene.computes[id]
+        again = made.to_lammps()
+        lmp.command(f"compute again {made.group} {made.style} {' '.join(again)}")
+        assert lmp.session.scene.computes["again"].to_lammps() == again, id
+        lmp.command("uncompute again")
+    lmp.close()

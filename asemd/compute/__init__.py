@@ -26,12 +26,15 @@ class Compute:
 
     Attributes
     ----------
+    bias : bool
+        A temperature that takes a part of the velocities away first, see `asemd.compute.temp.Temp.remove_bias`.
     extra_dof, dynamic : float or None, bool
         ``compute_modify ID extra/dof N`` and ``dynamic/dof yes``, which every compute takes; temperatures use them.
     """
 
     style: ClassVar[str] = ""
     needs: frozenset[str] = frozenset()
+    bias: bool = False
     id: str = ""
     extra_dof: float | None = None
     dynamic: bool = False
