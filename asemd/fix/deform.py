@@ -187,7 +187,8 @@ class Deform(Fix):
     def prepare(self, loop) -> None:
         """The numbers of the run, before its first list."""
         box = loop.system.box
-        if self.initial is None:
+        if self.initial is None:        # made without a script: what was a box along the axes may tilt
+            box.triclinic = box.triclinic or self.box_moves == "shape"
             self.check_box(box)
         if sum(isinstance(f, Deform) for f in loop.fixes) > 1:
             raise InputError("there is more than one fix deform: give one fix all the parameters")
