@@ -45,7 +45,8 @@ class MolecularDynamics(ASEMolecularDynamics):
     Notes
     -----
     `run` goes from one call of an observer to the next without Python; `irun` yields after every step, as in ASE. Positions are continuous:
-    atoms are not wrapped. Observers may change the atoms; the loop then starts again from there. Runs in pieces equal one long run.
+    atoms are not wrapped. A fix that changes the box changes ``atoms.cell``, whose corner stays put. Observers may change the atoms; the
+    loop then starts again from there. Runs in pieces equal one long run.
 
     FixAtoms and FixCartesian act as `asemd.fix.SetForce` with the velocities set to zero; forces of fixes that are part of the calculator
     act without being named here. After Ctrl-C the atoms are those of the last complete step, after an error those of the last observer
@@ -116,15 +117,22 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._loop.setup(self.nsteps, self.nsteps + steps)
         here = system.box.unwrap(system.x, system.image)
         moved = np.where(abs(here - before) > ROUND_OFF * abs(here).max(initial=0.0), here - before, 0.0)      # by constraints
-        self._from = atoms.get_positions() + moved * unit_styles.factor("distance", calc.units), here
+        self._from = atoms.get_positions() + moved * unit_styles.factor("distance", calc.units), here, system.box
         return self._loop
 
     # ---- loop -> atoms ------------------------------------------------------------------------------------------------------------------
     def _move(self, atoms, system) -> None:
         """Positions and momenta of a system to atoms."""
         u = {d: unit_styles.factor(d, self.atoms.calc.units) for d in ("distance", "velocity")}
-        there, here = self._from     # atoms that do not move keep their positions to the last bit
-        atoms.arrays["positions"][:] = there + (system.box.unwrap(system.x, system.image) - here) * u["distance"]
+        there, here, before = self._from
+        now, box = system.box.unwrap(system.x, system.image), system.box
+        if self._loop.engine.box_moves:     # the corner of the cell stays; atoms keep the periodic images they were given in
+            images = (there / u["distance"] - here) @ before.inverse
+            atoms.arrays["positions"][:] = (now - box.origin + before.origin + images @ box.cell) * u["distance"]
+            cell = atoms.cell.array
+            atoms.set_cell(np.where(cell.any(axis=1)[:, None], box.cell * u["distance"], cell))
+        else:       # atoms that do not move keep their positions to the last bit
+            atoms.arrays["positions"][:] = there + (now - here) * u["distance"]
         atoms.set_momenta(system.v * u["velocity"] * self.masses, apply_constraint=False)
 
     def _save(self, system, path: str) -> None:

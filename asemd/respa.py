@@ -254,7 +254,7 @@ class RespaLoop(Loop):
         self.step += 1
         self._times = self.levels.steps(self.dt)
         needs = self._needs(self.step)
-        self._recurse(self.levels.n, energy or bool(needs))
+        self._recurse(self.levels.n, energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0)
         self._total()
         if needs:
             self._collect()

@@ -26,6 +26,8 @@ def session():
 
 @pytest.mark.parametrize("line", [
     "nve", "nve/limit 0.1", "nvt temp 300.0 310.0 100.0 tchain 3 tloop 1", "nvt temp 1.0 1.0 1.0 tchain 1 tloop 2 drag 0.5",
+    "npt temp 1.0 1.0 1.0 tchain 3 tloop 1 x 1.0 1.0 2.0 y 1.0 1.0 2.0 couple xy pchain 2 ploop 1 mtk no flip no scalexy yes "
+    "fixedpoint 0.0 1.0 2.0", "nph drag 0.5 z 0.0 2.0 1.0 yz 0.0 0.0 3.0 couple none pchain 0 ploop 1 nreset 10 ptemp 2.0",
     "langevin 1.0 2.0 0.5 77", "langevin v_e 1.0 0.5 77 scale 2 3.0 tally yes zero yes", "langevin 1.0 1.0 0.5 77 gjf vhalf",
     "langevin 1.0 1.0 0.5 77 tally yes gjf vfull", "baoab 1.0 2.0 0.5 77", "baoab v_a 2.0 0.5 77",
     "gjf 1.0 2.0 0.5 77 vel vhalf method 1", "gjf v_a 2.0 0.5 77 vel vfull method 7 0.4", "temp/rescale 5 1.0 2.0 0.1 0.5",
@@ -50,7 +52,14 @@ def test_compute_round_trip(line, session):
     ("nve 1", "takes no arguments"), ("nve/limit", "xmax"), ("nve/limit 0", "positive"), ("nvt", "needs temp"),
     ("nvt temp 1 1", "3 values"), ("nvt temp 1 0 1", "above 0"), ("nvt temp 1 1 0", "damping"), ("nvt temp 1 1 nan", "finite"),
     ("nvt temp 1 1 1 tchain 0", "at least 1"), ("nvt temp 1 1 1 tchian 3", "did you mean tchain"), ("nvt temp 1 1 1 iso 0 0 1", "fix npt"),
-    ("nvt temp 1 1 1 drag -1", "negative"), ("langevin 1 1 1", "needs Tstart"), ("langevin 1 1 0 1", "damping"),
+    ("nvt temp 1 1 1 drag -1", "negative"), ("nvt temp 1 1 1 update dipole", "not supported"), ("npt temp 1 1 1", "needs a pressure"),
+    ("npt iso 1 1 1", "needs temp"), ("npt temp 1 1 1 iso 1 1 0", "damping time of x"), ("npt temp 1 1 1 iso 1 1", "3 values"),
+    ("npt temp 1 1 1 iso 1 1 1 couple xx", "one of none xyz"), ("npt temp 1 1 1 iso 1 1 1 pchain -1", "not be negative"),
+    ("npt temp 1 1 1 iso 1 1 1 ploop 0", "ploop must be"), ("npt temp 1 1 1 iso 1 1 1 ptemp 0", "above 0"),
+    ("npt temp 1 1 1 iso 1 1 1 mtk 2", "yes or no"), ("npt temp 1 1 1 izo 1 1 1", "did you mean iso"),
+    ("nph temp 1 1 1 iso 1 1 1", "fix npt"),
+    ("nph iso 1 1 1 dilate nobody", "nobody"), ("nph iso 1 1 1 fixedpoint 1 1", "3 values"),
+    ("langevin 1 1 1", "needs Tstart"), ("langevin 1 1 0 1", "damping"),
     ("langevin 1 1 1 0", "seed"),
     ("langevin 1 1 1 1.5", "whole"), ("langevin 1 1 1 1 gjf vhal", "did you mean vhalf"), ("langevin 1 1 1 1 gjf", "1 value"),
     ("baoab 1 1 1", "needs Tstart"), ("baoab 1 1 0 1", "damping"), ("baoab 1 1 1 0", "seed"), ("baoab 1 1 1 1 tally yes", "needs Tstart"),

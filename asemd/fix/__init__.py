@@ -81,8 +81,8 @@ class Fix:
         Where `post_force` acts under ``run_style respa``: on ``every`` level, the ``outermost`` one, or ``one``, which is the outermost
         unless `level` (``fix_modify respa``) says another, from 1. Empty: it does not work there, unless `end_of_step` is all it has.
         Other hooks: `post_integrate` follows each move of the atoms, `pre_force` comes once in a step.
-    inner : type of Fix
-        The fix whose hooks move the atoms on all levels but the outermost, if not its own; ``outer_initial`` is a hook that takes the
+    inner : type
+        The class whose hooks move the atoms on all levels but the outermost, if not its own; ``outer_initial`` is a hook that takes the
         place of `initial_integrate` on the outermost of several levels and moves no atom (by default `final_integrate`).
     thermo_energy, thermo_virial : bool
         ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, what hooks
@@ -115,7 +115,7 @@ class Fix:
     follows: str = ""
     needs: frozenset[str] = frozenset()
     level: int = 0
-    inner: ClassVar[type[Fix] | None] = None
+    inner: ClassVar[type | None] = None
     every: int = 1
     id: str = ""
     thermo_energy: bool = False

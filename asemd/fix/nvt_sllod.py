@@ -16,7 +16,8 @@ import numpy as np
 from asemd.compute.temp_deform import TempDeform
 from asemd.errors import InputError
 from asemd.fix import hook
-from asemd.fix.nvt import HEADER, NVT, nose_hoover_chain
+from asemd.fix.nose_hoover import HEADER, nose_hoover_chain
+from asemd.fix.nvt import NVT
 from asemd.kernels.threads import barrier, reduce_sum
 from asemd.words import take, yes_no
 
