@@ -107,6 +107,7 @@ for name, (lines, computes) in given["scenes"].items():
 """
 
 
+VALUES = {"S": "scalar", "V": "vector", "G": "array", "A": "per_atom", "B": "per_atom", "L": "local", "M": "local"}
 HELPERS = ["variable f equal 0.7", "variable g equal 1.3", "velocity all create 1.3 87287",
            "compute ke all ke/atom", "compute pe all pe/atom",
            "compute stress all stress/atom NULL virial", "compute centroid all centroid/stress/atom NULL virial"]
@@ -154,6 +155,10 @@ def test_like_lammps(name, theirs):
             value = value[order]
         np.testing.assert_allclose(value, expected, rtol=1e-11, atol=1e-12 * max(1.0, abs(expected).max()),
                                    err_msg=f"{name}: {words}")
+        compute, snapshot = lmp.scene.computes[id], lmp.session.moment.snapshot
+        again = type(compute).from_lammps(compute.group, compute.to_lammps(), lmp.session)
+        value = VALUES[kind]
+        np.testing.assert_array_equal(getattr(again, value)(snapshot), getattr(compute, value)(snapshot), err_msg=words)
     lmp.close()
 
 
