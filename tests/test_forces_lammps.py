@@ -131,7 +131,8 @@ def test_like_lammps(name, cases, expected):
 def test_numerical_forces(cases):
     from asemd.lammps import Lammps
     lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    more = ["group few id 3 17 40", "fix 1 all nve", "fix 2 few numdiff 2 1e-4", "run 3"]
+    more = ["group few id 3 17 40", "fix 1 all nve", "fix 2 few numdiff 2 1e-4", "fix 3 all numdiff/virial 2 1e-5",
+            "compute v all pressure NULL virial", "thermo_style custom step c_v[1]", "run 3"]
     for line in script(cases["aveforce"]["data"]).splitlines() + more:
         if line.strip():
             lmp.command(line)
@@ -140,4 +141,6 @@ def test_numerical_forces(cases):
     lmp.command("run 1 pre no")       # on a multiple of 2, forces are those at the same positions
     few = np.isin(system.id, (3, 17, 40))
     assert abs(fix.values[few] - system.f[few]).max() < 1e-6 * abs(system.f).max()
+    virial = [lmp.extract_compute("v", 0, 1)[k] for k in (0, 1, 2, 5, 4, 3)]
+    assert lmp.session.scene.fixes["3"].values == pytest.approx(virial, rel=1e-6, abs=1e-6 * abs(virial[0]))
     lmp.close()

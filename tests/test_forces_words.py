@@ -73,8 +73,10 @@ def test_round_trip(line, lmp):
     ("recenter 1 1", "3 values"), ("recenter 1 1 1 units mile", "expected one of"), ("recenter 1 1 1 shitf all", "did you mean shift"),
     ("move liner 1 1 1", "did you mean linear"), ("move wiggle 1 1 1 0", "period"), ("move rotate 0 0 0 0 0 0 1", "rotation vector"),
     ("move variable 1 1 1 1 1 1", "variable or NULL"), ("move linear 1 1 1 unit box", "unknown words"),
-    ("numdiff 0 0.1", "at least 1"), ("numdiff 1", "2 values"), ("dt/reset 1 NULL NULL", "4 values"), ("dt/reset 0 NULL NULL 1", "at least 1"),
-    ("dt/reset 1 2 1 1", "below Tmax"), ("dt/reset 1 NULL NULL 1 emx 2", "did you mean emax"), ("indent 1", "needs one of"), ("indent 1 sphere 1 1 1", "4 values"), ("indent 1 sphere 1 1 1 -1", "negative"),
+    ("numdiff 0 0.1", "at least 1"), ("numdiff 1", "2 values"), ("dt/reset 1 NULL NULL", "4 values"),
+    ("dt/reset 0 NULL NULL 1", "at least 1"),
+    ("dt/reset 1 2 1 1", "below Tmax"), ("dt/reset 1 NULL NULL 1 emx 2", "did you mean emax"),
+    ("indent 1", "needs one of"), ("indent 1 sphere 1 1 1", "4 values"), ("indent 1 sphere 1 1 1 -1", "negative"),
     ("indent 1 plane x 1 up", "expected one of"), ("indent 1 shpere 1 1 1 1", "did you mean sphere"),
 ])
 def test_errors(line, message, lmp):

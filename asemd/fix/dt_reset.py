@@ -4,8 +4,8 @@ r"""Choose the timestep anew every N steps, so that no atom of the group moves f
 
 and less where both together go further; within Tmin and Tmax. For energetic events: collision cascades, overlapping atoms.
 
-Source: LAMMPS manual, fix dt/reset. Arguments: N, Tmin, Tmax (NULL: no limit), Xmax; emax; units box or lattice. Units: time, distance, energy.
-Output: a scalar, the last step on which the timestep changed.
+Source: LAMMPS manual, fix dt/reset. Arguments: N, Tmin, Tmax (NULL: no limit), Xmax; emax; units box or lattice. Units: time, distance,
+energy. Output: a scalar, the last step on which the timestep changed.
 """
 from __future__ import annotations
 
