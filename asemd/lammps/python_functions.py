@@ -117,6 +117,11 @@ class PythonFunctions:
         if tell:
             self.session.print(f"Invoked python function {name}" + (f" returned {value}" if function.result else ""))
 
+    def invoke(self, name: str, values: list) -> None:
+        """Call a function for a fix: with the session, and what the fix gives besides."""
+        from asemd.lammps import Lammps
+        self._guarded(name, lambda: self.names[name](Lammps.of(self.session), *values))
+
     def _run(self, name: str, function: Function, values: list[float] | None) -> Any:
         given = list(values) if values is not None else None
         arguments = [self._argument(name, word, letter, given) for word, letter in zip(function.inputs, function.format)]
