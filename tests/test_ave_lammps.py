@@ -143,6 +143,23 @@ def test_python_functions_of_a_script(tmp_path, monkeypatch):
     assert calls == [("force", 0), ("force", 3), ("end", 5), ("force", 6)]
     dt = 0.005      # kicks at 0 (half), 3 and 6 (half of its two), each 1000 dt
     assert x[1] - x[0] == pytest.approx(1000 * dt**2 * (0.5 * 7 + 4 + 1), rel=0.2)
-    for words, message in (("5 end_of_step none", "no Python function none"), ("5 pre_force endf", "expected one of"), ("5 endf", "needs 3")):
+    refused = {"5 end_of_step none": "no Python function none", "5 pre_force endf": "expected one of", "5 endf": "needs 3"}
+    for words, message in refused.items():
         with pytest.raises(InputError, match=message):
             lmp.command(f"fix z all python/invoke {words}")
+
+
+def test_older_syntax_of_bins(tmp_path, monkeypatch):
+    """Fix ave/spatial has the numbers of ave/chunk."""
+    monkeypatch.chdir(tmp_path)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(BASE + """
+compute cx all chunk/atom bin/1d x lower 0.25
+fix new all ave/chunk 2 3 10 cx vx density/number c_ke file new.txt
+fix old all ave/spatial 2 3 10 x lower 0.25 vx density/number c_ke file old.txt
+run 20
+""")
+    new, old = ((tmp_path / name).read_text().splitlines() for name in ("new.txt", "old.txt"))
+    assert old[0] == "# Spatial-averaged data for fix old and group all"
+    assert [line for line in new[3:] if line.startswith(" ")] == [line for line in old[3:] if line.startswith(" ")]
+    assert len(new) == len(old) > 20

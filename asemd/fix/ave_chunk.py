@@ -225,13 +225,15 @@ class AveChunk(Sampled):
             return
         if self.overwrite:
             self.file.rewind()
-        total = float(np.sum(self.result[:, 0])) * self.window.norm
-        text = f"{step} {len(self.result)} {total:g}\n"
+        text = f"{step} {len(self.result)}{self._total()}\n"
         integers = bool(self.chunks.settings.compress)
         for k, (label, row) in enumerate(zip(self.labels, self.result), 1):
             shown = "".join(f" {int(x)}" if integers and j == 0 else f" {x:g}" for j, x in enumerate(label))
             text += f"  {k}{shown} {row[0]:g}" + "".join(self.format % x for x in row[1:]) + "\n"
         self.file.write(text)
+
+    def _total(self) -> str:
+        return f" {float(np.sum(self.result[:, 0])) * self.window.norm:g}"
 
     # ---- outputs
     outputs = ("array",)
