@@ -7,8 +7,8 @@ r"""Mean, standard deviation, variance, skewness and excess kurtosis of values o
 of N = Nrepeat samples, Nevery steps apart, with central moments :math:`m_k`; known on multiples of Nfreq. What is not defined
 for so few samples, or samples that are all equal, is nan.
 
-Source: LAMMPS, fix ave/moments (2025). Output: a vector, for each value all moments in the order they are named; with ``history M`` an array
-whose columns are the last M results, the newest first.
+Source: LAMMPS, fix ave/moments (2025). Output: a vector, for each value all moments in the order they are named; with ``history M`` an
+array whose columns are the last M results, the newest first.
 """
 from __future__ import annotations
 
