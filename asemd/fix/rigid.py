@@ -52,6 +52,8 @@ class Rigid(Fix):
         File with mass, centre, inertia, velocity and angular momentum of bodies.
     reinit : bool
         Take the bodies from their atoms anew at each run.
+    gravity : str, optional
+        Id of a fix gravity whose field acts on the centres of mass.
 
     Raises
     ------
@@ -71,11 +73,11 @@ class Rigid(Fix):
     barostats: ClassVar[bool] = False
 
     def __init__(self, group: str = "all", bodies="single", force=(), torque=(), langevin=None, infile: str | None = None,
-                 reinit: bool = True):
+                 reinit: bool = True, gravity: str | None = None):
         super().__init__(group)
         self.kind = bodies
         self.force, self.torque = list(force), list(torque)
-        self.langevin, self.infile, self.reinit = langevin, infile, reinit
+        self.langevin, self.infile, self.reinit, self.gravity = langevin, infile, reinit, gravity
         if langevin is not None:
             start, stop, damping, seed = langevin
             if min(start, stop) < 0.0:
@@ -202,7 +204,18 @@ class Rigid(Fix):
         start, stop, damping, seed = self.langevin or (0.0, 0.0, 1.0, 0)
         p[:13] = (loop.group_bit(self.group), self.thermo_virial, bool(loop.engine.box_moves), self.early, 0.0, seed, start, stop,
                   1.0 / (damping * u.ftm2v), 24.0 * u.boltz / (damping * u.mvv2e) / u.ftm2v**2, u.ftm2v, loop.system.dimension, u.mvv2e)
+        p[13:16] = self._field(loop) if self.gravity else 0.0
         return p
+
+    def _field(self, loop) -> np.ndarray:
+        """(3,) acceleration by the fix gravity that was named."""
+        found = [fix for fix in loop.fixes if fix.id == self.gravity and fix.style == "gravity"]
+        if not found:
+            raise InputError(f"fix {self.id} (style {self.style}) gravity: there is no fix gravity with ID {self.gravity}")
+        if any(callable(value) for value in found[0].values):
+            raise InputError(f"fix {self.id} (style {self.style}) gravity: the field of fix {self.gravity} changes with a variable, "
+                             "which bodies cannot follow; let fix gravity act on their atoms")
+        return found[0].values[0] * found[0].direction(list(found[0].values[1:]), loop.system.dimension)
 
     def atom_arrays(self, loop) -> rb.Bodies:
         b = self.kept
@@ -214,15 +227,12 @@ class Rigid(Fix):
         """Forces and torques on the bodies, and the atoms' velocities, with twice the second half of a step's virial."""
         b, s, system = self.kept, loop.state, loop.system
         loop.sync_out()
-        body, axes = np.repeat(np.arange(len(b.mass)), np.diff(b.first)), b.axes
+        body = np.repeat(np.arange(len(b.mass)), np.diff(b.first))
         r, f = rb.unwrapped(system, b, body), system.f[b.rows]
         b.half_virial[:] = 0.0
-        b.force[:] = np.add.reduceat(f, b.first[:-1], axis=0) + b.bath[:, :3]
+        b.force[:] = np.add.reduceat(f, b.first[:-1], axis=0) + b.bath[:, :3] + b.mass[:, None] * self.p[13:16]
         b.torque[:] = np.add.reduceat(np.cross(r - b.x[body], f), b.first[:-1], axis=0) + b.bath[:, 3:]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            w = np.where(b.moments > 0.0, np.einsum("nka,na->nk", axes, b.momentum) / b.moments, 0.0)
-        b.omega[:] = np.einsum("nk,nka->na", w, axes)
-        v = np.cross(b.omega[body], np.einsum("na,nab->nb", b.place, axes[body])) + b.v[body]
+        v = rb.velocities(b, body)
         push = (system.atom_masses()[b.rows] / (0.5 * loop.dt * self.p[10]))[:, None] * (v - system.v[b.rows]) - f
         for c, (i, j) in enumerate(COMPONENTS):
             b.virial[:, c] = r[:, i] * push[:, j]
@@ -231,6 +241,15 @@ class Rigid(Fix):
         system.v[b.rows] = v
         loop.sync_in()
         self.p[4] = 1.0
+
+    def stop(self, system, rotation: bool) -> None:
+        """Bodies of a system at rest between runs stop to move, or to turn."""
+        if self.members is None:
+            raise InputError(f"fix {self.id} (style {self.style}): its bodies are not known before the first run")
+        b = self.kept if self.kept is not None and not self.reinit else rb.build(system, self.members, self.style)
+        (b.momentum if rotation else b.v)[:] = 0.0
+        body = np.repeat(np.arange(len(b.mass)), np.diff(b.first))
+        system.v[b.rows] = rb.velocities(b, body)
 
     def post_neighbor(self, loop) -> None:
         """The box of the system is the one of the list."""
@@ -287,7 +306,7 @@ class Rigid(Fix):
                     if p[2] != 0.0:
                         follow_box(s, b, k)
                     langevin_bath(th, p, b, k)
-                    gather_forces(s, b, k)
+                    gather_forces(s, p, b, k)
         barrier(th)
 
     @hook(uses=MOVE)
@@ -299,7 +318,7 @@ class Rigid(Fix):
                 if p[2] != 0.0:
                     follow_box(s, b, k)
                 langevin_bath(th, p, b, k)
-                gather_forces(s, b, k)
+                gather_forces(s, p, b, k)
             for d in range(3):
                 b.v[k, d] += half / b.mass[k] * b.force[k, d] * b.moves[k, d]
                 b.momentum[k, d] += half * b.torque[k, d] * b.moves[k, 3 + d]
@@ -328,7 +347,7 @@ class Rigid(Fix):
             return float((2 * size - 3)[inside == size].sum())
         return float((3 * size - 6 + (b.moments == 0.0).any(axis=1))[inside == size].sum())
 
-    def energies(self) -> tuple[np.ndarray, np.ndarray]:
+    def bodies_energies(self) -> tuple[np.ndarray, np.ndarray]:
         """Energy of translation and of rotation of each body, in energy units, without components that do not act."""
         b = self.bodies
         w = np.einsum("nka,na->nk", b.axes, b.omega)
@@ -339,7 +358,7 @@ class Rigid(Fix):
         """Temperature of the bodies."""
         b = self.bodies
         dof = b.moves.sum() - (np.count_nonzero((b.moments == 0.0).any(axis=1)) if self.p[11] == 3.0 else 0)
-        return float(2.0 * sum(e.sum() for e in self.energies()) / (dof * self._loop.units.boltz)) if dof > 0.0 else 0.0
+        return float(2.0 * sum(e.sum() for e in self.bodies_energies()) / (dof * self._loop.units.boltz)) if dof > 0.0 else 0.0
 
     def array(self, i: int, j: int) -> float:
         """Number `j` (1 to 15) of body `i`, counted from 1."""

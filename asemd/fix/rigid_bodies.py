@@ -174,6 +174,14 @@ def unwrapped(system, b: Bodies, body: np.ndarray) -> np.ndarray:
     return system.x[b.rows] + (system.image[b.rows] - b.image[body]) @ system.box.cell
 
 
+def velocities(b: Bodies, body: np.ndarray) -> np.ndarray:
+    """(m, 3) of the atoms; the angular velocities follow the angular momenta."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        w = np.where(b.moments > 0.0, np.einsum("nka,na->nk", b.axes, b.momentum) / b.moments, 0.0)
+    b.omega[:] = np.einsum("nk,nka->na", w, b.axes)
+    return np.cross(b.omega[body], np.einsum("na,nab->nb", b.place, b.axes[body])) + b.v[body]
+
+
 def follow(b: Bodies, origin: np.ndarray, vectors: np.ndarray) -> None:
     """Centres of mass keep their places relative to a box that has changed to this one."""
     new = np.concatenate([origin, vectors.ravel()])

@@ -78,7 +78,7 @@ class RigidNVE(Rigid):
                 if p[2] != 0.0:
                     follow_box(s, b, k)
                 langevin_bath(th, p, b, k)
-                gather_forces(s, b, k)
+                gather_forces(s, p, b, k)
             for d in range(3):
                 b.v[k, d] += half / b.mass[k] * b.force[k, d] * b.moves[k, d]
                 b.torque[k, d] *= b.moves[k, 3 + d]

@@ -15,5 +15,5 @@ class RigidNVESmall(RigidNVE):
 
     def scalar(self) -> float:
         """As in LAMMPS the energy of rotation and twice that of translation, energy units."""
-        translation, rotation = (e.sum() for e in self.energies())
+        translation, rotation = (e.sum() for e in self.bodies_energies())
         return float(2.0 * translation + rotation)

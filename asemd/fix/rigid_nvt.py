@@ -278,7 +278,7 @@ class RigidNVT(RigidNVE):
             if p[3] == 0.0:
                 if p[2] != 0.0:
                     follow_box(s, b, k)
-                gather_forces(s, b, k)
+                gather_forces(s, p, b, k)
             for d in range(3):
                 b.v[k, d] = b.v[k, d] * slow[d] + half / b.mass[k] * b.force[k, d] * b.moves[k, d]
                 twice_t += b.mass[k] * b.v[k, d] * b.v[k, d]
@@ -312,7 +312,7 @@ class RigidNVT(RigidNVE):
     def _bodies_energy(self) -> float:
         """The part of the scalar that LAMMPS adds to the energy of the chains."""
         if self.small:
-            translation, rotation = (e.sum() for e in self.energies())
+            translation, rotation = (e.sum() for e in self.bodies_energies())
             return float(2.0 * translation + rotation)
         return RigidNVE.scalar(self)
 

@@ -59,7 +59,7 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
     """Keyword arguments of the class."""
     out: dict = {}
     allowed = ["langevin", "infile", "reinit"] if not (cls.thermostats or cls.barostats) else ["infile", "reinit"]
-    allowed += [] if cls.small else ["force", "torque"]
+    allowed += ["gravity"] if cls.small else ["force", "torque", "gravity"]
     allowed += ["temp", "tparam"] if cls.thermostats else []
     allowed += ["iso", "aniso", "x", "y", "z", "couple", "dilate"] if cls.barostats else []
     allowed += ["pchain"] if cls.barostats else []
@@ -68,9 +68,6 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
         if keyword not in allowed:
             if keyword not in KEYWORDS:
                 raise InputError(f"fix {cls.style}: unknown keyword {keyword!r}{nearest(keyword, allowed)}")
-            if keyword == "gravity":
-                raise InputError(f"{what}: forces of gravity on whole bodies are not supported; leave the keyword out, fix gravity then "
-                                 "acts on the atoms of bodies")
             if keyword == "mol":
                 raise InputError(f"{what}: bodies that are added during a run are not supported")
             raise InputError(f"fix {cls.style} does not take the keyword {keyword}")
@@ -109,7 +106,7 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
             name = take(words[1:], 1, what)[0]
             session.scene.groups.mask(name, what)
             out["dilate"], used = name, 1
-        elif keyword == "infile":
+        elif keyword in ("infile", "gravity"):
             out[keyword], used = take(words[1:], 1, what)[0], 1
         else:
             out[keyword], used = yes_no(take(words[1:], 1, what)[0], what), 1
@@ -125,6 +122,8 @@ def words_of(fix: Rigid) -> list[str]:
     """The words of a script that make this fix again."""
     words = list(fix.kind_words)
     if not words:
+        if not isinstance(fix.kind, str) and not fix.group_names:
+            raise InputError(f"fix {fix.style}: bodies given by numbers have no words; use fix property/atom and custom i_name")
         words = ["group", str(len(fix.kind)), *fix.group_names] if fix.group_names else [str(fix.kind)]
     for keyword, settings in (("force", fix.force), ("torque", fix.torque)):
         for which, flags in settings:
@@ -133,4 +132,6 @@ def words_of(fix: Rigid) -> list[str]:
         words += ["langevin", *(repr(v) for v in fix.langevin)]
     if fix.infile:
         words += ["infile", fix.infile]
+    if fix.gravity:
+        words += ["gravity", fix.gravity]
     return words + ([] if fix.reinit else ["reinit", "no"]) + fix.own_words()

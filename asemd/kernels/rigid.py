@@ -157,8 +157,8 @@ def follow_box(s, b, k):
             old[3 + 3 * c + d] = h[c, d]
 
 
-def gather_forces(s, b, k):
-    """Force and torque on body k, with those of its bath."""
+def gather_forces(s, p, b, k):
+    """Force and torque on body k, with those of its bath and of the field ``p[13:16]``."""
     h = s.box.vectors
     cx, cy, cz = b.x[k, 0], b.x[k, 1], b.x[k, 2]
     fx = fy = fz = tx = ty = tz = 0.0
@@ -177,6 +177,8 @@ def gather_forces(s, b, k):
         ty += dz * gx - dx * gz
         tz += dx * gy - dy * gx
     b.force[k, 0], b.force[k, 1], b.force[k, 2] = fx + b.bath[k, 0], fy + b.bath[k, 1], fz + b.bath[k, 2]
+    for d in range(3):
+        b.force[k, d] += b.mass[k] * p[13 + d]
     b.torque[k, 0], b.torque[k, 1], b.torque[k, 2] = tx + b.bath[k, 3], ty + b.bath[k, 4], tz + b.bath[k, 5]
 
 

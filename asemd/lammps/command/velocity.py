@@ -7,6 +7,7 @@ import numpy as np
 
 from asemd import units
 from asemd.errors import InputError, nearest
+from asemd.fix.rigid import Rigid
 from asemd.random import ParkMiller, gaussian_at, position_seeds, uniform_at
 from asemd.words import choice, number, take, whole, yes_no
 
@@ -154,7 +155,10 @@ class Velocity:
     def zero(self, words: list[str]) -> None:
         how = choice(words[0], ("linear", "angular"), self.what)
         if self.rigid:
-            style = self.scene.fixes[self.rigid].style
+            fix = self.scene.fixes[self.rigid]
+            style = fix.style
+            if isinstance(fix, Rigid):
+                return fix.stop(self.system, rotation=how == "angular")
             raise InputError(f"{self.what} rigid: fix {self.rigid} (style {style}) has no rigid bodies")
         if how == "linear":
             self._zero_momentum()
