@@ -48,6 +48,8 @@ CASES = {
                                           f"velocity {words} temp t bias yes", NVE], ["c_t"])
        for words in ("all create 200 1234", "some create 200 1234 sum yes", "all scale 77")
        for temp in ("all temp/com", "some temp/partial 1 0 1", "all temp/region half")},
+    "temp/csvr": ([NVE, "fix 2 some temp/csvr 300 400 20 6282"], ["f_2", "ecouple"]),
+    "temp/csld": ([NVE, "fix 2 some temp/csld v_warm 400 20 6282"], ["f_2", "ecouple"]),
     "setforce": (["fix 2 some setforce 0.1 NULL 0.0", NVE], ["f_2[1]", "f_2[2]", "f_2[3]"]),
     "setforce region": (["fix 2 some setforce 0.1 NULL 0.0 region half", NVE], ["f_2[1]", "f_2[2]", "f_2[3]"]),
     "setforce variables": (["fix 2 all setforce v_one v_along NULL", NVE], ["f_2[1]", "f_2[2]", "f_2[3]"]),

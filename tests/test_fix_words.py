@@ -31,6 +31,7 @@ def session():
     "langevin 1.0 2.0 0.5 77", "langevin v_e 1.0 0.5 77 scale 2 3.0 tally yes zero yes", "langevin 1.0 1.0 0.5 77 gjf vhalf",
     "langevin 1.0 1.0 0.5 77 tally yes gjf vfull", "baoab 1.0 2.0 0.5 77", "baoab v_a 2.0 0.5 77",
     "gjf 1.0 2.0 0.5 77 vel vhalf method 1", "gjf v_a 2.0 0.5 77 vel vfull method 7 0.4", "temp/rescale 5 1.0 2.0 0.1 0.5",
+    "temp/csvr 1.0 2.0 0.5 77", "temp/csld v_e 2.0 0.5 77",
     "temp/berendsen v_a 2.0 0.5", "setforce NULL 0.0 v_a region box", "addforce 0.0 v_e v_a every 2 region box energy v_a",
     "addforce 1.0 0.0 0.0", "enforce2d", "momentum 10 linear 1 0 1 angular rescale", "momentum 1 angular",
 ])
@@ -70,6 +71,7 @@ def test_compute_round_trip(line, session):
     ("langevin -1 1 1 1", "negative"), ("langevin 1 1 1 1 talli yes", "did you mean tally"), ("langevin 1 1 1 1 scale 1", "2 values"),
     ("langevin 1 1 1 1 tally maybe", "yes or no"), ("langevin v_b 1 1 1", "undefined variable b"), ("temp/rescale 0 1 1 1 1", "at least 1"),
     ("temp/rescale 1 1 1 1 2", "fraction"), ("temp/rescale 1 1 1", "needs N"), ("temp/berendsen 1 1", "needs"),
+    ("temp/csvr 1 1 1", "needs Tstart"), ("temp/csld 1 1 1 0", "seed"), ("temp/csvr 1 1 0 1", "damping"),
     ("temp/berendsen 1 x 1", "number"), ("setforce 1 1", "needs fx fy fz"), ("setforce 1 1 1 regoin box", "did you mean region"),
     ("setforce 1 1 1 region bix", "did you mean box"), ("addforce 1 NULL 1", "number"), ("addforce 1 1 1 energy v_a", "constant"),
     ("addforce v_e 1 1 energy 3", "atom-style"), ("addforce 1 1 1 every 0", "at least 1"), ("momentum 10", "linear"),
