@@ -53,7 +53,8 @@ class TempCSLD(Thermostat):
     def from_lammps(cls, group, words, session):
         if len(words) != 4:
             raise InputError(f"fix {cls.style} needs Tstart Tstop Tdamp seed, got {len(words)} values")
-        return cls(group, cls.read_ramp(words, session), number(words[2], f"fix {cls.style} Tdamp"), whole(words[3], f"fix {cls.style} seed"))
+        damping, seed = number(words[2], f"fix {cls.style} Tdamp"), whole(words[3], f"fix {cls.style} seed")
+        return cls(group, cls.read_ramp(words, session), damping, seed)
 
     def to_lammps(self) -> list[str]:
         return [write(self.start), repr(self.stop), repr(self.damping), str(self.seed)]
