@@ -4,7 +4,8 @@ r"""The virial by finite differences of the energy, to check that of a model.
 
 for all atoms and the box; of all interactions, without other fixes. Twelve energies of a system that is built anew each time.
 
-Source: LAMMPS manual, fix numdiff/virial. Arguments: N, the steps between two computations, and the strain delta. Units: pressure. Output: a
+Source: LAMMPS manual, fix numdiff/virial. Arguments: N, the steps between two computations, and the strain delta. Units:
+pressure. Output: a
 vector of 6: xx yy zz yz xz xy.
 """
 from __future__ import annotations
