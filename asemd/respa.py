@@ -166,6 +166,7 @@ class RespaLoop(Loop):
         self._before = [np.zeros(3) for _ in self.fixes]
         self._new_lists()
         self._level_forces = [np.zeros_like(self.state.f) for _ in self._times]
+        self.state.virial[:] = 0.0
         for level in range(1, self.levels.n + 1):
             self._forces(level, True)
         self._total()
@@ -254,6 +255,7 @@ class RespaLoop(Loop):
         self.step += 1
         self._times = self.levels.steps(self.dt)
         needs = self._needs(self.step)
+        self.state.virial[:] = 0.0
         self._recurse(self.levels.n, energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0)
         self._total()
         if needs:
