@@ -4,14 +4,8 @@ r"""The virial by finite differences of the energy, to check that of a model.
 
 for all atoms and the box; of all interactions, without other fixes. Twelve energies of a system that is built anew each time.
 
-<<<<<<< HEAD
-Source: LAMMPS manual, fix numdiff/virial. Arguments: N, the steps between two computations, and the strain delta. Units:
-pressure. Output: a
-vector of 6: xx yy zz yz xz xy.
-=======
 Source: LAMMPS manual, fix numdiff/virial. Arguments: N, the steps between two computations, and the strain delta. Units: pressure. Output:
 a vector of 6: xx yy zz yz xz xy.
->>>>>>> b978103 (Respa: the virial of fixes is that of the step)
 """
 from __future__ import annotations
 
