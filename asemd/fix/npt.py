@@ -11,8 +11,9 @@ Conserved: kinetic plus potential energy plus the scalar of this fix,
 .. math:: E_{chain} + \tfrac12 \sum_i W_i \dot\omega_i^2 + P_0 (V - V_0) + \tfrac12 \operatorname{tr}(\sigma h h^T)
           + f_W k_B T_0 \eta'_1 + k_B T_0 \sum_{k>1} \eta'_k + \tfrac12 \sum_k Q'_k \dot\eta_k'^2
 
-with :math:`f_W` 1 for coupled boxes (iso), otherwise the number of controlled components. The vector is LAMMPS's: chain, box, chain of the
-box, and their energies.
+with :math:`f_W` the number of controlled components. That is LAMMPS's sum; in a box that changes isotropically the force on the second
+chain has :math:`f_W = 1`, as LAMMPS's has, so that there the sum wanders with :math:`\eta'_1` (not with ``pchain 0``). The vector is
+LAMMPS's: chain, box, chain of the box, and their energies.
 
 Source: G. J. Martyna, D. J. Tobias, M. L. Klein, J. Chem. Phys. 101, 4177 (1994); M. E. Tuckerman et al., J. Phys. A 39, 5629 (2006);
 W. Shinoda, M. Shiga, M. Mikami, Phys. Rev. B 69, 134103 (2004); LAMMPS manual, fix npt. Units: temperature, time, pressure.
