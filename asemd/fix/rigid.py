@@ -24,14 +24,23 @@ from asemd.errors import InputError
 from asemd.fix import Fix, hook
 from asemd.fix import rigid_bodies as rb
 from asemd.fix.rigid_words import bodies_from_words, options_from_words, words_of
-from asemd.kernels.rigid import angular_velocity, follow_box, gather_forces, langevin_bath, place_atoms, turn_axes, turn_richardson, turned
+from asemd.kernels.rigid import (
+    angular_velocity,
+    body_turned,
+    follow_box,
+    gather_forces,
+    langevin_bath,
+    place_atoms,
+    turn_axes,
+    turn_richardson,
+)
 from asemd.kernels.threads import barrier
 from asemd.result import COMPONENTS
 from asemd.words import bounds, yes_no
 
 HEADER = 16     # numbers of every fix of this family before its own
 ORDER = "rigid bodies must be defined before the fix that changes the box"
-MOVE = [turn_axes, angular_velocity, turned, turn_richardson, follow_box, gather_forces, place_atoms, langevin_bath]
+MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, gather_forces, place_atoms, langevin_bath]
 
 
 class Rigid(Fix):

@@ -23,16 +23,16 @@ from asemd.fix import hook
 from asemd.fix.rigid_nve import MOVE, RigidNVE
 from asemd.kernels.box import follow
 from asemd.kernels.rigid_bath import (
-    barostat_step,
-    couple_pressure,
-    inward,
-    outward,
-    push_box,
-    ramp,
-    scale_box,
-    sinh_ratio,
-    strain,
-    thermostat_step,
+    body_barostat_step,
+    body_couple_pressure,
+    body_inward,
+    body_outward,
+    body_push_box,
+    body_ramp,
+    body_scale_box,
+    body_sinh_ratio,
+    body_strain,
+    body_thermostat_step,
 )
 from asemd.kernels.threads import barrier, reduce_sum
 
@@ -41,7 +41,8 @@ COUPLE = ("none", "xyz", "xy", "yz", "xz")
 CUBE, FOURTH = 2.0 ** (1.0 / 3.0), 4.0 ** (1.0 / 3.0)
 WEIGHTS = {3: (1.0 / (2.0 - CUBE), 1.0 - 2.0 / (2.0 - CUBE), 1.0 / (2.0 - CUBE)),
            5: (1.0 / (4.0 - FOURTH), 1.0 / (4.0 - FOURTH), 1.0 - 4.0 / (4.0 - FOURTH), 1.0 / (4.0 - FOURTH), 1.0 / (4.0 - FOURTH))}
-ALL = [*MOVE, follow, sinh_ratio, ramp, inward, outward, thermostat_step, barostat_step, couple_pressure, strain, push_box, scale_box]
+ALL = [*MOVE, follow, body_sinh_ratio, body_ramp, body_inward, body_outward, body_thermostat_step,
+       body_barostat_step, body_couple_pressure, body_strain, body_push_box, body_scale_box]
 
 
 class RigidNVT(RigidNVE):
@@ -195,10 +196,10 @@ class RigidNVT(RigidNVE):
         mass[0] *= d * d
         p[at + 2 * n + 1:at + 3 * n] = (mass[:-1] * rate[:-1] ** 2 - kt) / mass[1:]
         measured = Pressure(temperature=self.temp).vector(snapshot)[:3].copy()
-        couple_pressure(p, measured)
+        body_couple_pressure(p, measured)
         p[61:64] = p[34:37] * (p[37:40] + done * (p[40:43] - p[37:40]))
         p[64] = p[61:64].sum() / p[33]
-        strain(p, measured, volume, 0.5 * loop.dt)
+        body_strain(p, measured, volume, 0.5 * loop.dt)
 
     @hook(uses=ALL)
     def initial_integrate(th, s, p, b):
@@ -213,7 +214,7 @@ class RigidNVT(RigidNVE):
             if p[17] != 0.0:
                 y = quarter * p[49 + d]
                 slow[d] *= math.exp(-quarter * (p[49 + d] + p[30]))
-                move[d] *= math.exp(y) * sinh_ratio(y)
+                move[d] *= math.exp(y) * body_sinh_ratio(y)
         if p[17] != 0.0:
             slow_r *= math.exp(-quarter * p[33] * p[30])
         lo, hi = count * th.tid // th.nth, count * (th.tid + 1) // th.nth
@@ -239,13 +240,13 @@ class RigidNVT(RigidNVE):
         if th.tid == 0:
             p[28], p[29] = twice_t, twice_r
             if p[16] != 0.0:
-                p[27] = ramp(th, p[18], p[19])
-                thermostat_step(th, p, 80, p[24], twice_t * p[12])
+                p[27] = body_ramp(th, p[18], p[19])
+                body_thermostat_step(th, p, 80, p[24], twice_t * p[12])
                 if p[25] > 0.0:
-                    thermostat_step(th, p, 80 + 4 * n, p[25], twice_r * p[12])
+                    body_thermostat_step(th, p, 80 + 4 * n, p[25], twice_r * p[12])
         barrier(th)
         if p[17] != 0.0:
-            scale_box(th, s, p, quarter)
+            body_scale_box(th, s, p, quarter)
         for k in range(lo, hi):
             if p[17] != 0.0:
                 follow_box(s, b, k)
@@ -254,9 +255,9 @@ class RigidNVT(RigidNVE):
                 b.half_virial[k, c] = sums[c]
         barrier(th)
         if p[17] != 0.0:
-            scale_box(th, s, p, quarter)
+            body_scale_box(th, s, p, quarter)
             if th.tid == 0:
-                barostat_step(th, p)
+                body_barostat_step(th, p)
             barrier(th)
 
     @hook(uses=ALL)
@@ -306,7 +307,7 @@ class RigidNVT(RigidNVE):
                 kinetic[d] = p[12] * reduce_sum(th, total)
             if th.tid == 0:
                 p[28], p[29] = twice_t, twice_r
-                push_box(th, s, p, kinetic, quarter)
+                body_push_box(th, s, p, kinetic, quarter)
             barrier(th)
 
     def _bodies_energy(self) -> float:

@@ -54,7 +54,7 @@ def angular_velocity(momentum, e, moments, omega):
                 omega[d] += w * e[k, d]
 
 
-def turned(q, w, h, out):
+def body_turned(q, w, h, out):
     """``q + h w q``, normalised: a step of dq/dt = w q / 2 with the angular velocity w in space."""
     a = q[0] - h * (w[0] * q[1] + w[1] * q[2] + w[2] * q[3])
     b = q[1] + h * (w[0] * q[0] + w[1] * q[3] - w[2] * q[2])
@@ -69,11 +69,11 @@ def turn_richardson(q, momentum, omega, moments, e, half, whole, middle):
 
     `half` is half the timestep; the angular velocity is left as it is in the middle of the step. `whole` and `middle` (4,) are scratch.
     """
-    turned(q, omega, half, whole)
-    turned(q, omega, 0.5 * half, middle)
+    body_turned(q, omega, half, whole)
+    body_turned(q, omega, 0.5 * half, middle)
     turn_axes(middle, e)
     angular_velocity(momentum, e, moments, omega)
-    turned(middle, omega, 0.5 * half, middle)
+    body_turned(middle, omega, 0.5 * half, middle)
     square = 0.0
     for k in range(4):
         q[k] = 2.0 * middle[k] - whole[k]

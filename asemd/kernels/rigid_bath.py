@@ -19,41 +19,41 @@ from asemd.kernels.box import follow
 from asemd.kernels.threads import barrier
 
 
-def sinh_ratio(y):
+def body_sinh_ratio(y):
     """sinh(y) / y by its series."""
     y2 = y * y
     return 1.0 + y2 / 6.0 * (1.0 + y2 / 20.0 * (1.0 + y2 / 42.0 * (1.0 + y2 / 72.0)))
 
 
-def ramp(th, start, stop):
+def body_ramp(th, start, stop):
     """A target of this step."""
     if th.end == th.begin:
         return start
     return start + (th.step - th.begin) / (th.end - th.begin) * (stop - start)
 
 
-def inward(p, at, n, w, share):
+def body_inward(p, at, n, w, share):
     """Half a sub-step of the rates of a chain from its end to its beginning."""
     rate, push = p[at + n:at + 2 * n], p[at + 2 * n:at + 3 * n]
     rate[n - 1] += 0.5 * w * push[n - 1]
     for k in range(n - 2, -1, -1):
         y = 0.25 * w * rate[k + 1]
         slow = math.exp(-share * y)
-        rate[k] = rate[k] * slow * slow + 0.5 * w * push[k] * slow * sinh_ratio(y)
+        rate[k] = rate[k] * slow * slow + 0.5 * w * push[k] * slow * body_sinh_ratio(y)
 
 
-def outward(p, at, n, w, share, kt):
+def body_outward(p, at, n, w, share, kt):
     """The other half, from the beginning to the end."""
     rate, push, mass = p[at + n:at + 2 * n], p[at + 2 * n:at + 3 * n], p[at + 3 * n:at + 4 * n]
     for k in range(n - 1):
         y = 0.25 * w * rate[k + 1]
         slow = math.exp(-share * y)
-        rate[k] = rate[k] * slow * slow + 0.5 * w * push[k] * slow * sinh_ratio(y)
+        rate[k] = rate[k] * slow * slow + 0.5 * w * push[k] * slow * body_sinh_ratio(y)
         push[k + 1] = (mass[k] * rate[k] * rate[k] - kt) / mass[k + 1]
     rate[n - 1] += 0.5 * w * push[n - 1]
 
 
-def thermostat_step(th, p, at, dof, twice):
+def body_thermostat_step(th, p, at, dof, twice):
     """One timestep of the chain at ``p[at]`` for `dof` degrees of freedom with `twice` their kinetic energy."""
     n, loops, kt = int(p[21]), int(p[22]), p[26] * p[27]
     rate, push, mass = p[at + n:at + 2 * n], p[at + 2 * n:at + 3 * n], p[at + 3 * n:at + 4 * n]
@@ -66,15 +66,15 @@ def thermostat_step(th, p, at, dof, twice):
     for _ in range(loops):
         for j in range(int(p[23])):
             w = p[66 + j] * th.dt / loops
-            inward(p, at, n, w, 1.0)
+            body_inward(p, at, n, w, 1.0)
             for k in range(n):
                 p[at + k] += w * rate[k]
             for k in range(1, n):
                 push[k] = (mass[k - 1] * rate[k - 1] * rate[k - 1] - kt) / mass[k]
-            outward(p, at, n, w, 1.0, kt)
+            body_outward(p, at, n, w, 1.0, kt)
 
 
-def barostat_step(th, p):
+def body_barostat_step(th, p):
     """One timestep of the chain of the barostat."""
     at, n, loops, kt = 80 + 8 * int(p[21]), int(p[56]), int(p[22]), p[26] * p[27]
     rate, push, mass = p[at + n:at + 2 * n], p[at + 2 * n:at + 3 * n], p[at + 3 * n:at + 4 * n]
@@ -93,15 +93,15 @@ def barostat_step(th, p):
     for _ in range(loops):
         for j in range(int(p[23])):
             w = p[66 + j] * th.dt / loops
-            inward(p, at, n, w, 0.5)
+            body_inward(p, at, n, w, 0.5)
             for k in range(n):
                 p[at + k] += w * rate[k]
             for k in range(1, n):
                 push[k] = (mass[k - 1] * rate[k - 1] * rate[k - 1] - kt) / mass[k]
-            outward(p, at, n, w, 0.5, kt)
+            body_outward(p, at, n, w, 0.5, kt)
 
 
-def push_box(th, s, p, kinetic, half):
+def body_push_box(th, s, p, kinetic, half):
     """Half a timestep of the strain rates by the pressure; `kinetic (3,)` is the sum of m v v, energy units. One thread calls it."""
     h, planar = s.box.vectors, p[11] == 2.0
     volume = h[0, 0] * h[1, 1] * (1.0 if planar else h[2, 2])
@@ -113,16 +113,16 @@ def push_box(th, s, p, kinetic, half):
             for k in range(s.acc.shape[1]):
                 total += s.acc[t, k, 2 + d]
         pressure[d] = total / volume * p[57]
-    couple_pressure(p, pressure)
+    body_couple_pressure(p, pressure)
     p[64] = 0.0
     for d in range(3):
         if p[34 + d] != 0.0:
-            p[61 + d] = ramp(th, p[37 + d], p[40 + d])
+            p[61 + d] = body_ramp(th, p[37 + d], p[40 + d])
             p[64] += p[61 + d] / p[33]
-    strain(p, pressure, volume, half)
+    body_strain(p, pressure, volume, half)
 
 
-def couple_pressure(p, pressure):
+def body_couple_pressure(p, pressure):
     """Coupled directions feel the mean of their pressures."""
     kind = int(p[31])
     if p[32] != 0.0:
@@ -138,7 +138,7 @@ def couple_pressure(p, pressure):
         pressure[0] = pressure[2] = 0.5 * (pressure[0] + pressure[2])
 
 
-def strain(p, pressure, volume, half):
+def body_strain(p, pressure, volume, half):
     """The change of the strain rates; ``p[28]`` and ``p[29]`` are in units of mass and velocity."""
     dof, slow = p[24] + p[25], math.exp(-half * p[80 + 8 * int(p[21]) + int(p[56])])
     p[30] = 0.0
@@ -149,7 +149,7 @@ def strain(p, pressure, volume, half):
             p[30] += p[49 + d] / dof
 
 
-def scale_box(th, s, p, half):
+def body_scale_box(th, s, p, half):
     """Half a timestep of the box about its centre, and of the atoms in it. All threads call it."""
     h, o, bit, mine = s.box.vectors, s.box.origin, np.int32(np.int64(p[59])), slice(th.lo, th.hi)
     f0, f1, f2 = math.exp(half * p[49]), math.exp(half * p[50]), math.exp(half * p[51])
