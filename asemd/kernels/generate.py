@@ -164,7 +164,7 @@ class Builder:
     def __init__(self, title: str):
         self.lines = [f'"""{title}"""', _HEADER]
         self.constants: dict[str, object] = {}
-        self._have: set[str] = set()
+        self._have: dict[str, Callable] = {}
 
     def line(self, text: str) -> None:
         self.lines.append(text)
@@ -184,11 +184,20 @@ class Builder:
         self.lines.append(source)
 
     def function(self, function: Callable, name: str | None = None, *, fast: bool = False, real: bool = False, vector: bool = False) -> str:
-        """Paste a Python function; returns its name there. The same name is pasted once."""
+        """Paste a Python function; returns its name there. The same function is pasted once.
+
+        Raises
+        ------
+        NameError
+            Another function has that name.
+        """
         name = name or function.__name__
-        if name not in self._have:
-            self._have.add(name)
+        known = self._have.get(name)
+        if known is None:
+            self._have[name] = function
             self.text(plain_source(function, name, real, vector, self.constants), f"fastmath={FAST}" if fast else "")
+        elif known is not function and text_of(known) != text_of(function):
+            raise NameError(f"two functions named {name} in one module of kernels: of {known.__module__} and {function.__module__}")
         return name
 
     def use(self, module: types.ModuleType, name: str, alias: str | None = None) -> None:
