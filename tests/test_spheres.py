@@ -81,6 +81,7 @@ def test_energy_of_each_atom_adds_up():
     ("fix 2 all nve/sphere upate dipole", "did you mean update"),
     ("compute x all temp/sphere bias t", "removes no bias"),
     ("set atom 3 diameter 0\nrun 0", "atom 3 is a point"),
+    ("fix 2 all efield 1 0 0\nrun 0", "torques of fix efield"),
 ])
 def test_mistakes(line, said):
     with pytest.raises(InputError, match=said):

@@ -103,6 +103,16 @@ class NVESphere(Fix):
             raise InputError(f"fix {self.style} cannot act on the torques of angle_style dipole yet: leave one of the two out")
         return np.array([loop.group_bit(self.group), UPDATES.get(self.dipole, NONE), 0.5 if self.disc else 0.4, loop.units.ftm2v])
 
+    def setup(self, loop) -> None:
+        """
+        Raises
+        ------
+        InputError
+            Another fix turns the dipoles.
+        """
+        if loop.engine.torques:
+            raise InputError(f"fix {self.style} cannot act on the torques of fix efield on dipoles yet: leave one of the two out")
+
     def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
         """Angular velocities, torques, masses times radius squared, dipoles."""
         system, extra = loop.system, loop.system.extra
