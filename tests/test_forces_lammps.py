@@ -1,6 +1,9 @@
 """Fixes that change forces and positions do what LAMMPS's do: positions, velocities and outputs after two runs of a small liquid."""
 from __future__ import annotations
 
+import gzip
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scripted import by_lammps, have_lammps, measure, script, write_data
@@ -52,6 +55,8 @@ CASES = {
                           ["f_2", "f_2[1]", "f_2[2]"]),
     "restrain": (["fix 2 all restrain bond 1 9 2.0 4.0 3.0 5.0 lbound 2 30 5.0 5.0 9.0 9.5 angle 1 5 40 2.0 5.0 100 "
                   "dihedral 1 2 3 4 0.0 20 80 mult 3 dihedral 7 30 3 44 3 2 170", "fix_modify 2 energy yes", NVE], ["f_2", *THREE, "pe"]),
+    "tmd": ([NVE, "fix 2 some tmd 0.4 TARGET 4 STATISTICS"], []),
+    "tmd images": ([NVE, "run 3", "fix 2 all tmd 0.6 TARGETS 0"], []),
     "efield": (["fix 2 some efield 0.1 0.2 -0.3", "fix_modify 2 energy yes virial yes", NVE], ["f_2", *THREE, "pe", "press", "pxy"]),
     "efield region": (["fix 2 some efield 0.1 0.2 -0.3 region half", NVE], ["f_2", *THREE]),
     "efield variables": (["fix 2 some efield v_along v_one -0.1 energy v_well", "fix_modify 2 energy yes virial yes", NVE],
@@ -84,6 +89,7 @@ BY_PYTHON = ["group nobody subtract all all", "fix 9 nobody setforce v_one NULL 
 COMPILED = ("gravity vector", "wall/lj93")
 CHARGES = ["set type 1 charge 0.5", "set type 2 charge -0.8", "set type 3 charge 0.2"]
 RUNS = ["run 20", "run 10 start 0 stop 60"]
+WHOLE = ["run 20 start 0 stop 60", "run 10 start 0 stop 60"]     # a target that is not left again
 
 
 def make_cases(folder) -> dict[str, dict]:
@@ -93,15 +99,23 @@ def make_cases(folder) -> dict[str, dict]:
     r = np.linspace(0.3, 3.5, 33)
     rows = "".join(f"{k + 1} {x:.15g} {(x - 2.5)**4:.15g} {-4 * (x - 2.5)**3:.15g}\n" for k, x in enumerate(r))
     (folder / "wall.table").write_text(f"# a wall\n\nHARMONIC\nN 33\n\n{rows}")
+    atoms = (folder / "data3").read_text().split("# bond\n\n")[1].split("\n\n")[0].splitlines()
+    aims = [(row.split()[0], np.array(row.split()[3:6], float) + 0.3 * np.sin(7 * k + np.arange(3))) for k, row in enumerate(atoms[::-1])]
+    (folder / "target").write_text("".join(f"{i} {x:.15g} {y:.15g} {z:.15g}\n" for i, (x, y, z) in aims))
+    with gzip.open(folder / "targets.gz", "wt") as file:
+        file.write("0 12 xlo xhi\n0 12 ylo yhi\n0 12.5 zlo zhi\n")
+        file.writelines(f"{i} {x - 12:.15g} {y:.15g} {z + 12.5:.15g} 1 0 -1\n" for i, (x, y, z) in aims)
+    files = {"TABLE": "wall.table", "TARGETS": "targets.gz", "TARGET": "target", "STATISTICS": "statistics"}
     out = {}
     for name, (commands, values) in CASES.items():
         dimension = 2 if "2d" in name else 3
-        commands = [c.replace("TABLE", str(folder / "wall.table")) for c in commands]
+        for word, file in files.items():
+            commands = [c.replace(word, str(folder / file)) for c in commands]
         charged = "efield" in name
         commands = CHARGES * charged + commands + BY_PYTHON * (name not in COMPILED)
         out[name] = {"data": str(folder / ("charged" if charged else f"data{dimension}")), "dimension": dimension, "commands": commands,
                      "boundary": "f f f" if name.endswith(" f") else "p p p", "atom_style": "full" if charged else "bond",
-                     "values": values, "runs": RUNS}
+                     "values": values, "runs": WHOLE if "tmd" in name else RUNS}
     return out
 
 
@@ -114,7 +128,9 @@ def cases(tmp_path_factory):
 def expected(cases, tmp_path_factory):
     if not have_lammps():
         pytest.skip("the lammps module is not installed")
-    return by_lammps(cases, tmp_path_factory.mktemp("lammps"))
+    out = by_lammps(cases, tmp_path_factory.mktemp("lammps"))
+    (Path(cases["tmd"]["data"]).parent / "statistics").rename(Path(cases["tmd"]["data"]).parent / "statistics.lammps")
+    return out
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -126,6 +142,13 @@ def test_like_lammps(name, cases, expected):
             assert abs(a - b).max() <= 2e-12 * abs(b).max(), key
         for formula, a, b in zip(cases[name]["values"], ours["values"], theirs["values"], strict=True):
             assert a == pytest.approx(b, rel=1e-10, abs=1e-9), formula
+
+
+def test_statistics_of_tmd(cases, expected):
+    from asemd.lammps import Lammps
+    measure(Lammps, cases["tmd"])
+    folder = Path(cases["tmd"]["data"]).parent
+    assert np.loadtxt(folder / "statistics") == pytest.approx(np.loadtxt(folder / "statistics.lammps"), rel=1e-8)
 
 
 def test_numerical_forces(cases):

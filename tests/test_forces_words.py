@@ -52,6 +52,17 @@ def test_round_trip(line, lmp):
     assert getattr(asemd.fix, type(fix).__name__) is type(fix)
 
 
+@pytest.mark.parametrize(("text", "words", "message"), [
+    ("1 0 0 0\n2 0 0 0\n", "-1 FILE 0", "negative"), ("1 0 0 0\n2 0 0 0\n", "1 FILE 5", "file2"), ("1 0 0 0\n", "1 FILE 0", "atom 2"),
+    ("1 0 0 0\n2 0 0\n", "1 FILE 0", "line 2"), ("1 0 0 0 0 0 0\n", "1 FILE 0", "bounds"), ("1 0 0 0\n1 0 0 0\n", "1 FILE 0", "already"),
+    ("0 1 xlo xhi\n1 0 0 0\n", "1 FILE 0", "no image flags"), ("", "1 nowhere 0", "nowhere"), ("1 0 0 0\n", "1 FILE", "3 values"),
+])
+def test_bad_targets(text, words, message, lmp, tmp_path):
+    (tmp_path / "target").write_text(text)
+    with pytest.raises(InputError, match=message):
+        lmp.command("fix f all tmd " + words.replace("FILE", str(tmp_path / "target")))
+
+
 @pytest.mark.parametrize(("line", "message"), [
     ("aveforce 1 1", "needs fx fy fz"), ("aveforce 1 1 1 regoin ball", "did you mean region"), ("addtorque 1 1", "3 values"),
     ("addtorque 1 x 1", "number"), ("lineforce 0 0 0", "length 0"), ("planeforce 1 1", "3 values"), ("viscous", "1 value"),
