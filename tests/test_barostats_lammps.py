@@ -43,6 +43,19 @@ CASES = {
                     OUT + vector(37)),
     "nph one": ([f"fix 1 all nph z {P}"], OUT),
     "nph and langevin": ([f"fix 1 all nph iso {P}", "fix 2 all langevin 0 0 100 77"], OUT),
+    "press/berendsen": ([NVE, "fix 2 all press/berendsen iso 0 3000 100 modulus 9e3", "fix 3 all temp/berendsen 300 400 20"], OUT[:2]),
+    "press/berendsen, lengths": (["group rest subtract all some", "fix 1 some nvt temp 300 300 50", "fix 3 rest nve",
+                                  "fix 2 some press/berendsen x 0 3e3 99 y 0 3e3 99 z -500 500 80 couple xy modulus 9e3 dilate partial"],
+                                 OUT[:2]),
+    "press/berendsen, one, tail": (["pair_modify tail yes", NVE, "fix 2 all press/berendsen aniso 0 9 1000 z 0 3000 100 modulus 9e3"],
+                                   OUT[:2]),
+    "press/berendsen, biased": (["compute t all temp/com", NVE, "fix 2 all press/berendsen iso 0 3000 100 modulus 9e3",
+                                   "fix_modify 2 temp t"],
+                                OUT[:2]),
+    "press/berendsen, virial": (["compute p all pressure NULL pair", NVE, "fix 2 all press/berendsen aniso 0 3e3 99 couple yz modulus 9e3",
+                                 "fix_modify 2 press p"], OUT[:2]),
+    "press/berendsen, two dimensions": ([NVE, "fix 2 all press/berendsen x 0 300 100 y 0 300 100 couple xy modulus 9e3",
+                                         "fix 3 all enforce2d"], OUT[:2]),
     "nph and berendsen": ([f"fix 1 all nph iso {P}", "fix 2 all temp/berendsen 300 400 20"], OUT + ["f_2"]),
 }
 
@@ -95,6 +108,9 @@ ORTHOGONAL, SLAB, FLAT = "boundary p p p", "boundary p p f", "dimension 2\nbound
     (SLAB, "iso 1 1 1", "z needs a box that is periodic in z"), (SLAB, "x 1 1 1 yz 1 1 1", "periodic in z"),
     (SLAB, "x 1 1 1 scaleyz yes", "scaleyz needs"), (ORTHOGONAL, "tri 1 1 1", "triclinic"),
     (ORTHOGONAL, "x 1 1 1 couple xy", "needs a target for y"), (ORTHOGONAL, "x 1 1 1 y 2 2 1 couple xy", "same Pstart"),
+    (SLAB, "press/berendsen iso 1 1 1", "periodic in z"), (ORTHOGONAL, "press/berendsen x 1 1 1 couple xy", "needs a target for y"),
+    (FLAT, "press/berendsen z 1 1 1", "two dimensions"), (ORTHOGONAL, "press/berendsen iso 1 1 1 modulus 0", "modulus must be positive"),
+    (ORTHOGONAL, "press/berendsen xy 1 1 1", "unknown keyword"), (ORTHOGONAL, "press/berendsen modulus 3", "needs a pressure"),
     (FLAT, "z 1 1 1", "two dimensions"), (FLAT, "x 1 1 1 couple xz", "two dimensions"), (FLAT, "iso 1 1 1 scaleyz yes", "two dimensions"),
 ])
 def test_boxes_that_cannot_be_changed_that_way(first, words, message):
@@ -104,4 +120,4 @@ def test_boxes_that_cannot_be_changed_that_way(first, words, message):
     z = "-0.5 0.5" if first == FLAT else "0 5"
     lmp.commands_string(f"{first}\nregion b block 0 5 0 5 {z}\ncreate_box 1 b\nmass 1 1")
     with pytest.raises(InputError, match=message):
-        lmp.command(f"fix 1 all nph {words}")
+        lmp.command(f"fix 1 all {words}" if words.startswith("press") else f"fix 1 all nph {words}")

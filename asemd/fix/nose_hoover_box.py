@@ -18,6 +18,14 @@ FLIP = 0.6              # of a length: a tilt beyond it is flipped
 SMALLEST = 1e-6         # temperature that sets the masses of the box
 
 
+def tail_virial(loop, press: Pressure) -> float:
+    """The tail correction of a pressure, times the volume twice."""
+    if not loop.interactions.tail or not loop.engine.pair_terms or "pair" not in press.terms:
+        return 0.0
+    volume = abs(float(np.linalg.det(loop.system.box.cell)))
+    return loop.interactions.tail_correction(loop.system, loop.units)[1] * volume**2 / loop.units.nktv2p
+
+
 class NoseHooverBox(NoseHoover):
     """Base class of `asemd.fix.npt.NPT` and `asemd.fix.nph.NPH`, whose arguments it has.
 
@@ -181,11 +189,7 @@ class NoseHooverBox(NoseHoover):
 
     def resize(self, loop) -> None:
         self.q[5] = loop.system.n
-        box, tail = loop.system.box, 0.0
-        if loop.interactions.tail and loop.engine.pair_terms and "pair" in self.press.terms:
-            volume = abs(float(np.linalg.det(box.cell)))
-            tail = loop.interactions.tail_correction(loop.system, loop.units)[1] * volume**2 / loop.units.nktv2p
-        self.q[22] = tail
+        self.q[22] = tail_virial(loop, self.press)
 
     def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
         """Not by atom: the numbers of the barostat, see `asemd.fix.barostat`."""
