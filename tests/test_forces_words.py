@@ -1,6 +1,7 @@
 """Fixes that change forces and positions read and write their words, and say what is wrong with them."""
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import asemd.fix
@@ -50,6 +51,25 @@ def test_round_trip(line, lmp):
     lmp.command("unfix f")
     assert fix.to_lammps() == words
     assert getattr(asemd.fix, type(fix).__name__) is type(fix)
+
+
+def test_springs_of_chunks():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in [*filter(None, SETUP.split("\n")),
+                 "compute c all chunk/atom type", "compute d all chunk/atom type", "compute m all com/chunk c"]:
+        lmp.command(line)
+    for words, message in (("1 c", "3 values"), ("x c m", "number"), ("1 m m", "not chunk/atom"), ("1 c d", "not com/chunk"),
+                           ("1 d m", "not same"), ("1 c k", "no compute k")):
+        with pytest.raises(InputError, match=message):
+            lmp.command(f"fix f one spring/chunk {words}")
+    lmp.command("fix f one spring/chunk 3.0 c m")
+    assert lmp.session.scene.fixes["f"].to_lammps() == ["3.0", "c", "m"]
+    for line in ("run 0 post no", "displace_atoms all move 0.3 0.1 0", "run 0 post no"):
+        lmp.command(line)
+    fix, system = lmp.session.scene.fixes["f"], lmp.session.scene.system
+    assert fix.scalar() == pytest.approx(0.15)
+    assert system.f == pytest.approx(np.tile([-0.45, -0.15, 0.0], (2, 1)))      # minus the gradient, half of it for each of two atoms
+    lmp.close()
 
 
 @pytest.mark.parametrize(("text", "words", "message"), [
