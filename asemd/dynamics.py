@@ -198,10 +198,12 @@ class MolecularDynamics(ASEMolecularDynamics):
             calls = [interval - self.nsteps % interval if interval > 0 else -interval - self.nsteps for _, interval, _, _ in self.observers]
             stretch = min([longest, end - self.nsteps, *(c for c in calls if c > 0)])
             self._advance(stretch, begin, end)
-            self.nsteps += stretch
+            self.nsteps = self._loop.step
             self.log()
             self.call_observers()
             yield self.nsteps == self.max_steps
+            if self._loop is not None and self._loop.halted:
+                break
         if self._loop is not None:
             self._loop.finish()
 

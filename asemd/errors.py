@@ -71,6 +71,10 @@ class SimulationError(AsemdError):
     """The physics went wrong: an atom lost, a bond past its limit, NaN; the message names atom ids."""
 
 
+class Halted(SimulationError):
+    """A condition holds on which the user wants a run to fail; nothing went wrong with it."""
+
+
 class LostAtoms(SimulationError):
     """Atoms that are beyond a fixed face of the box, where nothing interacts with them.
 

@@ -61,7 +61,7 @@ class Loop:
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
-        self._module, self._chunk = None, 100
+        self._module, self._chunk, self.halted = None, 100, False
         self.watchdog = Watchdog(self)
 
     def group_bit(self, name: str) -> int:
@@ -166,7 +166,7 @@ class Loop:
 
     # ---- running ------------------------------------------------------------------------------------------------------------------------
     def advance(self, steps: int, virial: bool = True, energies: bool = False, virials: bool = False, progress=None) -> Result | None:
-        """Run exactly `steps` steps; the system is in sync afterwards.
+        """Run exactly `steps` steps, or until a fix sets `halted`; the system is in sync afterwards.
 
         Parameters
         ----------
@@ -184,11 +184,10 @@ class Loop:
         KeyboardInterrupt
             After Ctrl-C, between two steps: `step` and the system are those of the last complete one, and the loop can go on.
         """
-        want = virial or energies or virials
-        last = self.step + int(steps)
+        want, last, self.halted = virial or energies or virials, self.step + int(steps), False
         self.engine.bonds.hold(False)
         with Interrupt() as interrupt, self.watchdog as watchdog:
-            while self.step < last and not interrupt.asked:
+            while self.step < last and not (interrupt.asked or self.halted):
                 whole, due = self._next_whole(self.step), self._next_end(self.step)
                 if whole == self.step + 1:
                     self._python_step(want and whole == last)
@@ -208,7 +207,7 @@ class Loop:
             self.engine.store()
             raise KeyboardInterrupt
         self._take_timings()
-        if not want:
+        if not want or self.step < last:
             self.engine.store()
             return None
         with self.watchdog as watchdog:

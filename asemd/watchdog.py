@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asemd.errors import InputError, LostAtoms, SimulationError
+from asemd.errors import Halted, InputError, LostAtoms, SimulationError
 from asemd.result import Snapshot
 
 if TYPE_CHECKING:
@@ -289,6 +289,8 @@ class Watchdog:
         return self
 
     def __exit__(self, kind, error, trace) -> None:
+        if isinstance(error, Halted):
+            return
         if isinstance(error, SimulationError) and self.on and self.explains and not hasattr(error, "verdict"):
             self.explain(error)
 

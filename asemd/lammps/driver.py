@@ -224,13 +224,14 @@ class Driver:
 
     def _advance(self, begin: int, end: int) -> None:
         session, loop, timer = self.session, self.session.loop, self.session.timer
-        rate, step = 0.0, begin
+        rate, step, loop.halted = 0.0, begin, False
         stopping = False
         while step < end and not stopping:
             target = min(end, self._next_output(step))
             while step < target and not session.interrupted:
-                if timer.check(step - begin):
-                    session.warn("Wall time limit reached")
+                if loop.halted or timer.check(step - begin):
+                    if not loop.halted:
+                        session.warn("Wall time limit reached")
                     checkpoint.renew(loop)
                     self._provide(step, step, fresh=True)
                     return
@@ -247,8 +248,7 @@ class Driver:
                     self.scene.step = loop.step
                     restart.write_due(session, loop.step, checkpoint.renew(loop), all_of_them=True)
                     raise
-                step += chunk
-                self.scene.step = step
+                step = self.scene.step = loop.step
                 rate = (step - begin) / max(time.perf_counter() - self.progress.started - self.output_seconds, 1e-9)
                 self._watch("update", step - begin)
             started = time.perf_counter()

@@ -123,6 +123,9 @@ class Minimization(Driver):
             if scene.min_style in DAMPED:
                 system.v[:] = v
             self._watch("update", iteration)
+            for f in loop.fixes:
+                if f.style == "halt" and f.next_end(scene.step - 1) == scene.step:
+                    f.end_of_step(loop)
             if due(scene.step):
                 began = time.perf_counter()
                 self._provide(scene.step, scene.step, fresh=True)
@@ -130,6 +133,8 @@ class Minimization(Driver):
                 self.output_seconds += time.perf_counter() - began
             if restart.due(session, scene.step) or (session.interrupted and scene.restarts):
                 restart.write_due(session, scene.step, all_of_them=session.interrupted)
+            if loop.halted:
+                return WALLTIME
             if session.timer.check(iteration):
                 session.warn("Wall time limit reached")
                 return WALLTIME
