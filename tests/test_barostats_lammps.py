@@ -13,6 +13,11 @@ FAR = "change_box all triclinic xy delta 7.0 xz delta -1 yz delta -6.9 remap uni
 T, P = "temp 300 350 50", "0 500 100"
 
 
+PULL = ["fix 9 some addforce 0.1 0 0"]       # so that the centre of mass does not move evenly
+BIASED = {"com": "temp/com", "partial": "temp/partial 1 0 1", "profile": "temp/profile 1 1 0 z 3", "rotate": "temp/rotate",
+          "ramp": "temp/ramp vx -0.001 0.002 z 0 12 units box"}
+
+
 def vector(n):
     return [f"f_1[{i + 1}]" for i in range(n)]
 
@@ -56,6 +61,13 @@ CASES = {
                                  "fix_modify 2 press p"], OUT[:2]),
     "press/berendsen, two dimensions": ([NVE, "fix 2 all press/berendsen x 0 300 100 y 0 300 100 couple xy modulus 9e3",
                                          "fix 3 all enforce2d"], OUT[:2]),
+    **{f"nvt {name}": ([f"compute t all {words}", "fix 1 all nvt temp 300 350 50 tloop 2", "fix_modify 1 temp t", *PULL],
+                       ["c_t", "ecouple", *vector(12)]) for name, words in BIASED.items()},
+    **{f"npt {name}": ([f"compute t all {words}", f"fix 1 all npt {T} {how} {P}", "fix_modify 1 temp t", *PULL], ["c_t", *OUT])
+       for how, (name, words) in zip(("iso", "aniso", "iso", "aniso", "iso"), BIASED.items(), strict=False)},
+    "nph tri, biased": ([TILT, "compute t all temp/com", f"fix 1 all nph tri {P}", "fix_modify 1 temp t", *PULL], ["c_t", *OUT]),
+    "npt pressure with another bias": (["compute t all temp/com", "compute p all pressure t", f"fix 1 all npt {T} iso {P}",
+                                        "fix_modify 1 press p"], OUT),
     "nph and berendsen": ([f"fix 1 all nph iso {P}", "fix 2 all temp/berendsen 300 400 20"], OUT + ["f_2"]),
 }
 
@@ -121,3 +133,12 @@ def test_boxes_that_cannot_be_changed_that_way(first, words, message):
     lmp.commands_string(f"{first}\nregion b block 0 5 0 5 {z}\ncreate_box 1 b\nmass 1 1")
     with pytest.raises(InputError, match=message):
         lmp.command(f"fix 1 all {words}" if words.startswith("press") else f"fix 1 all nph {words}")
+
+
+def test_temperatures_that_are_refused():
+    from asemd.errors import InputError
+    from asemd.lammps import Lammps
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncompute t all temp/region b\nfix 1 all nvt temp 1 1 1")
+    with pytest.raises(InputError, match="fix nvt takes a compute of style temp, temp/com.*; t has style temp/region"):
+        lmp.command("fix_modify 1 temp t")

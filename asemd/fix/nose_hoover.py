@@ -6,9 +6,11 @@ one. `asemd.fix.nvt` has the formulas of the chain.
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
+from asemd.compute.pressure import find_temperature
 from asemd.errors import InputError, nearest
 from asemd.fix.thermostat import Thermostat
 from asemd.words import choice, number, take, whole, yes_no
@@ -84,6 +86,27 @@ class NoseHoover(Thermostat):
 
     integrates = True
     levels = "every"
+    takes_bias = True
+    kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate")      # of the temperature it takes
+
+    def modify_option(self, keyword, value, session):
+        if keyword == "temp" and find_temperature(value, session, "fix_modify temp").style not in self.kinds:
+            raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style {', '.join(self.kinds)}; {value} has style "
+                             f"{session.scene.computes[value].style}")
+        return super().modify_option(keyword, value, session)
+
+    @property
+    def all_plain(self) -> bool:
+        """Whether compiled hooks can measure all that it needs."""
+        return self.plain
+
+    def hooks(self) -> dict[str, bool]:
+        for name in ("initial_integrate", "final_integrate"):
+            vars(self).pop(name, None)
+        if not self.all_plain:
+            from asemd.fix import nose_hoover_biased as biased
+            self.initial_integrate, self.final_integrate = partial(biased.begin, self), partial(biased.end, self)
+        return super().hooks()
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 3, loops: int = 1, drag: float = 0.0):
         self.thermal = temperature is not None
@@ -149,6 +172,8 @@ class NoseHoover(Thermostat):
         return (words if self.thermal else []) + (["drag", repr(self.drag)] if self.drag else [])
 
     def parameters(self, loop) -> np.ndarray:
+        if not self.all_plain and hasattr(loop, "levels"):
+            raise InputError(f"fix {self.id} (style {self.style}): under run_style respa the temperature must be a compute of style temp")
         self.p = self.p.copy()
         self.p[:11] = (loop.group_bit(self.group), loop.group_bit(self.temp.group), self.temp.dof(loop), loop.units.boltz, loop.units.mvv2e,
                        self.start, self.stop, 1.0 / self.damping, self.drag, self.chain, self.loops)

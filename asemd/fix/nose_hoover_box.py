@@ -157,6 +157,10 @@ class NoseHooverBox(NoseHoover):
             raise InputError(f"{what}: coupled lengths ({self.couple}) need the same Pstart Pstop Pdamp")
 
     # ---- a run --------------------------------------------------------------------------------------------------------------------------
+    @property
+    def all_plain(self) -> bool:
+        return self.plain and type(self.press.temperature or self.temp) is Temp
+
     def hooks(self) -> dict[str, bool]:
         hooks = super().hooks()
         if not self.flip or self.box_moves != "shape":

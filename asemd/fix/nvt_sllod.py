@@ -101,7 +101,8 @@ class NVTSllod(NVT):
     """
 
     style = "nvt/sllod"
-    takes_bias = True
+    kinds = ("temp/deform",)
+    all_plain = True        # its compiled hooks measure the temperature of compute temp/deform
     size = 12
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 1, drag: float = 0.0,
@@ -123,12 +124,6 @@ class NVTSllod(NVT):
 
     def to_lammps(self) -> list[str]:
         return [*super().to_lammps(), "psllod", "yes" if self.psllod else "no"]
-
-    def modify_option(self, keyword, value, session):
-        taken = super().modify_option(keyword, value, session)
-        if keyword == "temp" and type(self.temp) is not TempDeform:
-            raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp/deform, {value} is of {self.temp.style}")
-        return taken
 
     def atom_arrays(self, loop):
         """The numbers of fix deform, among which are the rates of the box."""
