@@ -47,6 +47,9 @@ def split(words: Sequence[str], commands: Collection[str]) -> tuple[list[str], S
                     break
                 end += 1
             taken.append(words[i:end])
+            more = words[end:end + 1]
+            if most == 0 and more and not (is_switch(more[0]) or more[0] in commands or more[0] == "-" or os.path.isfile(more[0])):
+                raise InputError(f"{words[i]} takes no value, got {more[0]!r}")
         elif is_switch(words[i]) and words[i][1] not in "-o":      # -o is an option of asemd
             raise InputError(f"unknown switch {words[i]!r}{nearest(words[i][1:], KNOWN)}")
         else:
