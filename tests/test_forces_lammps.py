@@ -56,6 +56,15 @@ CASES = {
                            "fix_modify 2 energy yes virial yes", NVE], ["f_2", "f_2[1]", "f_2[2]", "pe", "press", "pxx"]),
     "wall/table spline": (["fix 2 all wall/table spline 23 xlo -0.5 TABLE HARMONIC 2.1 yhi 13 TABLE HARMONIC 3.0 pbc yes units box", NVE],
                           ["f_2", "f_2[1]", "f_2[2]"]),
+    **{f"wall/region {name}": ([*region, "group in region r", f"fix 2 in wall/region r {words}", "fix_modify 2 energy yes virial yes", NVE],
+                               ["f_2", *THREE, "pe", "press", "pxy"])
+       for name, region, words in (
+        ("lj93", ["region r sphere 6 6 6 20"], "lj93 0.5 1.0 14.5"),
+        ("morse", ["region r block INF INF -3 INF INF 15"], "morse 2 1.1 1 4.5"),
+        ("cylinder", ["region r cylinder x 6 6 3 3 8 side out"], "lj1043 1e-6 1.0 2.5"),
+        ("cone", ["region r cone z 6 6 1 3 2 9 side out"], "harmonic 5 1 2.5"),
+        ("plane", ["region r plane 3 4 5 1 2 0"], "harmonic 5 1 2.5"),
+        ("prism", ["region r prism 2 9 2 9 3 9 1 -1 2 side out"], "harmonic 5 1 2.5"))},
     "restrain": (["fix 2 all restrain bond 1 9 2.0 4.0 3.0 5.0 lbound 2 30 5.0 5.0 9.0 9.5 angle 1 5 40 2.0 5.0 100 "
                   "dihedral 1 2 3 4 0.0 20 80 mult 3 dihedral 7 30 3 44 3 2 170", "fix_modify 2 energy yes", NVE], ["f_2", *THREE, "pe"]),
     "tmd": ([NVE, "fix 2 some tmd 0.4 TARGET 4 STATISTICS"], []),

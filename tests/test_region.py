@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
 
-from asemd.errors import InputError
+from asemd.errors import AsemdError, InputError
+from asemd.fix.wall_region import colloid
+from asemd.lammps import Lammps
 from asemd.region.block import Block
 from asemd.region.cone import Cone
 from asemd.region.cylinder import Cylinder
@@ -120,3 +122,63 @@ def test_defined_twice_and_deleted():
     session = asemd("region r block 0 1 0 1 0 1\nregion r delete\nregion r sphere 0 0 0 1")
     with pytest.raises(InputError, match="defined already"):
         session.execute("region r block 0 1 0 1 0 1")
+
+
+SURFACES = ["block 2 9 -5 5 1 6", "sphere 5 5 5 3", "cylinder x 5 5 3 2 8", "cone y 5 5 1 4 2 8", "cone z 5 5 4 0 2 8",
+            "plane 5 5 5 1 2 -1", "prism 2 8 3 9 1 7 1 -2 0.5", "block 3 7 2 8 3 6 move v_a NULL NULL rotate v_a 5 5 5 1 2 3"]
+
+
+@pytest.mark.parametrize("side", ["in", "out"])
+@pytest.mark.parametrize("words", SURFACES)
+def test_surface(words, side):
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("region all block 0 10 0 10 0 10", "create_box 1 all", "variable a equal 0.7", f"region r {words} side {side} units box"):
+        lmp.command(line)
+    region, cutoff, h = lmp.session.scene.regions["r"], 1.5, 1e-6
+    x = np.random.default_rng(2).uniform(0, 10, (300, 3))
+
+    def energy(x):
+        index, d = region.surface(x, cutoff)
+        return np.bincount(index, (cutoff - np.sqrt((d * d).sum(axis=1)))**2, len(x))
+    index, d = region.surface(x, cutoff)
+    r = np.sqrt((d * d).sum(axis=1))
+    assert len(index) > 20 and region.inside(x[index]).all()
+    points = x[index] - d       # on the surface: a step further is outside, unless the face goes on beyond its edge
+    assert region.inside(points + 1e-6 * d / r[:, None]).mean() > 0.9
+    assert region.inside(points - 1e-6 * d / r[:, None]).mean() < 0.1
+    slope = 2 * (r - cutoff)[:, None] * d / r[:, None]
+    slope = np.stack([np.bincount(index, slope[:, k], len(x)) for k in range(3)], axis=1)
+    for k in range(3):
+        step = h * np.eye(3)[k]
+        assert slope[:, k] == pytest.approx((energy(x + step) - energy(x - step)) / (2 * h), abs=1e-5)
+    lmp.close()
+
+
+def test_no_surface():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("region all block 0 10 0 10 0 10", "create_box 1 all", "create_atoms 1 single 5 5 5", "mass 1 1",
+                 "region e ellipsoid 5 5 5 3 2 1",
+                 "region o sphere 5 5 5 3 open 1", "region p prism INF INF 0 1 0 1 0 0 0", "region u union 2 e all",
+                 "region s sphere 2 2 2 1"):
+        lmp.command(line)
+    for words, message in (("e harmonic 1 1 1", "style ellipsoid.*not supported"), ("o harmonic 1 1 1", "open faces"),
+                           ("p harmonic 1 1 1", "INF"), ("u harmonic 1 1 1", "style ellipsoid"), ("all colloid 1 1 1", "radius"),
+                           ("s harmonic 1 1 1", "atom 1 is on the surface of region s or outside"), ("x harmonic 1 1 1", "region"),
+                           ("s harmoni 1 1 1", "did you mean harmonic"), ("s morse 1 1 1", "4 values"), ("s lj93 1 1 0", "above 0"),
+                           ("s lj126 1 x 1", "number"), ("s", "2 values")):
+        with pytest.raises(AsemdError, match=message):
+            lmp.command(f"fix f all wall/region {words}")
+            lmp.command("run 1")
+        if "f" in lmp.session.scene.fixes:
+            lmp.command("unfix f")
+    lmp.command("fix f all wall/region s morse 1.0 2 3 4")
+    assert lmp.session.scene.fixes["f"].to_lammps() == ["s", "morse", "1.0", "2.0", "3.0", "4.0"]
+    lmp.close()
+
+
+def test_colloid_wall():
+    r, h = np.array([0.5, 1.0, 2.0]), 1e-6
+    e, slope = colloid(r, 0.3, 4.0, 0.5)
+    assert slope == pytest.approx((colloid(r + h, 0.3, 4.0, 0.5)[0] - colloid(r - h, 0.3, 4.0, 0.5)[0]) / (2 * h), rel=1e-6)
+    assert abs(slope) == pytest.approx([34.00321356, 0.08572072, 0.00470898], rel=1e-6)      # LAMMPS
+    assert e[0] > 0.0 > e[1]

@@ -114,6 +114,7 @@ class Forcing(Fix):
     def follow(self, loop: Loop) -> None:
         if self.region is not None:
             loop.sync_out()
+            self.region.see(loop)
             self.a[:, 0] = self.region.inside(loop.system.x)
         for k, value in enumerate(self.values):
             if callable(value):

@@ -16,6 +16,8 @@ from asemd.region.motion import Motion, move, rotate
 from asemd.words import BIG, choice, number, take, whole
 
 FACES = 6
+NO_SURFACE = "distances from its surface are not supported; use block, sphere, cylinder, cone, plane or prism, or " \
+             "unions and intersections of these"
 
 
 class Region:
@@ -33,6 +35,7 @@ class Region:
     motion: Motion | None = None
     open_faces: tuple[int, ...] = ()
     source: Source | None = None
+    session: Any = None
 
     def __init__(self, side: str = "in"):
         self.side = side
@@ -41,6 +44,12 @@ class Region:
     def varies(self) -> bool:
         """Whether the region may be another one on another step."""
         return self.motion is not None or self.source is not None
+
+    def see(self, loop) -> None:
+        """In the midst of a run: its variables have their values of the present step of the loop."""
+        if self.session is not None:
+            loop.system.step = loop.step
+            self.session.look(loop)
 
     def renew(self) -> None:
         """Take the values that its variables have now."""
@@ -74,6 +83,56 @@ class Region:
         found = self.contains(x if self.motion is None else self.motion.undo(x))
         return found if self.side == "in" else ~found
 
+    def surface(self, x: np.ndarray, cutoff: float) -> tuple[np.ndarray, np.ndarray]:
+        """Points of the surface near points of the region.
+
+        Inside (``side in``) each face counts, with the point of it that is nearest; outside only the nearest point of all. Points that are
+        not in the region have none.
+
+        Parameters
+        ----------
+        x : (n, 3) float array
+            Positions, distance units.
+        cutoff : float
+            Points of the surface at this distance and beyond are left out.
+
+        Returns
+        -------
+        index : (m,) int array
+            Which of the positions each point belongs to.
+        d : (m, 3) float array
+            From the surface to the position.
+
+        Raises
+        ------
+        InputError
+            A style whose surface is not known, open faces.
+        """
+        if self.open_faces:
+            raise InputError(f"region {self.id} (style {self.style}): the surface of a region with open faces is not supported")
+        self.renew()
+        at = x if self.motion is None else self.motion.undo(x)
+        near = (self.faces if self.side == "in" else self.outside)(at)
+        index, d = [], []
+        for rows, away in near:
+            close = (away * away).sum(axis=1) < cutoff * cutoff
+            index.append(rows[close])
+            d.append(away[close] if self.motion is None else self.motion.turn(away[close]))
+        return np.concatenate(index), np.concatenate(d)
+
+    def faces(self, x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """For each face, which points are inside the geometry and the vectors to them from their nearest points on the face."""
+        raise InputError(f"region {self.id} (style {self.style}): {NO_SURFACE}")
+
+    def outside(self, x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Which points are outside the geometry and the vectors to them from their nearest points on the surface."""
+        rows = np.flatnonzero(~self.contains(x))
+        return [(rows, x[rows] - self.nearest(x[rows]))]
+
+    def nearest(self, x: np.ndarray) -> np.ndarray:
+        """(n, 3) the points of the surface that are nearest to points outside the geometry."""
+        raise InputError(f"region {self.id} (style {self.style}): {NO_SURFACE}")
+
     def extent(self) -> tuple[np.ndarray, np.ndarray] | None:
         """`bounds` of the region itself: None for ``side out`` and for regions that vary."""
         return self.bounds() if self.side == "in" and not self.varies else None
@@ -99,6 +158,7 @@ class Region:
         if given.motion is not None:
             region.motion = given.motion.scaled(spacings)
         region.open_faces = given.open_faces
+        region.session = session if region.varies else None
         return region
 
     @classmethod

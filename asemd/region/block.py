@@ -19,6 +19,13 @@ class Block(Region):
     def contains(self, x):
         return ((x >= self.lo) & (x <= self.hi)).all(axis=1)
 
+    def faces(self, x):
+        rows = np.flatnonzero(self.contains(x))
+        return [(rows, (x[rows] - face) * axis) for face in (self.lo, self.hi) for axis in np.eye(3)]
+
+    def nearest(self, x):
+        return np.clip(x, self.lo, self.hi)
+
     def bounds(self):
         return self.lo, self.hi
 

@@ -13,6 +13,14 @@ def across(axis: int) -> tuple[int, int]:
     return ((1, 2), (0, 2), (0, 1))[axis]
 
 
+def on_segment(r, h, a, b):
+    """The points of the segment from `a` to `b` that are nearest to points of a plane: two arrays of coordinates."""
+    dr, dh = b[0] - a[0], b[1] - a[1]
+    square = dr * dr + dh * dh
+    t = np.clip(((r - a[0]) * dr + (h - a[1]) * dh) / square, 0.0, 1.0) if square > 0.0 else 0.0 * r
+    return a[0] + t * dr, a[1] + t * dh
+
+
 class Cone(Region):
     """A cone along `axis` (0, 1, 2) with radii `low` at `lo` and `high` at `hi`; `center` (2,) is its place in the two other directions."""
 
@@ -31,6 +39,37 @@ class Cone(Region):
         a, b = across(self.axis)
         along, d1, d2 = x[:, self.axis], x[:, a] - self.center[0], x[:, b] - self.center[1]
         return (np.sqrt(d1 * d1 + d2 * d2) <= self.radius_at(along)) & (along >= self.lo) & (along <= self.hi)
+
+    def polar(self, x):
+        """Distance from the axis, unit vectors away from it, and the place along it."""
+        a, b = across(self.axis)
+        out = np.zeros_like(x)
+        out[:, a], out[:, b] = x[:, a] - self.center[0], x[:, b] - self.center[1]
+        r = np.sqrt((out * out).sum(axis=1))
+        return r, out / np.where(r > 0.0, r, 1.0)[:, None], x[:, self.axis]
+
+    def back(self, r, out, along):
+        """Vectors whose parts away from the axis and along it are given."""
+        return r[:, None] * out + along[:, None] * np.eye(3)[self.axis]
+
+    def faces(self, x):
+        rows = np.flatnonzero(self.contains(x))
+        r, out, h = self.polar(x[rows])
+        sr, sh = on_segment(r, h, (self.radii[0], self.lo), (self.radii[1], self.hi))
+        side = np.flatnonzero(r > 0.0)
+        return [(rows[side], self.back(r - sr, out, h - sh)[side]),
+                *((rows, self.back(0.0 * h, out, h - end)) for end in (self.lo, self.hi))]
+
+    def nearest(self, x):
+        r, out, h = self.polar(x)
+        lo, hi = (self.radii[0], self.lo), (self.radii[1], self.hi)
+        best, away = np.full(len(x), np.inf), np.zeros_like(x)
+        for a, b in (((0.0, self.lo), lo), (lo, hi), (hi, (0.0, self.hi))):
+            sr, sh = on_segment(r, h, a, b)
+            square = (r - sr) ** 2 + (h - sh) ** 2
+            away = np.where((square < best)[:, None], self.back(r - sr, out, h - sh), away)
+            best = np.minimum(best, square)
+        return x - away
 
     def bounds(self):
         largest = max(self.radii)

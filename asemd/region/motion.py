@@ -40,6 +40,15 @@ class Motion:
         across = d - along
         return point + along + np.cos(theta) * across + np.sin(theta) * np.cross(axis, d)
 
+    def turn(self, d: np.ndarray) -> np.ndarray:
+        """Directions in the region as it was defined -> those of now: (n, 3) -> (n, 3)."""
+        if self.angle is None:
+            return d
+        theta, axis = self.value(self.angle), np.array(self.axis)
+        axis /= np.sqrt(axis @ axis)
+        along = (d @ axis)[:, None] * axis
+        return along + np.cos(theta) * (d - along) + np.sin(theta) * np.cross(axis, d)
+
 
 def move(motion: Motion, words: list[str], what: str) -> None:
     """``v_x v_y v_z``, each or NULL."""

@@ -27,6 +27,13 @@ class Plane(Region):
         nx, ny, nz = self.normal
         return dx * nx + dy * ny + dz * nz >= 0.0
 
+    def faces(self, x):
+        rows = np.flatnonzero(self.contains(x))
+        return [(rows, x[rows] - self.nearest(x[rows]))]
+
+    def nearest(self, x):
+        return x - ((x - self.point) @ self.normal)[:, None] * self.normal
+
     def bounds(self):
         return None
 

@@ -34,6 +34,38 @@ class Prism(Region):
         s0 = dx / a - xy * dy / (a * b) + (xy * yz - b * xz) * dz / (a * b * c)
         return (s0 >= 0.0) & (s0 <= 1.0) & (s1 >= 0.0) & (s1 <= 1.0) & (s2 >= 0.0) & (s2 <= 1.0)
 
+    def _finite(self):
+        if np.any(np.abs([self.lo, self.hi]) >= BIG):
+            raise InputError(f"region {self.id} (style prism): the surface of a prism with bounds INF is not supported; use block")
+
+    def faces(self, x):
+        self._finite()
+        rows, out = np.flatnonzero(self.contains(x)), []
+        for k in range(3):
+            normal = np.cross(self.cell[(k + 1) % 3], self.cell[(k + 2) % 3])
+            normal /= np.sqrt(normal @ normal)
+            for corner in (self.lo, self.lo + self.cell[k]):
+                out.append((rows, ((x[rows] - corner) @ normal)[:, None] * normal))
+        return out
+
+    def nearest(self, x):
+        self._finite()
+        best, point = np.full(len(x), np.inf), np.zeros_like(x)
+
+        def offer(p, valid=True):
+            square = ((x - p) ** 2).sum(axis=1)
+            better = (square < best) & valid
+            point[better], best[better] = p[better], square[better]
+        for k in range(3):
+            a, b, c = self.cell[k], self.cell[(k + 1) % 3], self.cell[(k + 2) % 3]
+            for corner in (self.lo, self.lo + a):
+                d = x - corner
+                s = d @ np.linalg.pinv(np.array([b, c]))       # where the foot of the perpendicular is on the face
+                offer(corner + s @ np.array([b, c]), ((s >= 0.0) & (s <= 1.0)).all(axis=1))
+            for start in (self.lo, self.lo + b, self.lo + c, self.lo + b + c):      # the edges along a
+                offer(start + np.clip((x - start) @ a / (a @ a), 0.0, 1.0)[:, None] * a)
+        return point
+
     def bounds(self):
         corners = self.lo + np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ self.cell
         return corners.min(axis=0), corners.max(axis=0)

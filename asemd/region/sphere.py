@@ -21,6 +21,16 @@ class Sphere(Region):
         dx, dy, dz = (x - self.center).T
         return np.sqrt(dx * dx + dy * dy + dz * dz) <= self.radius
 
+    def faces(self, x):
+        d = x - self.center
+        r = np.sqrt((d * d).sum(axis=1))
+        rows = np.flatnonzero((r <= self.radius) & (r > 0.0))
+        return [(rows, d[rows] * (1.0 - self.radius / r[rows])[:, None])]
+
+    def nearest(self, x):
+        d = x - self.center
+        return self.center + d * (self.radius / np.sqrt((d * d).sum(axis=1)))[:, None]
+
     def bounds(self):
         return self.center - self.radius, self.center + self.radius
 

@@ -1,6 +1,8 @@
 """``region ID union N reg-ID1 reg-ID2 ...``: what lies in any of several regions."""
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from asemd.errors import InputError
@@ -21,6 +23,26 @@ class Union(Region):
     def contains(self, x):
         return self.join.reduce([r.inside(x) for r in self.regions])
 
+    def surface(self, x, cutoff):
+        """See `Region.surface`; of the surface of each region only what is on that of the whole. Edges that jut into the region are no part
+        of it, as in LAMMPS."""
+        if self.open_faces:
+            return super().surface(x, cutoff)
+        regions, union = self.regions, self.style == "union"
+        if self.side == "out":       # outside of a union is what lies outside of all
+            regions, union = [copy(r) for r in regions], not union
+            for r in regions:
+                r.side = "out" if r.side == "in" else "in"
+        index, d = [], []
+        for r in regions:
+            rows, away = r.surface(x, cutoff)
+            at = x[rows] - away
+            others = [other.inside(at) for other in regions if other is not r]
+            keep = ~np.logical_or.reduce(others) if union else np.logical_and.reduce(others)
+            index.append(rows[keep])
+            d.append(away[keep])
+        return np.concatenate(index), np.concatenate(d)
+
     def bounds(self):
         boxes = [r.extent() for r in self.regions]
         if any(b is None for b in boxes):
@@ -39,6 +61,7 @@ class Union(Region):
             raise InputError(f"{what} cannot move or rotate: let its regions do so")
         region = cls(regions, side=given.side)
         region.open_faces = given.open_faces
+        region.session = session if region.varies else None
         return region
 
     @property
