@@ -127,18 +127,13 @@ class Loop:
         self.engine.changed = False
         self._kinds = [f.hooks() for f in self.fixes]
         self._sort_hooks()
-        hooks = [{name: getattr(f, name) for name in tl.COMPILED if kinds.get(name)} for f, kinds in zip(self.fixes, self._kinds)]
-        for f, compiled in zip(self.fixes, hooks):
-            if {"initial_integrate", "final_integrate"} <= set(compiled) and hasattr(f, "final_initial"):
-                compiled["final_initial"] = f.final_initial
+        self._calls = tl.hooks_of(self.fixes, self._kinds)
         terms = self.engine.terms
         kernels = [(t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if self._virial_every else None) for t in terms]
-        key = (tuple(id(f) for pair in kernels for f in pair), tuple(tuple((n, id(f)) for n, f in h.items()) for h in hooks),
-               self.settings.outdated, self.engine.box_moves, self._virial_every)
-        if self._module is not None and self._module[0] == key:
-            return
-        self._module = (key, tl.module(kernels, [t.category for t in terms], hooks, [f.every for f in self.fixes],
-                                       self.settings.outdated, bool(self.engine.box_moves), self._virial_every))
+        key = (tuple(id(f) for kinds in kernels for f in kinds), self.settings.outdated, self.engine.box_moves, bool(self._virial_every))
+        if self._module is None or self._module[0] != key:
+            self._module = (key, tl.module(kernels, [t.category for t in terms], self.settings.outdated, bool(self.engine.box_moves),
+                                           bool(self._virial_every)))
         if self._next_whole(self.step) > self.step + 1:
             self._enter(0, False)     # compiles, or loads from the cache, without moving anything
 
@@ -280,15 +275,15 @@ class Loop:
         e, s, c, x = self.engine, self.settings, self._control, self._numbers
         if last == 0:
             last = self.step
-        c[:11] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy]
+        c[:12] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every]
         x[tl.DT], x[tl.TRIGGER] = self.dt, (0.5 * s.skin) ** 2
         self._sync[:] = 0
         status = [0] * e.threads
-        run = self._module[1].run
+        run, (calls, starts) = self._module[1].run, self._calls.table(tl.KINDS, e.state, self.fix_data)
 
         def work(tid):
             status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.farthest, e.buffers, e.bad, self._sync, self._scratch, c, x,
-                              e.acc, e.arguments(tid), self.fix_data)
+                              e.acc, e.arguments(tid), calls, starts)
         for t in range(e.threads):
             e.arguments(t)
         e.parallel(work)
@@ -312,8 +307,7 @@ class Loop:
         if self._kinds[n][name] and name in tl.COMPILED:
             if self.fixes[n].follows == name:
                 self.fixes[n].follow(self)
-            p, a = self.fix_data[n]
-            getattr(self._module[1], f"fix{n}_{name}")(self._thread(), self.engine.state if state is None else state, p, a)
+            self._calls.call(n, name, self._thread(), self.engine.state if state is None else state, self.fix_data)
         else:
             getattr(self.fixes[n], name)(self)
 

@@ -19,6 +19,7 @@ import numpy as np
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
+from asemd.kernels.hooks import Calls
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
 from asemd.neighbor import ClusterList
@@ -189,7 +190,7 @@ class RespaLoop(Loop):
                 mine |= {"inner_initial": inner.initial_integrate, "inner_final": inner.final_integrate}
                 mine["outer_initial"] = getattr(fix, "outer_initial", fix.final_integrate)
             hooks.append(mine)
-        self._module = (None, tl.module([], [], hooks, [f.every for f in self.fixes]))
+        self._calls = Calls(hooks, [f.every for f in self.fixes], tl.HALVES)
         self._make_levels()
 
     def _next_whole(self, step: int) -> int:
@@ -247,7 +248,7 @@ class RespaLoop(Loop):
 
         def calls(terms, energy):
             return [(t, t.kernel(energy and t not in self._pieces, False), [t.arguments(e, tid) for tid in threads]) for t in terms]
-        self._calls = [[calls(terms, energy) for energy in (False, True)] for terms in self._work]
+        self._kernels = [[calls(terms, energy) for energy in (False, True)] for terms in self._work]
         self._whole_calls = calls(self._whole, True)
 
     # ---- steps --------------------------------------------------------------------------------------------------------------------------
@@ -289,7 +290,7 @@ class RespaLoop(Loop):
         state = self.state._replace(f=self._level_forces[level - 1])
         for n, fix in enumerate(self.fixes):
             if fix.integrates:
-                getattr(self._module[1], f"fix{n}_{name}")(th, state, *self.fix_data[n])
+                self._calls.call(n, name, th, state, self.fix_data)
         self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _look_at_list(self) -> None:
@@ -325,7 +326,7 @@ class RespaLoop(Loop):
 
     def _forces(self, level: int, energy: bool) -> None:
         """The forces of one level, with what fixes do to them; of its terms, energies and virials too."""
-        e, calls = self.engine, self._calls[level - 1][energy]
+        e, calls = self.engine, self._kernels[level - 1][energy]
         if self.settings.outdated:
             e.farthest[:] = e.k.displacements(e.state.x, e.held, e.ns, e.moved)
         if energy:

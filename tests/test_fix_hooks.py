@@ -1,13 +1,19 @@
-"""Hooks of all fixes go into one module of compiled code."""
+"""Compiled hooks: functions they share, and their arguments in memory."""
 from __future__ import annotations
 
 import importlib
 import pkgutil
 
+import numba
+import numpy as np
 import pytest
+from lj_cell import BASE
 
 import asemd.fix as fixes
+from asemd.kernels import packed
 from asemd.kernels.generate import Builder, text_of
+from asemd.kernels.hooks import shared
+from asemd.lammps import Lammps
 
 
 def test_functions_that_hooks_share_have_names_of_their_own():
@@ -29,9 +35,47 @@ def test_two_functions_of_one_name_are_refused():
 
     def twice(x):      # noqa: F811
         return x + x
+
+    def user(x):
+        return twice(x)
+    shared(user, (first, first))
+    with pytest.raises(NameError, match="two functions named twice"):
+        shared(user, (first, twice))
     b = Builder("two of a name")
     b.function(first)
     b.function(first)
     with pytest.raises(NameError, match="two functions named twice"):
         b.function(twice)
     assert b.source().count("def twice") == 1
+
+
+def test_memory_has_the_layout_of_the_compiler():
+    """What is packed by Python is read back by compiled code, member by member."""
+    x = np.arange(12.0).reshape(3, 4)
+    rows = np.arange(5, dtype=np.int32)
+    every_second = np.arange(9.0)[::2].copy()
+    kind = numba.typeof((x, (rows, every_second)))
+    source = packed.text_of_type(kind)
+    read = packed.reader(eval(source, {"types": numba.types}))
+    memory: list[int] = []
+    packed.pack((x, (rows, every_second)), memory)
+    block = np.array(memory, np.int64)
+
+    @numba.njit
+    def look(address):
+        a, (b, c) = read(address)
+        a[1, 2] = -1.0
+        return a.sum(), a.shape, b[3], b.size, c[4], c.strides[0]
+    assert look(block.ctypes.data) == (66.0 - 6.0 - 1.0, (3, 4), 3, 5, 8.0, 8)
+    assert x[1, 2] == -1.0
+
+
+def test_state_and_numbers_are_as_packed():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(BASE + "run 1")
+    loop = lmp.session.loop
+    assert numba.typeof(loop.state) == packed.STATE and numba.typeof(loop._thread()) == packed.THREAD
+    with pytest.raises(TypeError, match="numpy arrays"):
+        packed.text_of_type(numba.typeof(3.0))
+    with pytest.raises(ValueError, match="contiguous"):
+        packed.pack(np.zeros((3, 3))[:, :2], [])

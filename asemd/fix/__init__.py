@@ -1,8 +1,8 @@
 r"""Fixes are dynamics. One fix, one file; a fix is a plain class with keyword arguments, usable from Python and from a script.
 
-A fix acts through hooks with LAMMPS's names and order. A hook is either *compiled* (a plain function marked `hook`, pasted into the
-time loop) or a Python method of the same name that takes the live `asemd.loop.Loop`. With compiled hooks only, whole stretches of steps
-run without Python.
+A fix acts through hooks with LAMMPS's names and order. A hook is either *compiled* (a plain function marked `hook`, called by the
+compiled time loop) or a Python method of the same name that takes the live `asemd.loop.Loop`. With compiled hooks only, whole stretches
+of steps run without Python.
 
 A compiled hook has the signature ``f(th, s, p, a)``:
 
@@ -19,7 +19,7 @@ the compiler must know that an index is not negative.
 
 Sums over all atoms: ``reduce_sum(th, value)`` from `asemd.kernels.threads` gives every thread the total. Write to ``p`` from thread 0
 only, with ``barrier(th)`` around it. Uniform noise: ``uniform(seed, step, row, k)`` from `asemd.kernels.random`. A function of one's own
-that several hooks share is named with ``@hook(uses=[function])`` and pasted beside them; if it has the attribute ``strict``, its sums and
+that several hooks share is named with ``@hook(uses=[function])``; if it has the attribute ``strict``, its sums and
 products keep their order to the last bit.
 
 A fix may offer ``final_initial`` besides: `final_integrate` of a step and `initial_integrate` of the next in one pass, used where nothing

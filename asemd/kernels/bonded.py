@@ -29,7 +29,7 @@ TORSION = ("phi", "r12", "r23", "r34", "theta1", "theta2")
 PAST = ("rate", "reference")        # what a bond with a past can have besides; no derivatives
 ROWS = {angle: {"SHAPE": 1, "NORMAL": 1}, dihedral: {"SHAPE": 1, "SIDE": 1, "FLAT": 1}, dipole: {"SHAPE": 1, "NORMAL": 3},
         vectors: {"VALUE": 1}}
-INNER = "no_cpython_wrapper=True, no_cfunc_wrapper=True"       # called from the same module only
+INNER = "no_cpython_wrapper=True"       # called from the same module only
 NO_TABLE = np.zeros((1, 1))
 
 

@@ -179,7 +179,7 @@ class Builder:
         if jit:
             if "fastmath" not in options:      # else numba takes that of the function that calls it first
                 options = ", ".join(filter(None, [options, "fastmath=False"]))
-            words = ["cache=True"] * cache + ["nogil=True", "error_model='numpy'", options]
+            words = ["cache=True"] * cache + ["nogil=True", "no_cfunc_wrapper=True", "error_model='numpy'", options]
             self.lines.append(f"@njit({', '.join(words)})")
         self.lines.append(source)
 

@@ -11,70 +11,66 @@ import textwrap
 from collections.abc import Sequence
 from types import ModuleType
 
-from asemd.kernels import box, random
-from asemd.kernels.generate import FAST, Builder, plain_source
+from asemd.kernels import box
+from asemd.kernels.generate import FAST, Builder
+from asemd.kernels.hooks import Calls, shared
 
 FINISHED, REBUILD, BAD = 0, 1, 2
 COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate", "end_of_step")
-HALVES = ("initial_integrate", "final_integrate", "final_initial")
+HALVES = ("initial_integrate", "final_integrate", "final_initial")      # strict: a run has the same digits wherever it is cut into pieces
+KINDS = (*COMPILED, "final_initial")
 # places in `control` (int64) and `numbers` (float64)
-STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY = range(11)
+STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL = range(12)
 DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
 
 
-def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[dict[str, object]], everys: Sequence[int],
-           outdated: bool = False, box_moves: bool = False, virial_every: int = 0) -> ModuleType:
+def hooks_of(fixes: Sequence, kinds: Sequence[dict[str, bool]]) -> Calls:
+    """The compiled hooks of fixes; with `final_initial` where one alone integrates and no other looks on between two steps.
+
+    Parameters
+    ----------
+    fixes : sequence of asemd.fix.Fix
+    kinds : sequence of dict
+        What `hooks` of each fix says: name -> whether it is compiled.
+    """
+    hooks = [{name: getattr(f, name) for name in COMPILED if names.get(name)} for f, names in zip(fixes, kinds, strict=True)]
+    active = [n for n, fix in enumerate(hooks) if {"initial_integrate", "final_integrate", "end_of_step"} & set(fix)]
+    if len(active) == 1:
+        one = hooks[active[0]]
+        if {"initial_integrate", "final_integrate"} <= set(one) and "end_of_step" not in one and hasattr(fixes[active[0]], "final_initial"):
+            one["final_initial"] = fixes[active[0]].final_initial
+    return Calls(hooks, [f.every for f in fixes], HALVES)
+
+
+def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool = False, box_moves: bool = False,
+           virial: bool = False) -> ModuleType:
     """The loop module.
 
     Parameters
     ----------
     kernels : sequence of (plain, with_energy, with_virial)
-        Compiled kernels of each term; the last one is not used without `virial_every`.
+        Compiled kernels of each term; the last one is not used without `virial`.
     categories : sequence of str
         ``pair`` or other, per term, for the timing table.
-    hooks : sequence of dict
-        Per fix: hook name -> compiled-hook function (only those that are compiled).
-    everys : sequence of int
-        Per fix: `end_of_step` is called on multiples of this.
     outdated : bool
         The list may be: kernels look at how far each slot has moved.
     box_moves : bool
         A fix changes the box: what its corners have moved is taken from the skin, as LAMMPS does.
-    virial_every : int
-        The virial of the terms is there on multiples of this step, for fixes; 0: never.
+    virial : bool
+        Fixes want the virial of the terms now and then.
     """
     b = Builder("time loop")
-    b.line("from asemd.kernels.threads import barrier, reduce_sum")
+    b.line("from asemd.kernels.threads import barrier")
     b.line("from asemd.kernels.state import Thread")
     b.line("from asemd.kernels.clock import now")
+    b.line("from asemd.kernels.packed import act")
     b.line("import math")
-    b.function(random.uniform, fast=True)
-    b.function(random.normal, fast=True)
     if box_moves:
-        b.function(box.follow)
-        b.function(box.corner_moves)
-    for k, (plain, energy, virial) in enumerate(kernels):
-        for f, alias in ((plain, f"term{k}"), (energy, f"term{k}_energy"), *([(virial, f"term{k}_virial")] if virial_every else [])):
+        b.use(shared(box.corner_moves), "corner_moves")
+    for k, (plain, energy, with_virial) in enumerate(kernels):
+        for f, alias in ((plain, f"term{k}"), (energy, f"term{k}_energy"), *([(with_virial, f"term{k}_virial")] if virial else [])):
             g = getattr(f, "py_func", f)
             b.line(f"from {g.__module__} import {g.__name__} as {alias}")
-    for n, fix in enumerate(hooks):
-        for name, f in fix.items():
-            for helper in getattr(f, "uses", ()):
-                b.function(helper, fast=not getattr(helper, "strict", False))
-            # strict where two halves may be one pass: a run has the same digits wherever it is cut into pieces
-            b.text(plain_source(f, f"fix{n}_{name}"), "" if name in HALVES else f"fastmath={FAST}")
-
-    # one pass instead of two: the fix that integrates, unless others look on in between
-    active = [n for n, fix in enumerate(hooks) if {"initial_integrate", "final_integrate", "end_of_step"} & set(fix)]
-    joined = len(active) == 1 and "final_initial" in hooks[active[0]] and "end_of_step" not in hooks[active[0]]
-
-    def calls(name: str, indent: int) -> str:
-        lines = []
-        for n, fix in enumerate(hooks):
-            if name in fix:
-                guard = f"if step % {everys[n]} == 0:\n    " if name == "end_of_step" and everys[n] != 1 else ""
-                lines.append(f"{guard}fix{n}_{name}(th, s, fixes[{n}][0], fixes[{n}][1])")
-        return textwrap.indent("\n".join(lines), " " * indent)
 
     def terms(suffix: str, indent: int) -> str:
         lines, last = [], None
@@ -88,13 +84,13 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
         return textwrap.indent("\n".join(lines) or "t0 = t0", " " * indent)
 
-    with_virial = textwrap.indent(f"""elif step % {virial_every} == 0:
+    on_virial_steps = textwrap.indent(f"""elif step % control[{VIRIAL}] == 0:
     for k in range(acc.shape[1]):
         for c in range(8):
             acc[tid, k, c] = 0.0
-{terms("_virial", 4)}""", " " * 8) if virial_every else ""
+{terms("_virial", 4)}""", " " * 8) if virial else ""
 
-    b.text(f'''def run(tid, nth, ns, s, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, fixes):
+    b.text(f'''def run(tid, nth, ns, s, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, calls, starts):
     step = control[{STEP}]
     last = control[{LAST}]
     resume = control[{RESUME}]
@@ -122,9 +118,9 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             step += 1
             th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
             if not ready:
-{calls("initial_integrate", 16) or " " * 16 + "ready = False"}
+                act(0, th, calls, starts)
             ready = False
-{calls("post_integrate", 12)}
+            act(1, th, calls, starts)
             ago += 1
             due = ago >= delay and ago % every == 0
             if {outdated} or due:
@@ -162,7 +158,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
         else:
             farthest[tid] = 0.0
         resume = 0
-{calls("pre_force", 8)}
+        act(2, th, calls, starts)
         for d in range(3):
             for i in range(ns):
                 f[d, i] = 0.0
@@ -173,7 +169,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
                 for c in range(8):
                     acc[tid, k, c] = 0.0
 {terms("_energy", 12)}
-{with_virial}
+{on_virial_steps}
         else:
 {terms("", 12)}
         if nth > 1:
@@ -193,13 +189,13 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], hooks: Sequence[
             t1 = now()
             numbers[{COMM_TIME}] += t1 - t0
             t0 = t1
-{calls("post_force", 8)}
-        if {joined} and step < last:
-{calls("final_initial", 12) if joined else " " * 12 + "ready = True"}
+        act(3, th, calls, starts)
+        if starts[7] > starts[6] and step < last:
+            act(6, th, calls, starts)
             ready = True
         else:
-{calls("final_integrate", 12) or " " * 12 + "ready = False"}
-{calls("end_of_step", 8)}
+            act(4, th, calls, starts)
+        act(5, th, calls, starts)
         if tid == 0:
             t1 = now()
             numbers[{MODIFY_TIME}] += t1 - t0

@@ -1,0 +1,145 @@
+"""Compiled hooks: each function of a fix in a module of its own, which imports what it calls, so that it is compiled once for all runs."""
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import lru_cache
+from types import ModuleType
+
+import numba
+import numpy as np
+
+from asemd.kernels import packed, random
+from asemd.kernels.generate import FAST, Builder, plain_source, text_of
+
+INNER = "no_cpython_wrapper=True"       # called by compiled code only
+COMPILED = {"barrier": "asemd.kernels.threads", "reduce_sum": "asemd.kernels.threads"}
+
+
+def _imports(b: Builder, function: Callable, source: str, uses: tuple[Callable, ...]) -> None:
+    """Import what a function calls into the module that will hold it."""
+    called = {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)} - {function.__name__}
+    for word in sorted(called & set(COMPILED)):
+        b.line(f"from {COMPILED[word]} import {word}")
+    known: dict[str, Callable] = {}
+    for helper in (random.uniform, random.normal, *uses):
+        other = known.setdefault(helper.__name__, helper)
+        if other is not helper and text_of(other) != text_of(helper):
+            raise NameError(f"two functions named {helper.__name__} in one fix: of {other.__module__} and {helper.__module__}")
+    for word in sorted(called & set(known)):
+        b.use(shared(known[word], tuple(f for f in uses if f is not known[word])), word)
+
+
+@lru_cache(1024)
+def shared(function: Callable, uses: tuple[Callable, ...] = ()) -> ModuleType:
+    """The module of one function that hooks call.
+
+    Parameters
+    ----------
+    function : callable
+        It may call ``barrier``, ``reduce_sum``, ``uniform`` and ``normal`` of `asemd.kernels`, and what is in `uses`. With the attribute
+        ``strict``, its sums and products keep their order to the last bit.
+    uses : tuple of callable
+        Functions that it and they call by name.
+
+    Raises
+    ------
+    NameError
+        Two functions of `uses` have one name.
+    """
+    b, source = Builder(function.__name__), plain_source(function)
+    _imports(b, function, source, uses)
+    b.text(source, INNER + ("" if getattr(function, "strict", False) else f", fastmath={FAST}"))
+    return b.build()
+
+
+@lru_cache(1024)
+def compiled(function: Callable, arrays: str, strict: bool = False):
+    """A hook with an address.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(th, s, p, a)``; it may call what is in its attribute ``uses``, see `shared`.
+    arrays : str
+        The type of `a`, as `asemd.kernels.packed.text_of_type` writes it.
+    strict : bool
+        Sums and products keep their order to the last bit.
+
+    Returns
+    -------
+    int, or the function itself where nothing is compiled
+    """
+    if packed.WITHOUT_COMPILER:
+        return function
+    b, source = Builder(f"{function.__module__}: {function.__name__}"), plain_source(function, "hook")
+    _imports(b, function, source, getattr(function, "uses", ()))
+    b.line("from numba import types")
+    b.line("from asemd.kernels.packed import AFTER_NUMBERS, AFTER_STATE, entry, reader")
+    b.line("from asemd.kernels.packed import read_address, read_numbers, read_state, read_thread")
+    b.line(f"read_arrays = reader({arrays})")
+    head, body = source.split("\n", 1)
+    th, s, p, a = head.removeprefix("def hook(").removesuffix("):").split(", ")
+    b.text(f"""@entry({"" if strict else f"fastmath={FAST}"})
+def hook(thread, arguments):
+    {th} = read_thread(thread)
+    {s} = read_state(read_address(arguments))
+    {p} = read_numbers(arguments + AFTER_STATE)
+    {a} = read_arrays(arguments + AFTER_NUMBERS)
+{body}""", jit=False)
+    return b.build().hook.address
+
+
+class Calls:
+    """The hooks of a run, and their arguments in memory.
+
+    Parameters
+    ----------
+    hooks : sequence of dict
+        Per fix: kind -> hook function.
+    everys : sequence of int
+        Per fix: `end_of_step` is called on multiples of this.
+    strict : collection of str
+        Kinds whose sums and products keep their order to the last bit.
+    """
+
+    def __init__(self, hooks: Sequence[Mapping[str, Callable]], everys: Sequence[int], strict: Collection[str]):
+        self.hooks, self.everys, self.strict = hooks, everys, strict
+        self._state = self._data = None
+        self._block = self._table = None
+        self._arguments: list = []
+
+    def function(self, n: int, kind: str, data):
+        """A compiled hook of fix `n`: its address, or the function itself where nothing is compiled."""
+        return compiled(self.hooks[n][kind], packed.text_of_type(numba.typeof(data[n][1])), kind in self.strict)
+
+    def _follow(self, state, data) -> None:
+        """Arguments anew where the state or the arrays of fixes are others."""
+        if state is not self._state or data is not self._data:
+            self._state, self._data, self._table = state, data, None
+            self._block = packed.block(state)
+            self._arguments = [packed.arguments(self._block, numbers) for numbers in data]
+
+    def table(self, kinds: Sequence[str], state, data) -> tuple[np.ndarray, np.ndarray]:
+        """For the time loop: (function, arguments, every) of each call, by kind; and where the calls of each kind begin."""
+        self._follow(state, data)
+        if self._table is None:
+            rows, starts = [], [0]
+            for kind in kinds:
+                rows += [(self.function(n, kind, data), packed.handle(self._arguments[n]), self.everys[n] if kind == "end_of_step" else 1)
+                         for n, hooks in enumerate(self.hooks) if kind in hooks]
+                starts.append(len(rows))
+            calls = np.empty((len(rows), 3), packed.HANDLE)
+            for k, row in enumerate(rows):
+                calls[k, 0], calls[k, 1], calls[k, 2] = row
+            self._table = calls, np.array(starts)
+        return self._table
+
+    def call(self, n: int, kind: str, th, state, data) -> None:
+        """One hook of one fix, on any state."""
+        if state is self._state and data is self._data:
+            arguments = self._arguments[n]
+        else:
+            block = packed.block(state)
+            arguments = packed.arguments(block, data[n])
+        packed.enter(self.function(n, kind, data), th, packed.handle(arguments))

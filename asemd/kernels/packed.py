@@ -1,0 +1,151 @@
+"""Hooks of fixes called by their address, their arguments in memory: the time loop is compiled once, whatever fixes take part in it.
+
+A hook is compiled as ``entry(thread, arguments)``, two addresses. Behind the first is a `Thread`; behind the second the address of the
+`State`, then the fix's numbers and arrays, all in the layout of numba's tuples and arrays, whose members are 8 bytes each. A hook reads
+only what it uses: the compiler drops the rest. Without compiler (``NUMBA_DISABLE_JIT``) hooks are plain functions and nothing is packed.
+"""
+from __future__ import annotations
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import cfunc, config, types
+from numba.core.imputils import impl_ret_borrowed
+from numba.extending import intrinsic, overload
+
+from asemd.kernels.state import BoxState, Thread, cell_arrays, empty_state
+from asemd.kernels.target import njit
+
+_ROWS, _THREES, _FOURS = np.zeros(3), np.zeros((3, 3)), np.zeros((4, 4))
+_CELL = cell_arrays(np.eye(3), np.ones(3))
+_BOX = BoxState(_THREES, _ROWS, _ROWS, _CELL, _THREES, _THREES, _THREES, _FOURS, _THREES, _THREES, _THREES, _ROWS)
+STATE = numba.typeof(empty_state(8, np.zeros(1, np.int32), np.zeros((1, 3), np.int32), np.zeros((1, 1, 8)), _BOX))
+THREAD = numba.typeof(Thread(0, 1, 0, 1, 0, 0, 0, 0.0, np.zeros(8, np.int64), np.zeros((1, 8))))
+NUMBERS = types.Array(types.float64, 1, "C")
+WITHOUT_COMPILER = bool(config.DISABLE_JIT)
+HANDLE = object if WITHOUT_COMPILER else np.int64
+
+
+def pack(value, into: list[int]) -> None:
+    """Append what numba's value of an array or a tuple of arrays is made of: no owner, then size, address, shape and strides."""
+    if isinstance(value, tuple):
+        for member in value:
+            pack(member, into)
+    else:
+        if not value.flags.c_contiguous:
+            raise ValueError("arrays of a fix are C-contiguous")
+        into += (0, 0, value.size, value.itemsize, value.__array_interface__["data"][0], *value.shape, *value.strides)
+
+
+def block(state):
+    """A state in memory; its arrays must live as long as it is used."""
+    if WITHOUT_COMPILER:
+        return state
+    into: list[int] = []
+    pack(state, into)
+    return np.array(into, np.int64)
+
+
+def arguments(state_block, numbers):
+    """A hook's arguments in memory: the state's `block`, and a fix's (numbers, arrays); all must live as long as they are used."""
+    if WITHOUT_COMPILER:
+        return (state_block, *numbers)
+    into = [handle(state_block)]
+    pack(numbers, into)
+    return np.array(into, np.int64)
+
+
+def handle(memory):
+    """What stands for a block of memory in a call: its address."""
+    return memory if WITHOUT_COMPILER else memory.ctypes.data
+
+
+def text_of_type(kind) -> str:
+    """Python text for the type of an array or a tuple of arrays.
+
+    Raises
+    ------
+    TypeError
+        It is something else.
+    """
+    if isinstance(kind, types.Array):
+        return f"types.Array(types.{kind.dtype}, {kind.ndim}, {kind.layout!r}, readonly={not kind.mutable}, aligned={kind.aligned})"
+    if isinstance(kind, types.BaseTuple) and not isinstance(kind, types.BaseNamedTuple):
+        return f"types.Tuple(({''.join(text_of_type(k) + ', ' for k in kind.types)}))"
+    raise TypeError(f"arrays of a fix are numpy arrays, or tuples of them: {kind} is not")
+
+
+def _read(builder, pointer, kind):
+    """The value behind a pointer, member by member: loads of what nobody uses vanish."""
+    if not isinstance(kind, (ir.BaseStructType, ir.ArrayType)):
+        return builder.load(pointer)
+    value = ir.Constant(kind, ir.Undefined)
+    zero = ir.Constant(ir.IntType(32), 0)
+    for k, member in enumerate(kind.elements if isinstance(kind, ir.BaseStructType) else [kind.element] * kind.count):
+        place = builder.gep(pointer, [zero, ir.Constant(ir.IntType(32), k)], inbounds=True)
+        value = builder.insert_value(value, _read(builder, place, member), k)
+    return value
+
+
+def reader(kind):
+    """A function for compiled code that takes an address and returns the value of that type which is there."""
+    @intrinsic
+    def read(context, address):
+        def generate(ctx, builder, signature, arguments):
+            layout = ctx.get_value_type(kind)
+            value = _read(builder, builder.inttoptr(arguments[0], layout.as_pointer()), layout)
+            return impl_ret_borrowed(ctx, builder, kind, value)
+        return kind(types.int64), generate
+    return read
+
+
+read_address, read_thread, read_state, read_numbers = (reader(k) for k in (types.int64, THREAD, STATE, NUMBERS))
+AFTER_STATE, AFTER_NUMBERS = 8, 64      # where the fix's numbers and its arrays begin
+
+
+def entry(**options):
+    """Compile ``function(thread, arguments)`` so that it has an address."""
+    def compiled(function):
+        signature, options_ = types.void(types.int64, types.int64), {"nopython": True, "error_model": "numpy", **options}
+        try:
+            return cfunc(signature, cache=True, **options_)(function)
+        except (OSError, RuntimeError):      # no room on the disk, or no file: compiled for this process only
+            return cfunc(signature, **options_)(function)
+    return compiled
+
+
+def call(function, th, arguments):
+    """Call a hook, in compiled code by its address."""
+    function(th, *arguments)
+
+
+@intrinsic
+def _call(context, function, th, arguments):
+    def generate(ctx, builder, signature, values):
+        whole = ir.IntType(64)
+        with builder.goto_entry_block():
+            place = builder.alloca(values[1].type)
+        builder.store(values[1], place)
+        address = builder.inttoptr(values[0], ir.FunctionType(ir.VoidType(), [whole, whole]).as_pointer())
+        builder.call(address, [builder.ptrtoint(place, whole), values[2]])
+        return ctx.get_dummy_value()
+    return types.void(types.int64, th, types.int64), generate
+
+
+@overload(call, inline="always")
+def _compiled_call(function, th, arguments):
+    return lambda function, th, arguments: _call(function, th, arguments)
+
+
+@njit(cache=True, nogil=True)
+def act(kind, th, calls, starts):
+    """Call all hooks of one kind: (function, arguments, every) of each, where the calls of each kind begin."""
+    for k in range(starts[kind], starts[kind + 1]):
+        if th.step % calls[k, 2] == 0:
+            call(calls[k, 0], th, calls[k, 1])
+
+
+@njit(cache=True, nogil=True)
+def enter(function, th, arguments):
+    """Call a hook from Python."""
+    call(function, th, arguments)
