@@ -1,4 +1,4 @@
-"""The compiled time loop: text generated for exactly the terms and fixes of a run.
+"""The compiled time loop: text generated for exactly the terms of a run; fixes are called by address (`asemd.kernels.hooks`).
 
 The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built by Python, loop entered again), pre_force,
 forces, post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after forces are
