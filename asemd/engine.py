@@ -20,6 +20,7 @@ from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 SLOTTED = 9           # the first fields of a `State`, those by slot
+TURNING = {"torque", "mu", "omega"}      # atoms that have one of these feel torques
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
 
 
@@ -166,11 +167,11 @@ class Engine:
             m = self.ns
             for a, b in zip(new[:SLOTTED], old[:SLOTTED]):
                 a[..., :m] = b[..., :m]
-        self.buffers = aligned((self.threads, 3, capacity))
-        self.state = new._replace(f=self.buffers[0])
+        turning = not TURNING.isdisjoint(self.system.extra)
+        self.buffers = aligned((self.threads, 6 if turning else 3, capacity))      # forces, then torques
+        self.state = new._replace(f=self.buffers[0, :3], torque=self.buffers[0, 3:])
         self.held = aligned((3, capacity))
         self.moved = aligned((capacity,))      # squared displacement of each slot since the list was built, for lists that may be outdated
-        self.torques: dict[int, np.ndarray] = {}      # (n, 3) that fixes add, by fix
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
 
     def __getstate__(self):
@@ -359,7 +360,7 @@ class Engine:
         if self.box_moves:
             live_box.take(self)
         self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
-        store_torques(self.terms, y, self.torques.values())
+        store_torques(s, self.ns, y)
         self.bonds.carry_back()
 
     def per_atom(self, result: Result) -> Result:

@@ -166,7 +166,7 @@ class RespaLoop(Loop):
         self._times = self.levels.steps(self.dt)
         self._before = [np.zeros(3) for _ in self.fixes]
         self._new_lists()
-        self._level_forces = [np.zeros_like(self.state.f) for _ in self._times]
+        self._level_forces = [np.zeros_like(self.engine.buffers[0]) for _ in self._times]
         self.state.virial[:] = 0.0
         for level in range(1, self.levels.n + 1):
             self._forces(level, True)
@@ -175,7 +175,7 @@ class RespaLoop(Loop):
 
     def _total(self) -> None:
         """The sum of all levels, which everybody sees."""
-        self.state.f[:] = sum(self._level_forces)
+        self.engine.buffers[0] = sum(self._level_forces)
 
     def _make_module(self) -> None:
         """Hooks of the fixes, those of the inner levels too, and which terms are on which level."""
@@ -287,7 +287,8 @@ class RespaLoop(Loop):
         """A half step of one level by all fixes that move atoms."""
         began = time.perf_counter()
         th = Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, self._times[level - 1], self._sync, self._scratch)
-        state = self.state._replace(f=self._level_forces[level - 1])
+        forces = self._level_forces[level - 1]
+        state = self.state._replace(f=forces[:3], torque=forces[3:])
         for n, fix in enumerate(self.fixes):
             if fix.integrates:
                 self._calls.call(n, name, th, state, self.fix_data)
@@ -308,12 +309,12 @@ class RespaLoop(Loop):
         self._hook("pre_exchange")
         self._hook("pre_neighbor")
         old = e.state.row[:e.ns]
-        self._by_row = np.zeros((self.levels.n, 3, self.system.n))
+        self._by_row = np.zeros((self.levels.n, e.buffers.shape[1], self.system.n))
         for forces, f in zip(self._by_row, self._level_forces):
             forces[:, old[old >= 0]] = f[:, :len(old)][:, old >= 0]
         self._rebuild()
         new = e.state.row[:e.ns]
-        self._level_forces = [np.zeros_like(e.state.f) for _ in self._by_row]
+        self._level_forces = [np.zeros_like(e.buffers[0]) for _ in self._by_row]
         for forces, f in zip(self._by_row, self._level_forces):
             f[:, :len(new)][:, new >= 0] = forces[:, new[new >= 0]]
         self._new_lists()
@@ -339,7 +340,7 @@ class RespaLoop(Loop):
         for n, fix in enumerate(self.fixes):
             if "post_force" in self._kinds[n]:
                 self._post_force(n, fix, level)
-        self._level_forces[level - 1][:] = self.state.f
+        self._level_forces[level - 1][:] = self.engine.buffers[0]
         e.timings["Modify"] += time.perf_counter() - began
 
     def _compute(self, calls) -> None:

@@ -77,7 +77,7 @@ class BondedTerm(Term):
 
 
 class DipoleTerm(BondedTerm):
-    """Angles that hold dipoles: the dipoles of the slots are gathered at each list build, torques are collected by thread.
+    """Angles that hold dipoles, which fixes may turn: kernels read them where they are, by row.
 
     Raises
     ------
@@ -85,22 +85,15 @@ class DipoleTerm(BondedTerm):
         The atoms have no dipoles.
     """
 
-    def __init__(self, category, use, *arguments):
-        super().__init__(category, use, *arguments)
-        self.mu = self.torque = None
-
     def rebuild(self, engine):
         super().rebuild(engine)
-        extra, slots = engine.system.extra, engine.state.x.shape[1]
-        if "mu" not in extra:
+        if "mu" not in engine.system.extra:
             raise InputError(f"angle_style {self.style.name} needs atoms with dipoles: use atom_style dipole, or hybrid with it")
-        self.row = engine.state.row.copy()
-        self.mu, self.torque = np.zeros((3, slots)), np.zeros((engine.threads, 3, slots))
-        self.mu[:, self.row >= 0] = extra["mu"][self.row[self.row >= 0]].T
 
     def arguments(self, engine, tid):
         x, out, slots, types, cell, coeff, arrays, *rest = super().arguments(engine, tid)
-        return (x, out, slots, types, cell, coeff, (*arrays, self.mu, self.torque[tid]), *rest)
+        turning = (engine.state.row, engine.system.extra["mu"], engine.buffers[tid, 3:])
+        return (x, out, slots, types, cell, coeff, (*arrays, *turning), *rest)
 
     def describe(self, engine, item, value):
         row = self.items[self.order[item]][0]
@@ -109,16 +102,11 @@ class DipoleTerm(BondedTerm):
         return super().describe(engine, item, value)
 
 
-def store_torques(terms: list, system, more=()) -> None:
-    """The torques of the last evaluation, as ``system.extra["torque"]`` (n, 3); `more` are further arrays of that shape."""
-    turning = [t for t in terms if isinstance(t, DipoleTerm)]
-    if turning or "torque" in system.extra:
-        torque = system.extra.setdefault("torque", np.zeros((system.n, 3)))
-        torque[:] = 0.0
-        for t in turning:
-            torque[t.row[t.row >= 0]] += t.torque.sum(axis=0)[:, t.row >= 0].T
-        for other in more:
-            torque += other
+def store_torques(state, slots: int, system) -> None:
+    """The torques of the last evaluation, as ``system.extra["torque"]`` (n, 3)."""
+    if len(state.torque):
+        rows = state.row[:slots]
+        system.extra.setdefault("torque", np.zeros((system.n, 3)))[rows[rows >= 0]] = state.torque[:, :slots][:, rows >= 0].T
 
 
 class FactorTerm(Term):

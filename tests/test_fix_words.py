@@ -53,7 +53,7 @@ def test_compute_round_trip(line, session):
     ("nve 1", "takes no arguments"), ("nve/limit", "xmax"), ("nve/limit 0", "positive"), ("nvt", "needs temp"),
     ("nvt temp 1 1", "3 values"), ("nvt temp 1 0 1", "above 0"), ("nvt temp 1 1 0", "damping"), ("nvt temp 1 1 nan", "finite"),
     ("nvt temp 1 1 1 tchain 0", "at least 1"), ("nvt temp 1 1 1 tchian 3", "did you mean tchain"), ("nvt temp 1 1 1 iso 0 0 1", "fix npt"),
-    ("nvt temp 1 1 1 drag -1", "negative"), ("nvt temp 1 1 1 update dipole", "not supported"), ("npt temp 1 1 1", "needs a pressure"),
+    ("nvt temp 1 1 1 drag -1", "negative"), ("nvt temp 1 1 1 update dipole", "need fix nvt/sphere"), ("npt temp 1 1 1", "needs a pressure"),
     ("npt iso 1 1 1", "needs temp"), ("npt temp 1 1 1 iso 1 1 0", "damping time of x"), ("npt temp 1 1 1 iso 1 1", "3 values"),
     ("npt temp 1 1 1 iso 1 1 1 couple xx", "one of none xyz"), ("npt temp 1 1 1 iso 1 1 1 pchain -1", "not be negative"),
     ("npt temp 1 1 1 iso 1 1 1 ploop 0", "ploop must be"), ("npt temp 1 1 1 iso 1 1 1 ptemp 0", "above 0"),

@@ -80,8 +80,17 @@ def test_energy_of_each_atom_adds_up():
     ("fix 2 all nve/sphere disc", "two dimensions"),
     ("fix 2 all nve/sphere upate dipole", "did you mean update"),
     ("compute x all temp/sphere bias t", "removes no bias"),
+    ("fix 2 all nvt/sphere temp 1 1 1 update dipoles", "did you mean dipole"),
+    ("fix 2 all nvt/sphere temp 1 1 1 update", "update"),
+    ("fix 2 all nvt/sphere temp 1 1 1 disc", "two dimensions"),
+    ("fix 2 all nvt/sphere update dipole", "needs temp"),
+    ("fix 2 all nvt/sphere temp 1 1 1 iso 1 1 1", "use fix npt"),
+    ("fix 2 all npt/sphere iso 1 1 1", "needs temp"),
+    ("fix 2 all nph/sphere iso 1 1 1 temp 1 1 1", "use fix npt/sphere"),
+    ("fix 2 all npt/sphere temp 1 1 1", "needs a pressure"),
+    ("fix 2 all nvt temp 1 1 1 disc", "need fix nvt/sphere"),
+    ("unfix 1\nfix 2 all nph/sphere iso 1 1 1\nset atom 3 diameter 0\nrun 0", "atom 3 is a point"),
     ("set atom 3 diameter 0\nrun 0", "atom 3 is a point"),
-    ("fix 2 all efield 1 0 0\nrun 0", "torques of fix efield"),
 ])
 def test_mistakes(line, said):
     with pytest.raises(InputError, match=said):

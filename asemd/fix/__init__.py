@@ -10,6 +10,7 @@ A compiled hook has the signature ``f(th, s, p, a)``:
   ``begin, end`` (first and last step of the run or of ``run start/stop``, for ramps), ``dt``, ``sync``, ``scratch``;
 - ``s`` (`asemd.kernels.state.State`): slot arrays ``x v f (3, cap)``, ``mass inverse_mass q (cap,)`` (inverse_mass is ftm2v / m; 0 for
   empty slots), ``type mask row (cap,)`` (mask: group bits; row: index of the atom, -1 for an empty slot, whose mask is 0);
+  ``torque (3, cap)`` beside ``f``, zero before the forces of each step, where atoms turn or have dipoles, else ``(0, cap)``;
 - ``p (k,) float64``: the fix's own numbers, made by `parameters`, shared by all threads and kept between steps (``p[0]`` is the group
   bit as a float);
 - ``a (m, n) float64``: the fix's own per-atom numbers by row, made by `atom_arrays` (a (1, 1) dummy if it has none).

@@ -91,10 +91,7 @@ class EField(Forcing):
         nothing = np.zeros((1, 3))
         if own is not None:
             own = self.a = np.column_stack([own, np.zeros(len(own))])
-        torque = np.zeros((loop.system.n, 3)) if "mu" in extra else nothing
-        if "mu" in extra:
-            loop.engine.torques[id(self)] = torque
-        return (np.zeros((1, 5)) if own is None else own, extra.get("mu", nothing), torque)
+        return (np.zeros((1, 5)) if own is None else own, extra.get("mu", nothing))
 
     def follow(self, loop) -> None:
         super().follow(loop)
@@ -106,7 +103,7 @@ class EField(Forcing):
     @hook(uses=[unwrapped, tally])
     def post_force(th, s, p, a):
         bit, some, unit, dipoles, constant, mode = np.int32(np.int64(p[0])), p[2] != 0.0, p[10], p[11] != 0.0, p[12] != 0.0, p[13]
-        own, mu, torque = a
+        own, mu = a
         ex, ey, ez = p[7], p[8], p[9]
         energy, x, y, z = 0.0, 0.0, 0.0, 0.0
         for i in range(th.lo, th.hi):
@@ -114,8 +111,6 @@ class EField(Forcing):
                 row = s.row[i]
                 if some:
                     if own[row, 0] == 0.0:
-                        if dipoles:
-                            torque[row, 0] = torque[row, 1] = torque[row, 2] = 0.0
                         continue
                     ex, ey, ez = own[row, 1], own[row, 2], own[row, 3]
                 q = unit * s.q[i]
@@ -135,9 +130,9 @@ class EField(Forcing):
                     if p[1] != 0.0:
                         tally(th, s, i, fx, fy, fz)
                 if dipoles:
-                    torque[row, 0] = unit * (ez * mu[row, 1] - ey * mu[row, 2])
-                    torque[row, 1] = unit * (ex * mu[row, 2] - ez * mu[row, 0])
-                    torque[row, 2] = unit * (ey * mu[row, 0] - ex * mu[row, 1])
+                    s.torque[0, i] += unit * (ez * mu[row, 1] - ey * mu[row, 2])
+                    s.torque[1, i] += unit * (ex * mu[row, 2] - ez * mu[row, 0])
+                    s.torque[2, i] += unit * (ey * mu[row, 0] - ex * mu[row, 1])
                     if constant:
                         energy -= unit * (ex * mu[row, 0] + ey * mu[row, 1] + ez * mu[row, 2])
         energy = reduce_sum(th, energy)

@@ -29,9 +29,8 @@ class Enforce2D(Fix):
         return np.array([loop.group_bit(self.group), "omega" in loop.system.extra], float)
 
     def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
-        """Angular velocities and torques of spheres."""
-        extra, none = loop.system.extra, np.zeros((1, 3))
-        return (extra["omega"], extra["torque"]) if "omega" in extra else (none, none)
+        """Angular velocities of spheres."""
+        return (loop.system.extra.get("omega", np.zeros((1, 3))),)
 
     @hook
     def post_force(th, s, p, a):
@@ -44,4 +43,4 @@ class Enforce2D(Fix):
                     r = s.row[i]
                     for d in range(2):
                         a[0][r, d] = 0.0
-                        a[1][r, d] = 0.0
+                        s.torque[d, i] = 0.0

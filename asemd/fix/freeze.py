@@ -35,20 +35,16 @@ class Freeze(Forcing):
             raise InputError("More than one fix freeze: leave one, for a group of all atoms that stand still")
         return super().parameters(loop)
 
-    def atom_arrays(self, loop):
-        return (loop.system.extra["torque"],)
-
     @hook
     def post_force(th, s, p, a):
         bit = np.int32(np.int64(p[0]))
-        torque = a[0]
         total = np.zeros(3)
         for i in range(th.lo, th.hi):
             if s.mask[i] & bit != 0:
                 for d in range(3):
                     total[d] += s.f[d, i]
                     s.f[d, i] = 0.0
-                    torque[s.row[i], d] = 0.0
+                    s.torque[d, i] = 0.0
         for d in range(3):
             before = reduce_sum(th, total[d])
             if th.tid == 0:

@@ -21,7 +21,7 @@ SHORT = {"iso": COMPONENTS[:3], "aniso": COMPONENTS[:3], "tri": COMPONENTS}
 COUPLINGS = ("none", "xyz", "xy", "yz", "xz")
 KEYWORDS = {"temp": 3, **dict.fromkeys((*SHORT, *COMPONENTS, "fixedpoint"), 3),
             **dict.fromkeys(("couple", "drag", "tchain", "tloop", "pchain", "ploop", "mtk", "nreset", "scalexy", "scaleyz", "scalexz",
-                             "flip", "dilate", "ptemp", "update"), 1)}
+                             "flip", "dilate", "ptemp", "update"), 1), "disc": 0}
 
 
 def nose_hoover_chain(th, p):
@@ -87,7 +87,9 @@ class NoseHoover(Thermostat):
     integrates = True
     levels = "every"
     takes_bias = True
-    kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate")      # of the temperature it takes
+    kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate",
+             "temp/sphere")      # of the temperature it takes
+    turns = False       # whether it moves spheres that turn: fixes nvt/sphere ...
 
     def modify_option(self, keyword, value, session):
         if keyword == "temp" and find_temperature(value, session, "fix_modify temp").style not in self.kinds:
@@ -160,8 +162,10 @@ class NoseHoover(Thermostat):
             elif keyword == "dilate":
                 session.scene.groups.mask(values[0], what)
                 out["dilate"] = values[0]
-            elif keyword == "update":
-                raise InputError(f"{what} {values[0]} is not supported: it rotates dipoles, which need fix {cls.style}/sphere")
+            elif keyword in ("update", "disc"):
+                if not cls.turns:
+                    raise InputError(f"{what} is for spheres that turn, which need fix {cls.style}/sphere")
+                out["dipole" if keyword == "update" else "disc"] = values[0] if values else True
             else:
                 names = {"tchain": "chain", "tloop": "loops", "pchain": "pressure_chain", "ploop": "pressure_loops"}
                 out[names.get(keyword, keyword)] = whole(values[0], what)

@@ -9,22 +9,36 @@ import numpy as np
 
 from asemd.fix.barostat import barostat_chain, dilate_box, measure_pressure, push_box, target_pressure
 from asemd.fix.nose_hoover import NoseHoover, nose_hoover_chain
+from asemd.fix.spheres import kick_spheres, turn_dipoles
 from asemd.fix.thermostat import scale_thermal
 from asemd.kernels.box import follow
 
 LIVE = ("temp/ramp", "temp/deform")     # flows that LAMMPS takes from the present positions; others are those of the last temperature
 
 
-def kick(loop, bit: int) -> None:
-    """Half a step of the forces."""
+def scale(fix, loop, factor: float) -> None:
+    """The thermostat's factor: of velocities without their bias, and of the angular velocities of spheres."""
+    scale_thermal(loop, fix.temp, fix.group, factor)
+    if fix.turns:
+        fix.spheres[0][loop.groups[fix.group]] *= factor
+
+
+def kick(fix, loop, bit: int) -> None:
+    """Half a step of the forces, and of the torques on spheres."""
     s = loop.state
+    if fix.turns:
+        omega, radius, _, o = fix.spheres
+        kick_spheres(loop._thread(), s, bit, 1.0, omega, radius, o)
     mine = (s.mask & bit) != 0
     s.v[:, mine] += 0.5 * loop.dt * s.inverse_mass[mine] * s.f[:, mine]
 
 
-def move(loop, bit: int) -> None:
-    """The positions."""
+def move(fix, loop, bit: int) -> None:
+    """The positions, and dipoles that turn."""
     s = loop.state
+    if fix.turns:
+        omega, _, mu, o = fix.spheres
+        turn_dipoles(loop._thread(), s, bit, omega, mu, o)
     mine = (s.mask & bit) != 0
     s.x[:, mine] += loop.dt * s.v[:, mine]
 
@@ -74,7 +88,7 @@ def begin(fix: NoseHoover, loop) -> None:
         barostat_chain(th, fix.q, fix.b, fix.e, p[3] * p[13])
     if fix.thermal:
         nose_hoover_chain(th, p)
-        scale_thermal(loop, fix.temp, fix.group, p[12])
+        scale(fix, loop, p[12])
     if box:
         measure(fix, loop, True)
         fix.flow, fix.seen = flow(fix, loop), loop.engine.builds
@@ -82,13 +96,13 @@ def begin(fix: NoseHoover, loop) -> None:
         target_pressure(th, s, fix.q, fix.b, fix.m)
         push_box(th, s, p, fix.q, fix.b, fix.m)
         drag(fix, loop, fix.flow)
-    kick(loop, bit)
+    kick(fix, loop, bit)
     if box:
         dilate_box(th, s, fix.q, fix.b, fix.m, 0)
         dilate_box(th, s, fix.q, fix.b, fix.m, 1)
         follow(s.box)
         take_along(fix, loop, 0)
-    move(loop, bit)
+    move(fix, loop, bit)
     if box:
         take_along(fix, loop, 1)
 
@@ -96,7 +110,7 @@ def begin(fix: NoseHoover, loop) -> None:
 def end(fix: NoseHoover, loop) -> None:
     """The second half of a step."""
     th, s, p, box = loop._thread(), loop.state, fix.p, hasattr(fix, "press")
-    kick(loop, loop.group_bit(fix.group))
+    kick(fix, loop, loop.group_bit(fix.group))
     if box:
         anew = fix.temp.hides or fix.temp.style in LIVE or fix.seen != loop.engine.builds
         drag(fix, loop, flow(fix, loop) if anew else fix.flow)
@@ -109,6 +123,6 @@ def end(fix: NoseHoover, loop) -> None:
         push_box(th, s, p, fix.q, fix.b, fix.m)
     if fix.thermal:
         nose_hoover_chain(th, p)
-        scale_thermal(loop, fix.temp, fix.group, p[12])
+        scale(fix, loop, p[12])
     if box and fix.q[11] > 0.0:
         barostat_chain(th, fix.q, fix.b, fix.e, p[3] * p[13])

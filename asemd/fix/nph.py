@@ -48,5 +48,6 @@ class NPH(NoseHooverBox):
     def from_lammps(cls, group, words, session):
         given = cls.read(words, session)
         if "temperature" in given:
-            raise InputError("fix nph: temp controls the temperature, which fix nph does not; use fix npt")
+            other = cls.style.replace("nph", "npt")
+            raise InputError(f"fix {cls.style}: temp controls the temperature, which fix {cls.style} does not; use fix {other}")
         return cls.made(group, given, session)

@@ -281,5 +281,5 @@ class NPT(NoseHooverBox):
     def from_lammps(cls, group, words, session):
         given = cls.read(words, session)
         if "temperature" not in given:
-            raise InputError("fix npt needs temp Tstart Tstop Tdamp")
+            raise InputError(f"fix {cls.style} needs temp Tstart Tstop Tdamp")
         return cls.made(group, given, session)

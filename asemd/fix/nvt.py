@@ -69,7 +69,7 @@ class NVT(NoseHoover):
             raise InputError(f"fix {cls.style}: {keyword} controls the pressure, which fix {cls.style} does not; use fix npt")
         if "temperature" not in given:
             raise InputError(f"fix {cls.style} needs temp Tstart Tstop Tdamp")
-        return cls(group, **{k: given[k] for k in ("temperature", "damping", "chain", "loops", "drag") if k in given})
+        return cls(group, **{k: given[k] for k in ("temperature", "damping", "chain", "loops", "drag", "dipole", "disc") if k in given})
 
     @hook(uses=[nose_hoover_chain])
     def initial_integrate(th, s, p, a):

@@ -1,7 +1,7 @@
 """Angles between the dipole of an atom and the vector to a second one, for `asemd.kernels.block`.
 
-`arrays` ends with the dipoles (3, cap) and the torques (3, cap) on them. a = x2 - x1, gamma = atan2(|a x mu|, a . mu). The third atom of
-the angle is not used. As in LAMMPS there is no virial.
+`arrays` ends with the rows of the slots (cap,), the dipoles by row (n, 3) and the torques by slot (3, cap), which are added to.
+a = x2 - x1, gamma = atan2(|a x mu|, a . mu). The third atom of the angle is not used. As in LAMMPS there is no virial.
 """
 from __future__ import annotations
 
@@ -25,15 +25,11 @@ def geometry(b, n, sides):
 
 
 def recall(b, n, first, lo, hi, items, types, arrays):
-    """The angles; before the first of them the torques are set to zero."""
-    mu, torque = arrays[-2], arrays[-1]
-    if first == lo:
-        for m in range(lo, hi):
-            i = member(items, m, 0)
-            torque[0, i] = torque[1, i] = torque[2, i] = 0.0
+    """The angles."""
+    row, mu = arrays[-3], arrays[-2]
     for k in range(n):
-        i = member(items, first + k, 0)
-        a, m = triple(b, V1, k), (mu[0, i], mu[1, i], mu[2, i])
+        i = row[member(items, first + k, 0)]
+        a, m = triple(b, V1, k), (mu[i, 0], mu[i, 1], mu[i, 2])
         aa, mm, normal = dot(a, a), dot(m, m), cross(a, m)
         store(b, NORMAL, k, normal)
         put(b, GAMMA, k, vector_atan2(math.sqrt(dot(normal, normal)), dot(a, m)))

@@ -78,6 +78,7 @@ def compiled(function: Callable, arrays: str, strict: bool = False):
     b.line("from asemd.kernels.packed import AFTER_NUMBERS, AFTER_STATE, entry, reader")
     b.line("from asemd.kernels.packed import read_address, read_numbers, read_state, read_thread")
     b.line(f"read_arrays = reader({arrays})")
+    b.line(f"# {packed.LAYOUT}")
     head, body = source.split("\n", 1)
     th, s, p, a = head.removeprefix("def hook(").removesuffix("):").split(", ")
     b.text(f"""@entry({"" if strict else f"fastmath={FAST}"})

@@ -13,7 +13,7 @@ from numba import cfunc, config, types
 from numba.core.imputils import impl_ret_borrowed
 from numba.extending import intrinsic, overload
 
-from asemd.kernels.state import BoxState, Thread, cell_arrays, empty_state
+from asemd.kernels.state import BoxState, State, Thread, cell_arrays, empty_state
 from asemd.kernels.target import njit
 
 _ROWS, _THREES, _FOURS = np.zeros(3), np.zeros((3, 3)), np.zeros((4, 4))
@@ -22,6 +22,7 @@ _BOX = BoxState(_THREES, _ROWS, _ROWS, _CELL, _THREES, _THREES, _THREES, _FOURS,
 STATE = numba.typeof(empty_state(8, np.zeros(1, np.int32), np.zeros((1, 3), np.int32), np.zeros((1, 1, 8)), _BOX))
 THREAD = numba.typeof(Thread(0, 1, 0, 1, 0, 0, 0, 0.0, np.zeros(8, np.int64), np.zeros((1, 8))))
 NUMBERS = types.Array(types.float64, 1, "C")
+LAYOUT = " ".join(State._fields + BoxState._fields)      # hooks are compiled for it
 WITHOUT_COMPILER = bool(config.DISABLE_JIT)
 HANDLE = object if WITHOUT_COMPILER else np.int64
 

@@ -109,16 +109,16 @@ def displacements(x, held, ns, out):
 
 
 def add_buffers(buffers, ns):
-    """Sum the threads' force buffers into the first."""
+    """Sum the threads' forces, and torques if there are any, into the first."""
     for t in range(1, buffers.shape[0]):
-        for d in range(3):
+        for d in range(buffers.shape[1]):
             for i in range(ns):
                 buffers[0, d, i] += buffers[t, d, i]
 
 
 def clear(buffer, ns):
-    """Zero forces (3, cap)."""
-    for d in range(3):
+    """Zero forces (3, cap), or forces and torques (6, cap)."""
+    for d in range(buffer.shape[0]):
         for i in range(ns):
             buffer[d, i] = 0.0
 

@@ -52,6 +52,7 @@ class State(NamedTuple):
     image: np.ndarray         # (n, 3) int32 image flags by atom row; ``x + image @ box.vectors`` is the unwrapped position
     acc: np.ndarray           # (nth, terms, 8) energies and virials of the terms, on steps that compute them: e e xx yy zz xy xz yz
     virial: np.ndarray        # (nth, 6) what fixes add to the virial of this step: xx yy zz xy xz yz
+    torque: np.ndarray        # (3, cap) total torque; (0, cap) where atoms neither turn nor have dipoles
     box: BoxState
 
 
@@ -68,7 +69,7 @@ def empty_state(capacity: int, slot: np.ndarray, image: np.ndarray, acc: np.ndar
     x, v, f = aligned((3, capacity)), aligned((3, capacity)), aligned((3, capacity))
     row, types, mask = np.full(capacity, -1, np.int32), np.zeros(capacity, np.int32), np.zeros(capacity, np.int32)
     return State(x, v, f, row, types, np.ones(capacity), np.zeros(capacity), np.zeros(capacity), mask, slot, image, acc,
-                 np.zeros((len(acc), 6)), box)
+                 np.zeros((len(acc), 6)), np.zeros((0, capacity)), box)
 
 
 class Thread(NamedTuple):

@@ -159,7 +159,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
             farthest[tid] = 0.0
         resume = 0
         act(2, th, calls, starts)
-        for d in range(3):
+        for d in range(f.shape[0]):
             for i in range(ns):
                 f[d, i] = 0.0
         for c in range(6):
@@ -175,7 +175,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
         if nth > 1:
             barrier(th)
             for t in range(1, nth):
-                for d in range(3):
+                for d in range(f.shape[0]):
                     sum_of, part = buffers[0, d, lo:hi], buffers[t, d, lo:hi]
                     for i in range(hi - lo):
                         sum_of[i] += part[i]

