@@ -6,8 +6,6 @@ import pytest
 from both import asemd, lines_of
 from wheel import ask
 
-from asemd.errors import InputError
-
 SCENE = """
 units lj
 dimension {dimension}
@@ -99,7 +97,8 @@ import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
     lmp = start()
-    watch = ["compute q all property/atom mux muy muz omegax omegay omegaz vx vy vz xu yu zu tqx tqy tqz", "dump q all custom 50 /dev/null c_q[1]"]
+    watch = ["compute q all property/atom mux muy muz omegax omegay omegaz vx vy vz xu yu zu tqx tqy tqz",
+             "dump q all custom 50 /dev/null c_q[1]"]
     try:
         for line in [*lines, *watch, "run 30", "run 20"]:
             lmp.command(line)
@@ -129,3 +128,18 @@ def test_like_lammps(name, theirs):
         assert ours[:, columns] == pytest.approx(expected[:, columns], abs=1e-11 * max(1.0, abs(expected[:, columns]).max())), what
     for key, value in theirs[name]["thermo"].items():
         assert session.last_thermo[key] == pytest.approx(value, rel=1e-9, abs=1e-9), key
+
+
+@pytest.mark.parametrize("name", ["angles and field", "nvt, dlm, loops", "npt tri", "npt in two dimensions"])
+def test_threads_and_restarts_change_nothing(name, tmp_path):
+    """Two threads, and a run that goes on from a restart file, give the same as one in one piece."""
+    half = "run 20 start 0 stop 40"
+    whole = asemd("\n".join([*lines(name), half, f"write_restart {tmp_path}/r", half]))
+    again = ("fix", "pair_style", "pair_coeff", "compute", "timestep", "angle_style", "angle_coeff")
+    settings = [w for w in lines(name) if w.split()[0] in again]
+    for text in (["package omp 2", *lines(name), "run 40"], [f"read_restart {tmp_path}/r", *settings, half]):
+        other = asemd("\n".join(text))
+        assert other.scene.threads == (2 if text[0].startswith("package") else 1)
+        one, two = (s.scene.system.select(np.argsort(s.scene.system.id)) for s in (whole, other))
+        for a, b in ((one.v, two.v), (one.extra["omega"], two.extra["omega"]), (one.extra["mu"], two.extra["mu"])):
+            assert a == pytest.approx(b, abs=1e-11)
