@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -68,6 +69,17 @@ def test_memory_has_the_layout_of_the_compiler():
         return a.sum(), a.shape, b[3], b.size, c[4], c.strides[0]
     assert look(block.ctypes.data) == (66.0 - 6.0 - 1.0, (3, 4), 3, 5, 8.0, 8)
     assert x[1, 2] == -1.0
+
+
+class Pair(NamedTuple):
+    left: np.ndarray
+    right: np.ndarray
+
+
+def test_hooks_take_named_tuples():
+    pair = Pair(np.arange(3.0), np.arange(4.0))
+    kind = numba.typeof(pair)
+    assert eval(packed.text_of_type(kind), {"types": numba.types, "import_module": importlib.import_module}) == kind
 
 
 def test_state_and_numbers_are_as_packed():

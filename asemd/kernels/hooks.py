@@ -74,6 +74,7 @@ def compiled(function: Callable, arrays: str, strict: bool = False):
         return function
     b, source = Builder(f"{function.__module__}: {function.__name__}"), plain_source(function, "hook")
     _imports(b, function, source, getattr(function, "uses", ()))
+    b.line("from importlib import import_module")
     b.line("from numba import types")
     b.line("from asemd.kernels.packed import AFTER_NUMBERS, AFTER_STATE, entry, reader")
     b.line("from asemd.kernels.packed import read_address, read_numbers, read_state, read_thread")

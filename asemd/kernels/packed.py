@@ -62,7 +62,7 @@ def handle(memory):
 
 
 def text_of_type(kind) -> str:
-    """Python text for the type of an array or a tuple of arrays.
+    """Python text for the type of an array or a tuple of arrays, a named one too; it may use ``types`` and ``import_module``.
 
     Raises
     ------
@@ -71,8 +71,10 @@ def text_of_type(kind) -> str:
     """
     if isinstance(kind, types.Array):
         return f"types.Array(types.{kind.dtype}, {kind.ndim}, {kind.layout!r}, readonly={not kind.mutable}, aligned={kind.aligned})"
-    if isinstance(kind, types.BaseTuple) and not isinstance(kind, types.BaseNamedTuple):
-        return f"types.Tuple(({''.join(text_of_type(k) + ', ' for k in kind.types)}))"
+    if isinstance(kind, types.BaseTuple):
+        members, named = ''.join(text_of_type(k) + ', ' for k in kind.types), getattr(kind, "instance_class", None)
+        owner = f", import_module({named.__module__!r}).{named.__qualname__}" if named else ""
+        return f"types.BaseTuple.from_types(({members}){owner})"
     raise TypeError(f"arrays of a fix are numpy arrays, or tuples of them: {kind} is not")
 
 
