@@ -139,7 +139,7 @@ def test_threads_and_restarts_change_nothing(name, tmp_path):
     settings = [w for w in lines(name) if w.split()[0] in again]
     parallel = asemd("\n".join(lines(name)))
     parallel.scene.threads = 2
-    parallel.commands("run 40\n")
+    parallel.commands(f"{half}\n{half}\n")
     for other in (parallel, asemd("\n".join([f"read_restart {tmp_path}/r", *settings, half]))):
         one, two = (s.scene.system.select(np.argsort(s.scene.system.id)) for s in (whole, other))
         for a, b in ((one.v, two.v), (one.extra["omega"], two.extra["omega"]), (one.extra["mu"], two.extra["mu"])):

@@ -47,6 +47,7 @@ from asemd.kernels.threads import barrier
 def begin_box_step(th, s, p, a):
     """Both chains and the box's rates before the atoms move; returns the factor by which velocities are still to be scaled."""
     q, b, e, w, m = a
+    barrier(th)                 # others may still read the factor of the last step
     if th.tid == 0:
         if q[11] > 0.0:
             barostat_chain(th, q, b, e, p[3] * p[13])

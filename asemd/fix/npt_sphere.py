@@ -47,6 +47,7 @@ def start_spheres(th, s, p, a):
     """Velocities and angular velocities of the first half of a step."""
     q, b, e, w, m, omega, radius, mu, o = a
     bit = np.int32(np.int64(p[0]))
+    barrier(th)                 # others may still read the factor of the last step
     if th.tid == 0:
         if q[11] > 0.0:
             barostat_chain(th, q, b, e, p[3] * p[13])

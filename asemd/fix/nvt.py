@@ -73,6 +73,7 @@ class NVT(NoseHoover):
 
     @hook(uses=[nose_hoover_chain])
     def initial_integrate(th, s, p, a):
+        barrier(th)             # others may still read the factor of the last step
         if th.tid == 0:
             nose_hoover_chain(th, p)
         barrier(th)
@@ -87,6 +88,7 @@ class NVT(NoseHoover):
 
     @hook(uses=[nose_hoover_chain])
     def outer_initial(th, s, p, a):
+        barrier(th)             # others may still read the factor of the last step
         if th.tid == 0:
             nose_hoover_chain(th, p)
         barrier(th)

@@ -58,6 +58,7 @@ def thermostat(th, s, p, rates, peculiar):
     """Half a step of the chain on the thermal velocities, and of the term of the gradient."""
     m = np.empty(6)
     gradient(s.box, rates, m)
+    barrier(th)                 # others may still read the factor of the last step
     if th.tid == 0:
         nose_hoover_chain(th, p)
     barrier(th)

@@ -58,6 +58,7 @@ class NVTSphere(SphereBath, NVT):
 
     @hook(uses=[*TURNS, nose_hoover_chain, kick_group, move_spheres])
     def initial_integrate(th, s, p, a):
+        barrier(th)             # others may still read the factor of the last step
         if th.tid == 0:
             nose_hoover_chain(th, p)
         barrier(th)
@@ -69,6 +70,7 @@ class NVTSphere(SphereBath, NVT):
 
     @hook(uses=[*TURNS, nose_hoover_chain, kick_group])
     def outer_initial(th, s, p, a):
+        barrier(th)             # others may still read the factor of the last step
         if th.tid == 0:
             nose_hoover_chain(th, p)
         barrier(th)
