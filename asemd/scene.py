@@ -139,6 +139,7 @@ class Scene:
     list_once: bool = False     # neigh_modify once
     list_style: str = "bin"     # as the command neighbor has it
     first_group: str = ""       # atom_modify first
+    sort: tuple[int, float] = (1000, 0.0)       # atom_modify sort: steps, width of the bins
     threads: int = 1
     precision: str = "double"
     compat: str = ""

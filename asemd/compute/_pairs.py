@@ -172,13 +172,15 @@ def limits(state, cutoff: float, own: bool) -> np.ndarray | None:
     return None if (limit[1:, 1:] >= cutoff * cutoff).all() else limit
 
 
-def interactions(state, pairs: Half, only=None) -> tuple[np.ndarray, np.ndarray]:
+def interactions(state, pairs: Half, only=None, beyond: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Energies (m,) of pairs and the force (m, 3) on the first atom of each, summed over the pair styles.
 
     Parameters
     ----------
     only : callable, optional
         Which terms (`asemd.pairing.PairTerm`) count.
+    beyond : bool
+        Formulas go on beyond the cutoff, where no list has a pair; not those of hybrid styles.
 
     Raises
     ------
@@ -202,13 +204,16 @@ def interactions(state, pairs: Half, only=None) -> tuple[np.ndarray, np.ndarray]
             raise InputError(f"pair style {term.label} has a factor for each atom, so that its pairs have no energy: leave it out")
         code = np.ascontiguousarray(pairs.kind, np.int32)
         lj, coul = term.weights(rules.weight_lj, rules.weight_coul)
-        f, e, bad = np.zeros((3, 2 * m)), np.zeros(2 * m), np.zeros(4)
+        f, e, bad, rows_of_tables = np.zeros((3, 2 * m)), np.zeros(2 * m), np.zeros(4), term.tables.rows
+        if beyond and len(engine.pair_terms) == 1:
+            rows_of_tables = rows_of_tables.copy()
+            rows_of_tables[term.cut_rows] = np.inf
         chosen = slice(None)
         if term.molecules:
             same = rules.molecule[pairs.i] == rules.molecule[pairs.j]
             chosen = np.flatnonzero(same == (term.molecules == "same"))
         a, b, c = first[chosen], second[chosen], code[chosen]
-        _kernel(term)(x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), term.tables.rows, term.tables.constants,
+        _kernel(term)(x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), rows_of_tables, term.tables.constants,
                       term.tables.arrays, engine.qqr2e, np.zeros(8), e, np.zeros((6, 2 * m)), bad)
         energy += e[:m] + e[m:]
         force += f[:, :m].T

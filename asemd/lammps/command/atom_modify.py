@@ -26,8 +26,10 @@ def run(session, args):
                     raise InputError(f"atom_modify id no: atom_style {session.scene.atom_style} needs atom ids for its bonds")
                 session.warn("atom_modify id no: atoms keep their ids, which need no more time here; files show them where LAMMPS writes 0")
         elif key == "sort":
-            if whole(values[0], "atom_modify sort") < 0 or number(values[1], "atom_modify sort") < 0.0:
+            sort = whole(values[0], "atom_modify sort"), number(values[1], "atom_modify sort")
+            if min(sort) < 0:
                 raise InputError(f"atom_modify sort: must not be negative, got {' '.join(values)}")
+            session.scene.sort = sort
         else:
             if session.scene.system is not None:
                 session.scene.groups.mask(values[0], "atom_modify first")
