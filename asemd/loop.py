@@ -61,7 +61,7 @@ class Loop:
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
-        self._module, self._chunk, self.halted = None, 100, False
+        self._chunk, self.halted = 100, False
         self.watchdog = Watchdog(self)
 
     def group_bit(self, name: str) -> int:
@@ -127,13 +127,7 @@ class Loop:
         self.engine.changed = False
         self._kinds = [f.hooks() for f in self.fixes]
         self._sort_hooks()
-        self._calls = tl.hooks_of(self.fixes, self._kinds)
-        terms = self.engine.terms
-        kernels = [(t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if self._virial_every else None) for t in terms]
-        key = (tuple(id(f) for kinds in kernels for f in kinds), self.settings.outdated, self.engine.box_moves, bool(self._virial_every))
-        if self._module is None or self._module[0] != key:
-            self._module = (key, tl.module(kernels, [t.category for t in terms], self.settings.outdated, bool(self.engine.box_moves),
-                                           bool(self._virial_every)))
+        self._calls, self._packed = tl.hooks_of(self.fixes, self._kinds), [None] * self.engine.threads
         if self._next_whole(self.step) > self.step + 1:
             self._enter(0, False)     # compiles, or loads from the cache, without moving anything
 
@@ -275,22 +269,29 @@ class Loop:
         e, s, c, x = self.engine, self.settings, self._control, self._numbers
         if last == 0:
             last = self.step
-        c[:12] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every]
+        c[:14] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
+                  s.outdated, bool(e.box_moves)]
         x[tl.DT], x[tl.TRIGGER] = self.dt, (0.5 * s.skin) ** 2
         self._sync[:] = 0
         status = [0] * e.threads
-        run, (calls, starts) = self._module[1].run, self._calls.table(tl.KINDS, e.state, self.fix_data)
+        run, (calls, starts) = tl.module().run, self._calls.table(tl.KINDS, e.state, self.fix_data)
 
         def work(tid):
-            status[tid] = run(tid, e.threads, e.ns, e.state, e.held, e.moved, e.farthest, e.buffers, e.bad, self._sync, self._scratch, c, x,
-                              e.acc, e.arguments(tid), calls, starts)
-        for t in range(e.threads):
-            e.arguments(t)
+            status[tid] = run(tid, e.threads, e.ns, e.state.x, e.state.virial, e.state.box, e.held, e.moved, e.farthest, e.buffers, e.bad,
+                              self._sync, self._scratch, c, x, e.acc, terms[tid], calls, starts)
+        terms = [self._terms(t) for t in range(e.threads)]
         e.parallel(work)
         self.step = int(c[tl.STEP])
         self._ago = int(c[tl.AGO])
         e.dangerous += int(c[tl.DANGEROUS])
         return status[0]
+
+    def _terms(self, tid: int) -> np.ndarray:
+        """For the loop: kernels, arguments and clock of each term."""
+        arguments = self.engine.arguments(tid)
+        if self._packed[tid] is None or self._packed[tid][0] is not arguments:
+            self._packed[tid] = (arguments, *tl.terms_of(self.engine.terms, arguments, bool(self._virial_every)))
+        return self._packed[tid][1]
 
     def _take_timings(self) -> None:
         t, x = self.engine.timings, self._numbers

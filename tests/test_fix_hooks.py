@@ -55,19 +55,20 @@ def test_memory_has_the_layout_of_the_compiler():
     x = np.arange(12.0).reshape(3, 4)
     rows = np.arange(5, dtype=np.int32)
     every_second = np.arange(9.0)[::2].copy()
-    kind = numba.typeof((x, (rows, every_second)))
+    numbers = (np.float32(0.25), np.float32(-3.0), -7, 1e300)
+    kind = numba.typeof((x, (rows, every_second), numbers))
     source = packed.text_of_type(kind)
     read = packed.reader(eval(source, {"types": numba.types}))
     memory: list[int] = []
-    packed.pack((x, (rows, every_second)), memory)
+    packed.pack((x, (rows, every_second), numbers), memory)
     block = np.array(memory, np.int64)
 
     @numba.njit
     def look(address):
-        a, (b, c) = read(address)
+        a, (b, c), d = read(address)
         a[1, 2] = -1.0
-        return a.sum(), a.shape, b[3], b.size, c[4], c.strides[0]
-    assert look(block.ctypes.data) == (66.0 - 6.0 - 1.0, (3, 4), 3, 5, 8.0, 8)
+        return a.sum(), a.shape, b[3], b.size, c[4], c.strides[0], d
+    assert look(block.ctypes.data) == (66.0 - 6.0 - 1.0, (3, 4), 3, 5, 8.0, 8, (0.25, -3.0, -7, 1e300))
     assert x[1, 2] == -1.0
 
 
@@ -87,7 +88,7 @@ def test_state_and_numbers_are_as_packed():
     lmp.commands_string(BASE + "run 1")
     loop = lmp.session.loop
     assert numba.typeof(loop.state) == packed.STATE and numba.typeof(loop._thread()) == packed.THREAD
-    with pytest.raises(TypeError, match="numpy arrays"):
-        packed.text_of_type(numba.typeof(3.0))
+    with pytest.raises(TypeError, match="C-contiguous arrays"):
+        packed.text_of_type(numba.typeof("x"))
     with pytest.raises(ValueError, match="contiguous"):
         packed.pack(np.zeros((3, 3))[:, :2], [])

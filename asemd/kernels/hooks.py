@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache
 from types import ModuleType
 
-import numba
 import numpy as np
 
 from asemd.kernels import packed, random
@@ -92,6 +91,29 @@ def hook(thread, arguments):
     return b.build().hook.address
 
 
+@lru_cache(1024)
+def kernel_address(kernel: Callable, arguments: str):
+    """A kernel of a generated module with an address, as hooks have one.
+
+    Parameters
+    ----------
+    kernel : callable
+    arguments : str
+        The type of its arguments as one tuple, as `asemd.kernels.packed.text_of_type` writes it.
+    """
+    if packed.WITHOUT_COMPILER:
+        return lambda th, *values: kernel(*values)
+    function = kernel.py_func
+    b = Builder(f"{function.__name__} by address")
+    b.line("from importlib import import_module")
+    b.line("from numba import types")
+    b.line("from asemd.kernels.packed import entry, reader")
+    b.line(f"from {function.__module__} import {function.__name__} as kernel")
+    b.line(f"read = reader({arguments})")
+    b.text("@entry()\ndef call(thread, arguments):\n    kernel(*read(arguments))", jit=False)
+    return b.build().call.address
+
+
 class Calls:
     """The hooks of a run, and their arguments in memory.
 
@@ -113,7 +135,7 @@ class Calls:
 
     def function(self, n: int, kind: str, data):
         """A compiled hook of fix `n`: its address, or the function itself where nothing is compiled."""
-        return compiled(self.hooks[n][kind], packed.text_of_type(numba.typeof(data[n][1])), kind in self.strict)
+        return compiled(self.hooks[n][kind], packed.text_of_arguments(data[n][1]), kind in self.strict)
 
     def _follow(self, state, data) -> None:
         """Arguments anew where the state or the arrays of fixes are others."""

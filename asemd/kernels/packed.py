@@ -6,10 +6,14 @@ only what it uses: the compiler drops the rest. Without compiler (``NUMBA_DISABL
 """
 from __future__ import annotations
 
+import struct
+from itertools import count
+
 import numba
 import numpy as np
 from llvmlite import ir
 from numba import cfunc, config, types
+from numba._dispatcher import compute_fingerprint
 from numba.core.imputils import impl_ret_borrowed
 from numba.extending import intrinsic, overload
 
@@ -23,27 +27,38 @@ STATE = numba.typeof(empty_state(8, np.zeros(1, np.int32), np.zeros((1, 3), np.i
 THREAD = numba.typeof(Thread(0, 1, 0, 1, 0, 0, 0, 0.0, np.zeros(8, np.int64), np.zeros((1, 8))))
 NUMBERS = types.Array(types.float64, 1, "C")
 LAYOUT = " ".join(State._fields + BoxState._fields)      # hooks are compiled for it
+_DOUBLE, _SINGLE, _BITS = struct.Struct("d"), struct.Struct("ff"), struct.Struct("q")
 WITHOUT_COMPILER = bool(config.DISABLE_JIT)
 HANDLE = object if WITHOUT_COMPILER else np.int64
 
 
 def pack(value, into: list[int]) -> None:
-    """Append what numba's value of an array or a tuple of arrays is made of: no owner, then size, address, shape and strides."""
+    """Append what numba's value of a tuple is made of: of an array no owner, then size, address, shape and strides.
+
+    Raises
+    ------
+    ValueError
+        An array is not C-contiguous.
+    """
     if isinstance(value, tuple):
         for member in value:
             pack(member, into)
-    else:
+    elif isinstance(value, np.ndarray):
         if not value.flags.c_contiguous:
-            raise ValueError("arrays of a fix are C-contiguous")
+            raise ValueError("arrays that are called by address are C-contiguous")
         into += (0, 0, value.size, value.itemsize, value.__array_interface__["data"][0], *value.shape, *value.strides)
+    elif isinstance(value, np.float32):
+        into.append(_BITS.unpack(_SINGLE.pack(value, 0.0))[0])
+    else:
+        into.append(int(value) if isinstance(value, (int, np.integer)) else _BITS.unpack(_DOUBLE.pack(value))[0])
 
 
-def block(state):
-    """A state in memory; its arrays must live as long as it is used."""
+def block(value):
+    """A tuple in memory; its arrays must live as long as it is used."""
     if WITHOUT_COMPILER:
-        return state
+        return value
     into: list[int] = []
-    pack(state, into)
+    pack(value, into)
     return np.array(into, np.int64)
 
 
@@ -62,31 +77,42 @@ def handle(memory):
 
 
 def text_of_type(kind) -> str:
-    """Python text for the type of an array or a tuple of arrays, a named one too; it may use ``types`` and ``import_module``.
+    """Python text for the type of what can be packed; it may use ``types`` and ``import_module``.
 
     Raises
     ------
     TypeError
-        It is something else.
+        It is something else than an array, a whole number of 8 bytes, a double or single, or a tuple of these.
     """
-    if isinstance(kind, types.Array):
-        return f"types.Array(types.{kind.dtype}, {kind.ndim}, {kind.layout!r}, readonly={not kind.mutable}, aligned={kind.aligned})"
+    if isinstance(kind, types.Array) and kind.layout == "C":
+        return f"types.Array(types.{kind.dtype}, {kind.ndim}, 'C', readonly={not kind.mutable}, aligned={kind.aligned})"
     if isinstance(kind, types.BaseTuple):
-        members, named = ''.join(text_of_type(k) + ', ' for k in kind.types), getattr(kind, "instance_class", None)
+        members, named = "".join(text_of_type(k) + ", " for k in kind.types), getattr(kind, "instance_class", None)
         owner = f", import_module({named.__module__!r}).{named.__qualname__}" if named else ""
         return f"types.BaseTuple.from_types(({members}){owner})"
-    raise TypeError(f"arrays of a fix are numpy arrays, or tuples of them: {kind} is not")
+    if kind in (types.int64, types.float64, types.float32):
+        return f"types.{kind}"
+    raise TypeError(f"what is called by address gets C-contiguous arrays, numbers, and tuples of them: {kind} is not")
 
 
-def _read(builder, pointer, kind):
-    """The value behind a pointer, member by member: loads of what nobody uses vanish."""
+def text_of_arguments(value) -> str:
+    """`text_of_type` of a value's type."""
+    key = compute_fingerprint(value)
+    if key not in _texts:
+        _texts[key] = text_of_type(numba.typeof(value))
+    return _texts[key]
+
+
+_texts: dict[bytes, str] = {}
+
+
+def _read(builder, kind, places):
+    """The value whose members are at the next places, 8 bytes each: loads of what nobody uses vanish."""
     if not isinstance(kind, (ir.BaseStructType, ir.ArrayType)):
-        return builder.load(pointer)
+        return builder.load(builder.bitcast(next(places), kind.as_pointer()))
     value = ir.Constant(kind, ir.Undefined)
-    zero = ir.Constant(ir.IntType(32), 0)
     for k, member in enumerate(kind.elements if isinstance(kind, ir.BaseStructType) else [kind.element] * kind.count):
-        place = builder.gep(pointer, [zero, ir.Constant(ir.IntType(32), k)], inbounds=True)
-        value = builder.insert_value(value, _read(builder, place, member), k)
+        value = builder.insert_value(value, _read(builder, member, places), k)
     return value
 
 
@@ -95,9 +121,10 @@ def reader(kind):
     @intrinsic
     def read(context, address):
         def generate(ctx, builder, signature, arguments):
-            layout = ctx.get_value_type(kind)
-            value = _read(builder, builder.inttoptr(arguments[0], layout.as_pointer()), layout)
-            return impl_ret_borrowed(ctx, builder, kind, value)
+            whole = ir.IntType(64)
+            first = builder.inttoptr(arguments[0], whole.as_pointer())
+            places = (builder.gep(first, [ir.Constant(whole, k)]) for k in count())
+            return impl_ret_borrowed(ctx, builder, kind, _read(builder, ctx.get_value_type(kind), places))
         return kind(types.int64), generate
     return read
 

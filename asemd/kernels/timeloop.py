@@ -1,4 +1,4 @@
-"""The compiled time loop: text generated for exactly the terms of a run; fixes are called by address (`asemd.kernels.hooks`).
+"""The compiled time loop. Terms and fixes are called by address, so that it is compiled once for all runs.
 
 The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built by Python, loop entered again), pre_force,
 forces, post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after forces are
@@ -7,21 +7,31 @@ complete. Where one fix alone integrates and nothing happens between its second 
 """
 from __future__ import annotations
 
-import textwrap
+import math
 from collections.abc import Sequence
+from functools import cache
 from types import ModuleType
 
-from asemd.kernels import box
-from asemd.kernels.generate import FAST, Builder
-from asemd.kernels.hooks import Calls, shared
+import numpy as np
+
+from asemd.kernels import packed
+from asemd.kernels.box import corner_moves
+from asemd.kernels.clock import now
+from asemd.kernels.generate import FAST, Builder, plain_source
+from asemd.kernels.hooks import Calls, kernel_address, shared
+from asemd.kernels.packed import act, call
+from asemd.kernels.state import Thread
+from asemd.kernels.threads import barrier
 
 FINISHED, REBUILD, BAD = 0, 1, 2
 COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate", "end_of_step")
 HALVES = ("initial_integrate", "final_integrate", "final_initial")      # strict: a run has the same digits wherever it is cut into pieces
 KINDS = (*COMPILED, "final_initial")
 # places in `control` (int64) and `numbers` (float64)
-STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL = range(12)
+STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL, OUTDATED, BOX_MOVES = range(14)
 DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
+# places in a row of `terms`: addresses of the kernels, of their arguments, and the place of the time spent
+PLAIN, WITH_ENERGY, WITH_VIRIAL, ARGUMENTS, TIME = range(5)
 
 
 def hooks_of(fixes: Sequence, kinds: Sequence[dict[str, bool]]) -> Calls:
@@ -42,71 +52,75 @@ def hooks_of(fixes: Sequence, kinds: Sequence[dict[str, bool]]) -> Calls:
     return Calls(hooks, [f.every for f in fixes], HALVES)
 
 
-def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool = False, box_moves: bool = False,
-           virial: bool = False) -> ModuleType:
-    """The loop module.
+def terms_of(terms: Sequence, arguments: Sequence[tuple], virial: bool) -> tuple[np.ndarray, list]:
+    """A row for each term: its kernels without and with energy and with the virial only, its arguments, where its time is counted.
 
     Parameters
     ----------
-    kernels : sequence of (plain, with_energy, with_virial)
-        Compiled kernels of each term; the last one is not used without `virial`.
-    categories : sequence of str
-        ``pair`` or other, per term, for the timing table.
-    outdated : bool
-        The list may be: kernels look at how far each slot has moved.
-    box_moves : bool
-        A fix changes the box: what its corners have moved is taken from the skin, as LAMMPS does.
+    terms : sequence of asemd.term.Term
+    arguments : sequence of tuple
+        Of each term, for one thread.
     virial : bool
-        Fixes want the virial of the terms now and then.
+        Fixes want the virial now and then.
+
+    Returns
+    -------
+    rows, and the memory that must live as long as they are used
     """
+    rows, memory = np.empty((len(terms), 5), packed.HANDLE), [packed.block(a) for a in arguments]
+    for row, t, a, m in zip(rows, terms, arguments, memory, strict=True):
+        kind = packed.text_of_arguments(a)
+        kernels = t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if virial else t.kernel(True, False)
+        row[:3] = [kernel_address(k, kind) for k in kernels]
+        row[ARGUMENTS], row[TIME] = packed.handle(m), PAIR_TIME if t.category == "pair" else BOND_TIME
+    return rows, memory
+
+
+@cache
+def module() -> ModuleType:
+    """The loop with its constants written out."""
     b = Builder("time loop")
     b.line("from asemd.kernels.threads import barrier")
     b.line("from asemd.kernels.state import Thread")
     b.line("from asemd.kernels.clock import now")
-    b.line("from asemd.kernels.packed import act")
-    b.line("import math")
-    if box_moves:
-        b.use(shared(box.corner_moves), "corner_moves")
-    for k, (plain, energy, with_virial) in enumerate(kernels):
-        for f, alias in ((plain, f"term{k}"), (energy, f"term{k}_energy"), *([(with_virial, f"term{k}_virial")] if virial else [])):
-            g = getattr(f, "py_func", f)
-            b.line(f"from {g.__module__} import {g.__name__} as {alias}")
+    b.line("from asemd.kernels.packed import act, call")
+    b.use(shared(corner_moves), "corner_moves")
+    for name, value in globals().items():
+        if name.isupper() and isinstance(value, int):
+            b.constant(name, value)
+    b.text(plain_source(compute), f"fastmath={FAST}")
+    b.text(plain_source(run), f"fastmath={FAST}")
+    return b.build()
 
-    def terms(suffix: str, indent: int) -> str:
-        lines, last = [], None
-        for k, category in enumerate(categories):
-            at = "PAIR_TIME" if category == "pair" else "BOND_TIME"
-            if last not in (None, at):
-                lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
-            lines.append(f"term{k}{suffix}(*terms[{k}])")
-            last = at
-        if last:
-            lines += ["if tid == 0:", "    t1 = now()", f"    numbers[{globals()[last]}] += t1 - t0", "    t0 = t1"]
-        return textwrap.indent("\n".join(lines) or "t0 = t0", " " * indent)
 
-    on_virial_steps = textwrap.indent(f"""elif step % control[{VIRIAL}] == 0:
-    for k in range(acc.shape[1]):
-        for c in range(8):
-            acc[tid, k, c] = 0.0
-{terms("_virial", 4)}""", " " * 8) if virial else ""
+def compute(kind, th, terms, numbers, t0):
+    """Call the kernels of all terms; returns the time when they were done."""
+    for k in range(terms.shape[0]):
+        call(terms[k, kind], th, terms[k, ARGUMENTS])
+        if th.tid == 0:
+            t1 = now()
+            numbers[terms[k, TIME]] += t1 - t0
+            t0 = t1
+    return t0
 
-    b.text(f'''def run(tid, nth, ns, s, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, calls, starts):
-    step = control[{STEP}]
-    last = control[{LAST}]
-    resume = control[{RESUME}]
-    ago = control[{AGO}]
-    every = control[{EVERY}]
-    delay = control[{DELAY}]
-    check = control[{CHECK}]
-    begin = control[{BEGIN}]
-    end = control[{END}]
-    energy = control[{ENERGY}]
-    dt = numbers[{DT}]
-    trigger = numbers[{TRIGGER}]
+
+def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, calls, starts):
+    """Steps up to ``control[LAST]``; returns FINISHED, REBUILD (a list is due) or BAD (`bad` says which item)."""
+    step = control[STEP]
+    last = control[LAST]
+    resume = control[RESUME]
+    ago = control[AGO]
+    every = control[EVERY]
+    delay = control[DELAY]
+    check = control[CHECK]
+    begin = control[BEGIN]
+    end = control[END]
+    dt = numbers[DT]
+    trigger = numbers[TRIGGER]
     lo = ns * tid // nth
     hi = ns * (tid + 1) // nth
     f = buffers[tid]
-    x0, x1, x2 = s.x[0, lo:hi], s.x[1, lo:hi], s.x[2, lo:hi]            # slices: indices that are surely not negative vectorise
+    x0, x1, x2 = x[0, lo:hi], x[1, lo:hi], x[2, lo:hi]            # slices: indices that are surely not negative vectorise
     held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
     away = moved[lo:hi]
     ready = False          # whether the first half of the next step is done
@@ -123,7 +137,7 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
             act(1, th, calls, starts)
             ago += 1
             due = ago >= delay and ago % every == 0
-            if {outdated} or due:
+            if due or control[OUTDATED] != 0:
                 m = 0.0
                 odd = 0.0
                 for i in range(hi - lo):
@@ -132,29 +146,31 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
                     c = x2[i] - held2[i]
                     m = max(m, a * a + b * b + c * c)
                     odd += 0.0 * (a + b + c)                # not zero where a position is not a number
-                    {"away[i] = a * a + b * b + c * c" if outdated else ""}
+                if control[OUTDATED] != 0:
+                    for i in range(hi - lo):
+                        away[i] = (x0[i] - held0[i]) ** 2 + (x1[i] - held1[i]) ** 2 + (x2[i] - held2[i]) ** 2
                 scratch[tid, 1] = m if odd == 0.0 else 1e301
             if tid == 0:
                 t1 = now()
-                numbers[{MODIFY_TIME}] += t1 - t0
+                numbers[MODIFY_TIME] += t1 - t0
                 t0 = t1
             barrier(th)
             m = 0.0
             for t in range(nth):
                 m = max(m, scratch[t, 1])
-            {"gone = corner_moves(s.box)" if box_moves else "gone = 0.0"}
+            gone = corner_moves(box) if control[BOX_MOVES] != 0 else 0.0
             farthest[tid] = m if gone == 0.0 else (math.sqrt(m) + gone) ** 2
             need = due and (check == 0 or (m > trigger if gone == 0.0 else math.sqrt(m) + 0.5 * gone > math.sqrt(trigger)))
             if tid == 0:
                 t1 = now()
-                numbers[{COMM_TIME}] += t1 - t0
+                numbers[COMM_TIME] += t1 - t0
                 t0 = t1
             if need:
                 if tid == 0:
-                    control[{STEP}] = step
+                    control[STEP] = step
                     if check != 0 and ago == max(every, delay):
-                        control[{DANGEROUS}] += 1
-                return {REBUILD}
+                        control[DANGEROUS] += 1
+                return REBUILD
         else:
             farthest[tid] = 0.0
         resume = 0
@@ -163,15 +179,17 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
             for i in range(ns):
                 f[d, i] = 0.0
         for c in range(6):
-            s.virial[tid, c] = 0.0
-        if energy != 0 and step == last:
+            virial[tid, c] = 0.0
+        kind = PLAIN
+        if control[ENERGY] != 0 and step == last:
+            kind = WITH_ENERGY
+        elif control[VIRIAL] != 0 and step % control[VIRIAL] == 0:
+            kind = WITH_VIRIAL
+        if kind != PLAIN:
             for k in range(acc.shape[1]):
                 for c in range(8):
                     acc[tid, k, c] = 0.0
-{terms("_energy", 12)}
-{on_virial_steps}
-        else:
-{terms("", 12)}
+        t0 = compute(kind, th, terms, numbers, t0)
         if nth > 1:
             barrier(th)
             for t in range(1, nth):
@@ -183,11 +201,11 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
             for k in range(bad.shape[1]):
                 if bad[t, k, 0] != 0.0:
                     if tid == 0:
-                        control[{STEP}] = step
-                    return {BAD}
+                        control[STEP] = step
+                    return BAD
         if tid == 0:
             t1 = now()
-            numbers[{COMM_TIME}] += t1 - t0
+            numbers[COMM_TIME] += t1 - t0
             t0 = t1
         act(3, th, calls, starts)
         if starts[7] > starts[6] and step < last:
@@ -198,11 +216,10 @@ def module(kernels: Sequence[tuple], categories: Sequence[str], outdated: bool =
         act(5, th, calls, starts)
         if tid == 0:
             t1 = now()
-            numbers[{MODIFY_TIME}] += t1 - t0
+            numbers[MODIFY_TIME] += t1 - t0
             t0 = t1
     barrier(th)
     if tid == 0:
-        control[{STEP}] = step
-        control[{AGO}] = ago
-    return {FINISHED}''', f"fastmath={FAST}")
-    return b.build()
+        control[STEP] = step
+        control[AGO] = ago
+    return FINISHED
