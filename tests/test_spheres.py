@@ -30,6 +30,7 @@ compute c all temp/com
 compute b all temp/sphere bias c
 compute e all erotate/sphere
 thermo_style custom step temp pe c_t c_r c_b c_e c_t[1] c_t[4] c_t[6]
+group some id 1:5
 fix 1 all nve/sphere {words}
 {more}
 """
@@ -80,6 +81,8 @@ def test_energy_of_each_atom_adds_up():
     ("fix 2 all nve/sphere disc", "two dimensions"),
     ("fix 2 all nve/sphere upate dipole", "did you mean update"),
     ("compute x all temp/sphere bias t", "removes no bias"),
+    ("fix 2 some langevin 1 1 1 7 omega yes\nset atom 3 diameter 0\nrun 0", "atom 3 is a point"),
+    ("fix 2 some langevin 1 1 1 7 omega perhaps", "yes or no"),
     ("fix 2 all nvt/sphere temp 1 1 1 update dipoles", "did you mean dipole"),
     ("fix 2 all nvt/sphere temp 1 1 1 update", "update"),
     ("fix 2 all nvt/sphere temp 1 1 1 disc", "two dimensions"),

@@ -80,6 +80,8 @@ CASES = {
     "npt, translation": (SOLID, [f"fix 1 all npt/sphere {T} aniso 0 2 0.5", "fix_modify 1 temp h"]),
     "npt on levels": (BENT, [*ANGLES, FIELD, f"fix 1 all npt/sphere {T} iso 0 2 0.5 update dipole", "run_style respa 2 2 angle 1 pair 2"]),
     "npt of points": (FLAT, [f"fix 1 all npt {T} iso 0 2 0.5", "fix_modify 1 temp t", FLAT2]),
+    "langevin without noise": (SOLID, [FIELD, "fix 1 all nve/sphere update dipole", "fix 2 all langevin 0 0 0.3 77 omega yes scale 1 1.7"]),
+    "langevin of a group, tally": (SOLID, ["fix 1 all nve/sphere", "fix 2 some langevin 0 0 0.3 77 tally yes omega yes zero yes"]),
     "nph": (SOLID, [FIELD, "fix 1 all nph/sphere aniso 0 2 0.5 update dipole/dlm ptemp 1.5 fixedpoint 0 0 0 couple xy"]),
     "nph in two dimensions": (FLAT, ["fix 1 all nph/sphere x 0 2 0.5 disc", FLAT2]),
 }
@@ -128,6 +130,36 @@ def test_like_lammps(name, theirs):
         assert ours[:, columns] == pytest.approx(expected[:, columns], abs=1e-11 * max(1.0, abs(expected[:, columns]).max())), what
     for key, value in theirs[name]["thermo"].items():
         assert session.last_thermo[key] == pytest.approx(value, rel=1e-9, abs=1e-9), key
+
+
+TORQUES = """
+units lj
+atom_style sphere
+region b block 0 10 0 10 0 10
+create_box 2 b
+create_atoms 1 random 2000 777 NULL
+set group all diameter 0.8
+set group all density 2.0
+fix 1 all langevin 1.7 1.7 0.2 4711 omega yes scale 1 1.5
+fix 2 all nve/sphere
+timestep 0.003
+run 0
+"""
+
+
+def test_noise_of_torques():
+    """In the mean zero, of the variance that the temperature wants, other numbers than those of the forces."""
+    system = asemd(TORQUES).scene.system
+    torque, inertia = system.extra["torque"], 0.4 * system.rmass * system.extra["radius"] ** 2
+    expected = np.sqrt(10 / 3 * 2 * 1.7 * inertia[0] / (0.2 * 1.5) / 0.003)
+    assert torque.std() == pytest.approx(expected, rel=0.02) and abs(torque.mean()) < 4 * expected / np.sqrt(torque.size)
+    assert abs(np.corrcoef(torque.ravel(), system.f.ravel())[0, 1]) < 0.05
+
+
+def test_spheres_take_the_temperature_of_the_bath():
+    """Without interactions translation and rotation both do."""
+    lmp = asemd(TORQUES + "compute t all temp\ncompute r all temp/sphere dof rotate\nthermo_style custom step c_t c_r\nrun 400")
+    assert lmp.last_thermo["c_t"] == pytest.approx(1.7, rel=0.06) and lmp.last_thermo["c_r"] == pytest.approx(1.7, rel=0.06)
 
 
 @pytest.mark.parametrize("name", ["angles and field", "nvt, dlm, loops", "npt tri", "npt in two dimensions"])

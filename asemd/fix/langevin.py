@@ -7,6 +7,11 @@ and step depends on seed, step and atom only, not on threads. ``zero yes`` takes
 With a temperature that takes a bias off the velocities (``fix_modify ID temp``) friction acts on what is left, and noise on the
 components that are not zero. ``tally yes`` adds up the energy that friction and noise take from the atoms: the scalar of this fix
 (thermo keywords ecouple, econserve).
+With ``omega yes`` spheres have the same for their rotation,
+
+.. math:: T_i \leftarrow T_i - \tfrac{10}{3} \frac{I_i}{\tau_i} \omega_i + \sqrt{\frac{80 k_B T_0 I_i}{\tau_i \Delta t}}\, u
+
+whose factor 10/3 is that of Stokes's friction; the tally is without it.
 
 That holds for small steps. For harmonic forces of frequency :math:`\omega` the positions are too warm by the factor
 :math:`1 / (1 - \omega^2 \Delta t^2 / (4 - 2 \Delta t / \tau))`, and the velocities grow without bound from
@@ -39,6 +44,114 @@ GJF_HOOKS = ("initial_integrate", "post_force", "end_of_step")
 TYPES = 16      # ratios start here in the parameters, by atom type; type 0 has the place of a flag: velocities have a bias
 
 
+def push_points(th, s, p, a):
+    """Friction and noise."""
+    bit, seed, step = np.int32(np.int64(p[0])), np.int64(p[1]), th.step
+    tally, zero, variable, scaled, biased = p[2] != 0.0, p[3] != 0.0, p[4] != 0.0, p[10] != 0.0, p[16] != 0.0
+    friction, noise = p[7], math.sqrt(p[8] / th.dt)
+    done = 0.0
+    if th.end != th.begin:
+        done = (step - th.begin) / (th.end - th.begin)
+    root = math.sqrt(p[5] + done * (p[6] - p[5]))
+    mine = slice(th.lo, th.hi)
+    mask, mass, row = s.mask[mine], s.mass[mine], s.row[mine]
+    work = 0.0
+    for d in range(3):
+        total = 0.0
+        if tally or variable or scaled or zero or biased:
+            for i in range(th.lo, th.hi):
+                if s.mask[i] & bit != 0:
+                    ratio = p[16 + s.type[i]]
+                    size = a[s.row[i], 3] if variable else root
+                    v = a[s.row[i], 4 + d] if biased else s.v[d, i]
+                    drag = friction * s.mass[i] / ratio * v
+                    kick = noise * math.sqrt(s.mass[i] / ratio) * size * (uniform(seed, step, s.row[i], d) - 0.5)
+                    if biased and v == 0.0:
+                        kick = 0.0
+                    s.f[d, i] += kick - drag
+                    total += kick
+                    if tally:
+                        a[s.row[i], d] = kick - drag
+        else:
+            w, f = s.v[d, mine], s.f[d, mine]
+            for i in range(w.size):
+                kick = noise * root * math.sqrt(mass[i]) * (uniform(seed, step, row[i], d) - 0.5)
+                f[i] += kick - friction * mass[i] * w[i] if mask[i] & bit != 0 else 0.0
+        mean = reduce_sum(th, total) / p[9] if zero else 0.0
+        if zero or tally:
+            for i in range(th.lo, th.hi):
+                if s.mask[i] & bit != 0:
+                    s.f[d, i] -= mean
+                    if tally:
+                        a[s.row[i], d] -= mean
+                        work += a[s.row[i], d] * s.v[d, i]
+    if tally and step == th.begin:          # the first half step of the run
+        work = reduce_sum(th, work)
+        if th.tid == 0:
+            p[11] = 0.5 * work * th.dt
+            p[12] = work
+
+
+def tally_work(th, s, p, a):
+    """Energy that friction and noise of this step took."""
+    bit = np.int32(np.int64(p[0]))
+    work = 0.0
+    for i in range(th.lo, th.hi):
+        if s.mask[i] & bit != 0:
+            for d in range(3):
+                work += a[s.row[i], d] * s.v[d, i]
+    work = reduce_sum(th, work)
+    if th.tid == 0:
+        p[11] += work * th.dt
+        p[12] = work
+
+
+def push_spheres(th, s, p, a, omega, radius):
+    """Friction and noise on the rotation of spheres."""
+    bit, seed, step = np.int32(np.int64(p[0])), np.int64(p[1]), th.step
+    done = 0.0
+    if th.end != th.begin:
+        done = (step - th.begin) / (th.end - th.begin)
+    root = math.sqrt(p[5] + done * (p[6] - p[5]))
+    friction, noise = (10.0 / 3.0) * p[7], math.sqrt((10.0 / 3.0) * p[8] / th.dt)
+    for i in range(th.lo, th.hi):
+        if s.mask[i] & bit != 0:
+            r = s.row[i]
+            inertia = 0.4 * s.mass[i] * radius[r] * radius[r]
+            ratio, size = p[16 + s.type[i]], a[r, 3] if p[4] != 0.0 else root
+            for d in range(3):
+                kick = noise * math.sqrt(inertia / ratio) * size * (uniform(seed, step, r, 3 + d) - 0.5)
+                s.torque[d, i] += kick - friction * inertia / ratio * omega[r, d]
+
+
+class Turning:
+    """Hooks with ``omega yes``; `a` holds the numbers by atom, angular velocities and radii."""
+
+    @hook(uses=[push_points, push_spheres])
+    def post_force(th, s, p, a):
+        push_points(th, s, p, a[0])
+        push_spheres(th, s, p, a[0], a[1], a[2])
+
+    @hook(uses=[tally_work])
+    def end_of_step(th, s, p, a):
+        tally_work(th, s, p, a[0])
+
+
+def check_turning(fix, loop) -> None:
+    """Whether all atoms of the group are spheres.
+
+    Raises
+    ------
+    InputError
+    """
+    system = loop.system
+    if "omega" not in system.extra:
+        raise InputError("fix langevin omega yes needs atoms with a radius: use atom_style sphere, or hybrid with it")
+    points = loop.groups[fix.group] & ~(system.extra["radius"] > 0.0)
+    if points.any():
+        raise InputError(f"fix langevin omega yes: atom {system.id[points].min()} is a point, all atoms of the group need a radius")
+
+
 class Langevin(Thermostat):
     """Implicit solvent: friction and noise.
 
@@ -57,6 +170,8 @@ class Langevin(Thermostat):
         Atom type -> ratio that multiplies the damping time.
     tally, zero : bool
         Add up the energy; remove the mean of the noise.
+    omega : bool
+        Torques on spheres, too.
     gjf : str
         ``vhalf`` or ``vfull``: the discretisation of Gronbech-Jensen and Farago, with these velocities; ``no``: the plain one.
 
@@ -71,7 +186,7 @@ class Langevin(Thermostat):
     takes_bias = True
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1, scale: dict[int, float] | None = None,
-                 tally: bool = False, zero: bool = False, gjf: str = "no"):
+                 tally: bool = False, zero: bool = False, gjf: str = "no", omega: bool = False):
         super().__init__(group, temperature, damping)
         if seed <= 0:
             raise InputError(f"fix langevin: seed must be a positive whole number, got {seed}")
@@ -80,11 +195,16 @@ class Langevin(Thermostat):
                 raise InputError(f"fix langevin: the scale ratio of type {kind} must be positive, got {ratio:g}")
         if gjf not in (*gj.VELOCITIES, "no"):
             raise InputError(f"fix langevin: gjf must be no, vhalf or vfull, got {gjf}{nearest(gjf, gj.VELOCITIES)}")
+        if omega and gjf != "no":
+            raise InputError("fix langevin: omega does not go with gjf, whose steps are for positions; leave one of the two out")
+        self.omega = omega
         self.seed, self.scale, self.tally, self.zero, self.gjf = seed, dict(scale or {}), tally, zero, gjf
         self.p, self.a = np.zeros(TYPES), np.zeros((1, 4))
         if gjf != "no":
             self.levels = ""
             self.initial_integrate, self.post_force, self.end_of_step = (getattr(gj.Hooks, n) for n in GJF_HOOKS)
+        elif omega:
+            self.post_force, self.end_of_step = Turning.post_force, Turning.end_of_step
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -105,21 +225,26 @@ class Langevin(Thermostat):
                 flags[keyword] = yes_no(values[0], what)
             elif keyword == "gjf":
                 flags["gjf"] = GJF_WORDS.get(values[0], values[0])
+            elif keyword == "omega":
+                flags["omega"] = yes_no(values[0], what)
             elif values[0] not in ("no", "off", "false"):
-                raise InputError(f"fix langevin: {keyword} {values[0]} is not supported; particles here do not rotate")
+                raise InputError("fix langevin: angmom needs atom_style ellipsoid; for spheres there is omega yes")
         return cls(group, ramp, damping, seed, scale, **flags)
 
     def to_lammps(self) -> list[str]:
         words = [write(self.start), repr(self.stop), repr(self.damping), str(self.seed)]
         for kind, ratio in self.scale.items():
             words += ["scale", str(kind), repr(ratio)]
-        return words + ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero + ["gjf", self.gjf] * (self.gjf != "no")
+        words += ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero
+        return words + ["gjf", self.gjf] * (self.gjf != "no") + ["omega", "yes"] * self.omega
 
     def parameters(self, loop) -> np.ndarray:
         ntypes, u = loop.system.counts["ntypes"], loop.units
         wrong = [kind for kind in self.scale if not 1 <= kind <= ntypes]
         if wrong:
             raise InputError(f"fix langevin: scale names atom type {wrong[0]}, there are types 1 to {ntypes}")
+        if self.omega:
+            check_turning(self, loop)
         ratios = [float(self.temp.bias)] + [self.scale.get(kind, 1.0) for kind in range(1, ntypes + 1)]
         constant = not callable(self.start)
         ramp = (self.start, self.stop) if constant else (0.0, 0.0)
@@ -132,19 +257,23 @@ class Langevin(Thermostat):
                            u.mvv2e, self.gjf == "vhalf", *ratios], dtype=float)
         return self.p
 
-    def atom_arrays(self, loop) -> np.ndarray | None:
-        """Columns: added force (for the tally), square root of the target temperature (for a variable), velocity without the bias."""
+    def atom_arrays(self, loop):
+        """Columns: added force (for the tally), square root of the target temperature (for a variable), velocity without the bias; with
+        ``omega yes`` angular velocities and radii besides."""
         if self.gjf != "no":
             if self.a.shape != (loop.system.n, gj.COLUMNS):
                 self.a = np.full((loop.system.n, gj.COLUMNS), gj.NONE)
             self.a[:, 9] = 0.0
         elif self.tally or self.follows:
             self.a = np.zeros((loop.system.n, 7))
+        elif self.omega:
+            self.a = np.zeros((1, 7))
         else:
             return None
         if self.follows:
             self._follow(loop)
-        return self.a
+        extra = loop.system.extra
+        return (self.a, extra["omega"], extra["radius"]) if self.omega else self.a
 
     def resize(self, loop) -> None:
         self.p[9] = max(np.count_nonzero(loop.groups[self.group]), 1)
@@ -160,65 +289,13 @@ class Langevin(Thermostat):
         if self.temp.bias:
             self.a[:, 4:7] = thermal_velocities(loop, self.temp)
 
-    @hook
+    @hook(uses=[push_points])
     def post_force(th, s, p, a):
-        bit, seed, step = np.int32(np.int64(p[0])), np.int64(p[1]), th.step
-        tally, zero, variable, scaled, biased = p[2] != 0.0, p[3] != 0.0, p[4] != 0.0, p[10] != 0.0, p[16] != 0.0
-        friction, noise = p[7], math.sqrt(p[8] / th.dt)
-        done = 0.0
-        if th.end != th.begin:
-            done = (step - th.begin) / (th.end - th.begin)
-        root = math.sqrt(p[5] + done * (p[6] - p[5]))
-        mine = slice(th.lo, th.hi)
-        mask, mass, row = s.mask[mine], s.mass[mine], s.row[mine]
-        work = 0.0
-        for d in range(3):
-            total = 0.0
-            if tally or variable or scaled or zero or biased:
-                for i in range(th.lo, th.hi):
-                    if s.mask[i] & bit != 0:
-                        ratio = p[16 + s.type[i]]
-                        size = a[s.row[i], 3] if variable else root
-                        v = a[s.row[i], 4 + d] if biased else s.v[d, i]
-                        drag = friction * s.mass[i] / ratio * v
-                        kick = noise * math.sqrt(s.mass[i] / ratio) * size * (uniform(seed, step, s.row[i], d) - 0.5)
-                        if biased and v == 0.0:
-                            kick = 0.0
-                        s.f[d, i] += kick - drag
-                        total += kick
-                        if tally:
-                            a[s.row[i], d] = kick - drag
-            else:
-                w, f = s.v[d, mine], s.f[d, mine]
-                for i in range(w.size):
-                    kick = noise * root * math.sqrt(mass[i]) * (uniform(seed, step, row[i], d) - 0.5)
-                    f[i] += kick - friction * mass[i] * w[i] if mask[i] & bit != 0 else 0.0
-            mean = reduce_sum(th, total) / p[9] if zero else 0.0
-            if zero or tally:
-                for i in range(th.lo, th.hi):
-                    if s.mask[i] & bit != 0:
-                        s.f[d, i] -= mean
-                        if tally:
-                            a[s.row[i], d] -= mean
-                            work += a[s.row[i], d] * s.v[d, i]
-        if tally and step == th.begin:          # the first half step of the run
-            work = reduce_sum(th, work)
-            if th.tid == 0:
-                p[11] = 0.5 * work * th.dt
-                p[12] = work
+        push_points(th, s, p, a)
 
-    @hook
+    @hook(uses=[tally_work])
     def end_of_step(th, s, p, a):
-        bit = np.int32(np.int64(p[0]))
-        work = 0.0
-        for i in range(th.lo, th.hi):
-            if s.mask[i] & bit != 0:
-                for d in range(3):
-                    work += a[s.row[i], d] * s.v[d, i]
-        work = reduce_sum(th, work)
-        if th.tid == 0:
-            p[11] += work * th.dt
-            p[12] = work
+        tally_work(th, s, p, a)
 
     def modify_option(self, keyword, value, session):
         before, known = self.temp, super().modify_option(keyword, value, session)

@@ -43,7 +43,7 @@ PARTIAL = {
     ("fix", "ehex"): "no constrain, com (clusters of fix shake)",
     ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
     ("fix", "external"): "no energies or virials by atom, no virial",
-    ("fix", "langevin"): "no omega, angmom",
+    ("fix", "langevin"): "no angmom, which is for ellipsoids",
     ("fix", "shake"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
     ("fix", "rattle"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
 }
