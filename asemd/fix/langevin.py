@@ -289,13 +289,7 @@ class Langevin(Thermostat):
         if self.temp.bias:
             self.a[:, 4:7] = thermal_velocities(loop, self.temp)
 
-    @hook(uses=[push_points])
-    def post_force(th, s, p, a):
-        push_points(th, s, p, a)
-
-    @hook(uses=[tally_work])
-    def end_of_step(th, s, p, a):
-        tally_work(th, s, p, a)
+    post_force, end_of_step = hook(push_points), hook(tally_work)
 
     def modify_option(self, keyword, value, session):
         before, known = self.temp, super().modify_option(keyword, value, session)
