@@ -347,7 +347,7 @@ def test_wrong_build(given, message):
 # ------------------------------------------------------------------------------ commands ---
 
 def command(name, text, scene):
-    session = SimpleNamespace(scene=scene, passive=True, passing_warnings=nullcontext, variables=SimpleNamespace(value=None))
+    session = SimpleNamespace(scene=scene, passive=True, passing_warnings=nullcontext, variables=SimpleNamespace(value=None), loop=None)
     importlib.import_module(f"asemd.lammps.command.{name}").run(session, text.split())
 
 

@@ -22,7 +22,7 @@ def test_inventory_is_complete_and_unique():
 def test_states_follow_from_the_code():
     state = {(n.category, n.style): n.state for n in coverage()}
     assert state["pair", "lj/cut"] == "done" and state["fix", "nve"] == "done" and state["command", "run"] == "done"
-    assert state["command", "velocity"] == "partial" and state["units", "real"] == "done" and state["min_style", "cg"] == "done"
+    assert state["command", "atom_modify"] == "partial" and state["units", "real"] == "done" and state["min_style", "cg"] == "done"
     assert state["command", "kspace_modify"] == "partial" and state["bond", "bpm/rotational"] == "missing"
     assert state["pair", "zero"] == "extra" and state["run_style", "verlet"] == "done" and state["atom", "full"] == "done"
     for category in catalog.FORCE_FIELD:
@@ -57,7 +57,7 @@ def test_filters():
 def test_command(capsys):
     assert cli.main(["styles"]) == 0
     out = capsys.readouterr().out
-    assert "lj/cut" in out and "velocity*" in out
+    assert "lj/cut" in out and "atom_modify*" in out
     assert out.splitlines()[1].split() == ["category", "done", "partial", "missing", "extra", "all"]
     assert cli.main(["styles", "--json", "dihedral", "--word", "table"]) == 0
     answer = json.loads(capsys.readouterr().out)

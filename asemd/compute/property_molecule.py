@@ -68,6 +68,9 @@ class PropertyMolecule(Compute):
             raise InputError(f"compute {self.id} (property/molecule) has an array: write c_{self.id}[1][1]")
         return self._column(self.names[0], state)
 
+    def array_columns(self) -> int | None:
+        return len(self.names) if len(self.names) > 1 else None
+
     def array(self, state) -> np.ndarray:
         """(molecules, k) for several."""
         if len(self.names) == 1:
