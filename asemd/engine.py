@@ -344,11 +344,11 @@ class Engine:
         if self.state.virial.any():
             virial_of["fix"] = self.state.virial.sum(axis=0)
         virial = sum(virial_of.values(), np.zeros(6))
+        self.store()        # the box too, which the tail depends on
         if self.interactions.tail and self.pair_terms:
             energy["etail"], p = self.interactions.tail_correction(self.system, self.units)
             p *= abs(np.linalg.det(self.vectors)) / self.units.nktv2p
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])
-        self.store()
         if not np.isfinite(acc).all() or not np.isfinite(self.system.f).all():
             raise faults.not_finite(self)
         self.result = Result(energy, virial, virial_of, self.system.f)

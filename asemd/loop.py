@@ -290,7 +290,8 @@ class Loop:
         """For the loop: kernels, arguments and clock of each term."""
         arguments = self.engine.arguments(tid)
         if self._packed[tid] is None or self._packed[tid][0] is not arguments:
-            self._packed[tid] = (arguments, *tl.terms_of(self.engine.terms, arguments, bool(self._virial_every)))
+            alone = bool(self._virial_every) and not any(f.with_energies for f in self.fixes)
+            self._packed[tid] = (arguments, *tl.terms_of(self.engine.terms, arguments, alone))
         return self._packed[tid][1]
 
     def _take_timings(self) -> None:

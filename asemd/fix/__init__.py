@@ -92,10 +92,14 @@ class Fix:
         ``size`` or ``shape`` for a fix that changes the box during a run (shape: it may become tilted).
     virial_every : int
         Compiled hooks see the virial of the terms (``s.acc``) on multiples of this step; 0: never.
+    with_energies : bool
+        And their energies.
     next_reneighbor : int
         The step on which it asks for a list build, with its hook `pre_exchange` before it.
     follows : str
         The compiled hook before which `follow` is called, in Python, for numbers that change from step to step. Empty: none does.
+    output_needs : set of str
+        What must be known of a step on which its outputs are asked for, as in `needs`.
     needs : set of str
         What its Python hooks want to see of the steps on which they act: ``energy``, ``virial``, ``energies``, ``virials``.
     minimizing : bool
@@ -112,8 +116,10 @@ class Fix:
     levels: ClassVar[str] = ""
     box_moves: str = ""
     virial_every: int = 0
+    with_energies: bool = False
     next_reneighbor: int = -1
     follows: str = ""
+    output_needs: frozenset[str] = frozenset()
     needs: frozenset[str] = frozenset()
     level: int = 0
     inner: ClassVar[type | None] = None
@@ -125,6 +131,9 @@ class Fix:
 
     def __init__(self, group: str = "all"):
         self.group = group
+
+    def __getstate__(self):
+        return {**self.__dict__, "_loop": None} if "_loop" in self.__dict__ else self.__dict__      # it holds compiled code
 
     @classmethod
     def from_lammps(cls, group: str, words: list[str], session) -> Fix:

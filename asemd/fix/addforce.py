@@ -58,7 +58,7 @@ class AddForce(AppliedForce):
         if energy is not None and not any(callable(f) for f in self.force):
             raise InputError("fix addforce: a constant force has its own energy, leave the keyword energy out")
         self.add_every, self.energy = every, energy
-        self._loop, self._energy = None, 0.0
+        self._loop, self._energy, self._stopped = None, 0.0, -1
         self._force, self._positions = np.zeros((0, 3)), np.zeros((0, 3))     # of the last addition, by atom row
         if every > 1:
             self.post_force = self._with_python
@@ -97,7 +97,7 @@ class AddForce(AppliedForce):
     def parameters(self, loop) -> np.ndarray:
         p = np.array([loop.group_bit(self.group), *(0.0 if callable(f) else f for f in self.force), *self.before, self.thermo_virial],
                      dtype=float)
-        self.before, self._loop = p[4:7], loop
+        self.before, self._loop, self._stopped = p[4:7], loop, -1
         return p
 
     @hook(uses=[unwrapped, tally])
@@ -143,11 +143,11 @@ class AddForce(AppliedForce):
         return "post_force" not in vars(self)
 
     def finish(self, loop) -> None:
-        self._energy, self._loop = self.scalar(), None
+        self._energy, self._stopped = self.scalar(), loop.step      # what commands between runs do to positions does not change it
 
     def scalar(self) -> float:
         """The potential energy of the atoms in the added force, energy units."""
-        if self._loop is not None and self._is_constant():
+        if self._loop is not None and self._loop.step != self._stopped and self._is_constant():
             force, r = self._constant(self._loop.system, self._loop.groups[self.group])
             return -float((force * r).sum())
         return self._energy

@@ -15,7 +15,7 @@ from asemd.errors import InputError, nearest
 from asemd.fix.thermostat import Thermostat
 from asemd.words import choice, number, take, whole, yes_no
 
-HEADER = 14     # numbers before the chain: eta (n), its velocity (n + 1), acceleration (n), mass (n)
+HEADER = 15     # numbers before the chain: eta (n), its velocity (n + 1), acceleration (n), mass (n)
 COMPONENTS = ("x", "y", "z", "yz", "xz", "xy")      # of the pressure, in Voigt's order
 SHORT = {"iso": COMPONENTS[:3], "aniso": COMPONENTS[:3], "tri": COMPONENTS}
 COUPLINGS = ("none", "xyz", "xy", "yz", "xz")
@@ -25,17 +25,21 @@ KEYWORDS = {"temp": 3, **dict.fromkeys((*SHORT, *COMPONENTS, "fixedpoint"), 3),
 
 
 def nose_hoover_chain(th, p):
-    """Half a timestep of the chain; afterwards ``p[12]`` is the factor of the velocities and ``p[11]`` the temperature they then have."""
+    """Half a timestep of the chain; afterwards ``p[12]`` is the factor of the velocities and ``p[11]`` the temperature they then have.
+
+    The masses of the chain follow the target temperature unless ``p[14]`` is set.
+    """
     dof, boltz, n, loops = p[2], p[3], int(p[9]), int(p[10])
     done = 0.0
     if th.end != th.begin:
         done = (th.step - th.begin) / (th.end - th.begin)
     target = p[5] + done * (p[6] - p[5])
     kt = boltz * target
-    eta, rate, push, mass = p[14:14 + n], p[14 + n:15 + 2 * n], p[15 + 2 * n:15 + 3 * n], p[15 + 3 * n:15 + 4 * n]
-    for k in range(n):
-        mass[k] = kt / (p[7] * p[7])
-    mass[0] *= dof
+    eta, rate, push, mass = p[15:15 + n], p[15 + n:16 + 2 * n], p[16 + 2 * n:16 + 3 * n], p[16 + 3 * n:16 + 4 * n]
+    if p[14] == 0.0:
+        for k in range(n):
+            mass[k] = kt / (p[7] * p[7])
+        mass[0] *= dof
     half, quarter, eighth = 0.5 * th.dt / loops, 0.25 * th.dt / loops, 0.125 * th.dt / loops
     drag = 1.0 - th.dt * p[7] * p[8] / loops
     push[0] = boltz * dof * (p[11] - target) / mass[0] if dof > 0.0 else 0.0

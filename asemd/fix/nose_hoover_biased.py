@@ -86,6 +86,9 @@ def begin(fix: NoseHoover, loop) -> None:
     th, s, p, bit, box = loop._thread(), loop.state, fix.p, loop.group_bit(fix.group), hasattr(fix, "press")
     if box and fix.q[11] > 0.0:
         barostat_chain(th, fix.q, fix.b, fix.e, p[3] * p[13])
+    if hasattr(fix, "aim_in_python"):
+        measure(fix, loop, True)
+        fix.aim_in_python(loop)
     if fix.thermal:
         nose_hoover_chain(th, p)
         scale(fix, loop, p[12])

@@ -68,6 +68,8 @@ class NoseHooverBox(NoseHoover):
             raise InputError(f"{what}: ploop must be at least 1")
         if ptemp is not None and not ptemp > 0.0:
             raise InputError(f"{what}: ptemp must be above 0, got {ptemp:g}")
+        if ptemp is not None and self.thermal:
+            raise InputError(f"{what}: ptemp has no place beside temp, which sets the masses of the box")
         self.shape, self.couple, self.deviatoric = shape, couple, bool(components)
         self.pressure_chain, self.pressure_loops, self.mtk, self.nreset = pressure_chain, pressure_loops, mtk, nreset
         self.flip, self.dilate, self.fixed_point, self.ptemp = flip, dilate, fixed_point, ptemp
@@ -201,8 +203,10 @@ class NoseHooverBox(NoseHoover):
         return self.q, self.b, self.e, self.w, self.m
 
     def reference(self, loop) -> float:
-        if self.thermal:
-            return self.target(loop)
+        return self.target(loop) if self.thermal else self.first_temperature(loop)
+
+    def first_temperature(self, loop) -> float:
+        """That at the start of the first run, or `ptemp`."""
         if self.reference_temperature == 0.0:
             self.reference_temperature = self.ptemp or self.temp.scalar(loop.snapshot())
             if self.reference_temperature < SMALLEST:

@@ -55,6 +55,12 @@ def begin_box_step(th, s, p, a):
         if q[28] != 0.0:
             nose_hoover_chain(th, p)
     barrier(th)
+    return push_thermal_box(th, s, p, a)
+
+
+def push_thermal_box(th, s, p, a):
+    """The box's rates after the thermostat has acted; returns the factor by which velocities are still to be scaled."""
+    q, b, e, w, m = a
     factor = p[12]
     if q[27] != 0.0:            # others may have changed velocities since the last step
         bit, mine = np.int32(np.int64(p[0])), slice(th.lo, th.hi)
@@ -145,14 +151,9 @@ def drag_and_kick(th, s, bit, q, b, factor):
                 v[i] = v[i] * scale + half * inverse_mass[i] * f[i]
 
 
-BOX = [follow, kinetic_tensor, box_volume, hold_box, measure_pressure, target_pressure, push_box, barostat_chain, shear_box, dilate_box,
-       take_along, drag_velocities, nose_hoover_chain, measure_kinetics, begin_box_step, step_box, kick_group, move_in_box, drag_and_kick]
-
-
-def start_box_step(th, s, p, a):
-    """Velocities of the first half of a step."""
-    q, b = a[0], a[1]
-    factor, bit = begin_box_step(th, s, p, a), np.int32(np.int64(p[0]))
+def kick_in_box(th, s, p, a, factor):
+    """The velocities, after the box's rates: the thermostat's factor, the friction by the box, half a step of the forces."""
+    q, b, bit = a[0], a[1], np.int32(np.int64(p[0]))
     barrier(th)
     if q[0] == 3.0:
         mine = slice(th.lo, th.hi)
@@ -165,6 +166,16 @@ def start_box_step(th, s, p, a):
         kick_group(th, s, bit, 1.0)
     else:
         drag_and_kick(th, s, bit, q, b, factor)
+
+
+BOX = [follow, kinetic_tensor, box_volume, hold_box, measure_pressure, target_pressure, push_box, barostat_chain, shear_box, dilate_box,
+       take_along, drag_velocities, nose_hoover_chain, measure_kinetics, begin_box_step, push_thermal_box, step_box, kick_group,
+       move_in_box, drag_and_kick, kick_in_box]
+
+
+def start_box_step(th, s, p, a):
+    """Velocities of the first half of a step."""
+    kick_in_box(th, s, p, a, begin_box_step(th, s, p, a))
 
 
 class InnerLevel:

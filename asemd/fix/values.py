@@ -259,6 +259,9 @@ def needs_of(words: Sequence[str], session) -> set[str]:
     names = {n for w in words if w.startswith("v_") for n in references(w)}
     if any(n in KEYWORDS and (KEYWORDS[n].extensive or KEYWORDS[n].needs) for n in names):
         found.add("energy")
+    for name in names | {w.partition("[")[0] for w in words}:
+        if name.startswith("f_") and name[2:] in scene.fixes:
+            found |= scene.fixes[name[2:]].output_needs
     return found
 
 

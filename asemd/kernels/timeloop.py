@@ -61,7 +61,7 @@ def terms_of(terms: Sequence, arguments: Sequence[tuple], virial: bool) -> tuple
     arguments : sequence of tuple
         Of each term, for one thread.
     virial : bool
-        Fixes want the virial now and then.
+        Fixes want the virial now and then, without energies.
 
     Returns
     -------
