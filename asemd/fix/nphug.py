@@ -56,6 +56,7 @@ def aim(s, p, q, b, w):
 def first_half(th, s, p, a):
     """Chains, target and the velocities of the first half of a step."""
     q, b, e, w, m = a
+    barrier(th)                 # others may still read the factor of the last step
     if q[27] != 0.0:
         measure_kinetics(th, s, p, q, b, True)
     if th.tid == 0:
