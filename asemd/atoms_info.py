@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.topology import ATOMS, Topology
+from asemd.topology import WIDTHS, Topology
 
 PREFIX = "asemd_"
 ARRAYS = {"types": "type", "molecules": "mol-id"}      # entry -> array of the atoms
@@ -26,7 +26,7 @@ def entries(topology: Topology, arrays: Mapping[str, np.ndarray]) -> dict[str, n
     """
     out = {}
     for prefix, top in (("", topology), ("frozen_", topology.frozen)):
-        for kind, atoms, types in top or ():
+        for kind, atoms, types in top.every() if isinstance(top, Topology) else ():
             if len(atoms):
                 out[f"{PREFIX}{prefix}{kind}s"] = np.column_stack([types, atoms]).astype(int)
     for name, array in ARRAYS.items():
@@ -78,7 +78,7 @@ def found(info: Mapping[str, Any], numbers: np.ndarray) -> tuple[Topology | None
 
 def _topology(info: Mapping[str, Any], prefix: str, frozen: Topology | None = None) -> Topology:
     given: dict[str, Any] = {}
-    for kind, width in ATOMS.items():
+    for kind, width in WIDTHS.items():
         rows = info.get(f"{PREFIX}{prefix}{kind}s")
         if rows is not None:
             rows = np.asarray(rows, int).reshape(-1, 1 + width)

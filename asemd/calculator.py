@@ -152,8 +152,8 @@ class ForceField(Calculator):
         if self.interactions is not None and not self.arguments:
             out |= {"units": self.units, "commands": self.commands(), "compat": self.interactions.compat}
         if self.topology is not None and self.arguments:
-            out["topology"] = {f"{kind}s": items.tolist() for kind, items, _ in self.topology if len(items)} | {
-                f"{kind}_types": types.tolist() for kind, _, types in self.topology if len(types)}
+            out["topology"] = {f"{kind}s": items.tolist() for kind, items, _ in self.topology.every() if len(items)} | {
+                f"{kind}_types": types.tolist() for kind, _, types in self.topology.every() if len(types)}
         return out | {"skin": self.settings.skin, "precision": self.settings.precision}
 
     def commands(self) -> list[str]:
@@ -176,7 +176,7 @@ class ForceField(Calculator):
             warnings.warn(f"the force field has {' and '.join(bonded)} styles, but these atoms have no bonds: they need "
                           "asemd.Atoms(atoms, topology=...)", InputWarning, stacklevel=2)
         if own is not None and (self.topology is None or self.like is not None or not own.is_empty):
-            for kind, items, _ in own:
+            for kind, items, _ in own.every():
                 if len(items) and not 0 <= int(items.min()) <= int(items.max()) < len(atoms):
                     wrong = items[(items < 0) | (items >= len(atoms))][0]
                     raise InputError(f"the {kind}s name atom {wrong}, but the atoms are 0 to {len(atoms) - 1}")
@@ -187,7 +187,7 @@ class ForceField(Calculator):
                                  "asemd.Atoms(atoms, topology=...), or give the topology to the ForceField")
             return Topology()
         n = len(atoms)
-        largest = max((int(items.max()) for _, items, _ in self.topology if len(items)), default=-1)
+        largest = max((int(items.max()) for _, items, _ in self.topology.every() if len(items)), default=-1)
         if largest >= n:
             raise InputError(f"the topology names atom {largest}, but there are {n} atoms: use asemd.Atoms, whose topology "
                              "follows slices and copies, or hand a new topology to the calculator")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asemd.errors import SimulationError
+from asemd.topology import CROSSTERM
 
 if TYPE_CHECKING:
     from asemd.fix import Fix
@@ -31,8 +32,10 @@ def remove(loop: Loop, rows, lost: bool = True) -> None:
     e, system, s = loop.engine, loop.system, loop.settings
     gone = np.zeros(system.n, bool)
     gone[rows] = True
-    for kind, atoms, _ in system.topology:
+    for kind, atoms, _ in system.topology.every():
         torn = np.flatnonzero(gone[atoms].any(axis=1) & ~gone[atoms].all(axis=1)) if len(atoms) else ()
+        if len(torn) and kind == CROSSTERM:
+            raise SimulationError(f"CMAP atoms {' '.join(str(i) for i in system.id[atoms[torn[0]]])} missing: one of them left the system")
         if len(torn) and s.lost_bond == "error":
             ids = " ".join(str(i) for i in system.id[atoms[torn[0]]])
             raise SimulationError(f"{kind} atoms {ids} missing: one of them left the box; use thermo_modify lost/bond ignore or warn "

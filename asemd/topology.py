@@ -8,6 +8,8 @@ import numpy as np
 
 ATOMS = {"bond": 2, "angle": 3, "dihedral": 4, "improper": 4}
 KINDS = tuple(ATOMS)
+CROSSTERM = "crossterm"
+WIDTHS = {**ATOMS, CROSSTERM: 5}      # kinds with what no style acts on, but `asemd.fix.CMAP`
 
 
 def rows_of(index, n: int) -> np.ndarray:
@@ -96,6 +98,8 @@ class Topology:
         broke.
     frozen : Topology or Partners, optional
         The state from which the 1-2, 1-3 and 1-4 pairs follow instead of the present one, or these pairs.
+    crossterms, crossterm_types : (m, 5) and (m,) int, optional
+        Pairs of torsions that follow each other, for the correction maps of `asemd.fix.CMAP`; types count its maps from 1.
 
     Raises
     ------
@@ -112,9 +116,11 @@ class Topology:
     impropers: np.ndarray = ()
     improper_types: np.ndarray | None = None
     frozen: Topology | Partners | None = None
+    crossterms: np.ndarray = ()
+    crossterm_types: np.ndarray | None = None
 
     def __post_init__(self):
-        for kind, width in ATOMS.items():
+        for kind, width in WIDTHS.items():
             atoms, types = getattr(self, kind + "s"), getattr(self, kind + "_types")
             atoms = _whole(atoms, f"{kind}s must be rows of {width} atom numbers")
             if atoms.size == 0:
@@ -135,15 +141,20 @@ class Topology:
 
     def as_dict(self) -> dict:
         """The arguments that make it again."""
-        out = {f"{kind}s": atoms for kind, atoms, _ in self} | {f"{kind}_types": types for kind, _, types in self}
+        kept = [item for item in self.every() if item[0] != CROSSTERM or len(item[1])]
+        out = {f"{kind}s": atoms for kind, atoms, _ in kept} | {f"{kind}_types": types for kind, _, types in kept}
         return out | ({"frozen": self.frozen.as_dict()} if self.frozen is not None else {})
 
     def items(self, kind: str) -> tuple[np.ndarray, np.ndarray]:
-        """Atoms (m, k) and types (m,) of ``bond``, ``angle``, ``dihedral`` or ``improper``."""
+        """Atoms (m, k) and types (m,) of ``bond``, ``angle``, ``dihedral``, ``improper`` or ``crossterm``."""
         return getattr(self, kind + "s"), getattr(self, kind + "_types")
 
     def __iter__(self) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
         return ((kind, *self.items(kind)) for kind in KINDS)
+
+    def every(self) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+        """Kind, atoms and types as by iteration, and then the cross terms."""
+        return ((kind, *self.items(kind)) for kind in WIDTHS)
 
     @classmethod
     def _made(cls, parts: dict[str, tuple[np.ndarray, np.ndarray]], frozen: Topology | None = None) -> Topology:
@@ -153,11 +164,11 @@ class Topology:
     def replaced(self, parts: dict[str, tuple[np.ndarray, np.ndarray]], special: bool) -> Topology:
         """The same with the items of some kinds replaced; the 1-2, 1-3 and 1-4 pairs follow only if `special`."""
         frozen = None if special else self.frozen if self.frozen is not None else self
-        return Topology._made({kind: parts.get(kind, (atoms, types)) for kind, atoms, types in self}, frozen)
+        return Topology._made({kind: parts.get(kind, (atoms, types)) for kind, atoms, types in self.every()}, frozen)
 
     @property
     def is_empty(self) -> bool:
-        return self.frozen is None and not any(len(types) for _, _, types in self)
+        return self.frozen is None and not any(len(types) for _, _, types in self.every())
 
     def counts(self) -> dict[str, int]:
         """Number of items by kind."""
@@ -165,15 +176,15 @@ class Topology:
 
     def __eq__(self, other) -> bool:
         return isinstance(other, Topology) and all(
-            np.array_equal(a, b) for kind in KINDS for a, b in zip(self.items(kind), other.items(kind))) and self.frozen == other.frozen
+            np.array_equal(a, b) for kind in WIDTHS for a, b in zip(self.items(kind), other.items(kind))) and self.frozen == other.frozen
 
     __hash__ = None
 
     def __repr__(self) -> str:
-        return "Topology(" + ", ".join(f"{len(types)} {kind}s" for kind, _, types in self if len(types)) + ")"
+        return "Topology(" + ", ".join(f"{len(types)} {kind}s" for kind, _, types in self.every() if len(types)) + ")"
 
     def copy(self) -> Topology:
-        return Topology._made({kind: (atoms, types) for kind, atoms, types in self}, self.frozen)
+        return Topology._made({kind: (atoms, types) for kind, atoms, types in self.every()}, self.frozen)
 
     def select(self, index, n: int) -> Topology:
         """The items among chosen atoms; an item that loses an atom goes.
@@ -189,7 +200,7 @@ class Topology:
         new = np.full(n, -1, np.int64)
         new[rows[::-1]] = np.arange(len(rows))[::-1]
         parts = {}
-        for kind, atoms, types in self:
+        for kind, atoms, types in self.every():
             renamed = new[atoms]
             keep = (renamed >= 0).all(axis=1)
             parts[kind] = renamed[keep], types[keep]
@@ -200,9 +211,18 @@ class Topology:
         stay = ~np.isin(_keys(1 << 31, self.bonds), _keys(1 << 31, pairs))
         self.bonds, self.bond_types = self.bonds[stay], self.bond_types[stay]
 
+    def add_crossterms(self, atoms: np.ndarray, types: np.ndarray) -> None:
+        """Further cross terms (m, 5) with their types, in place."""
+        self.crossterms = np.concatenate([self.crossterms, np.asarray(atoms, np.int32).reshape(-1, 5)])
+        self.crossterm_types = np.concatenate([self.crossterm_types, np.asarray(types, np.int32)])
+
+    def drop_crossterms(self) -> None:
+        """Take all cross terms away, in place."""
+        self.crossterms, self.crossterm_types = self.crossterms[:0], self.crossterm_types[:0]
+
     def shift(self, n: int) -> Topology:
         """All row numbers plus `n`."""
-        return Topology._made({kind: (atoms + n, types) for kind, atoms, types in self}, self.frozen and self.frozen.shift(n))
+        return Topology._made({kind: (atoms + n, types) for kind, atoms, types in self.every()}, self.frozen and self.frozen.shift(n))
 
     def concatenate(self, *others: Topology) -> Topology:
         """Items of this and the others, one after the other; the rows stay as they are (see `shift`)."""
@@ -212,12 +232,12 @@ class Topology:
             first, *rest = (t if t.frozen is None else t.frozen for t in tops)
             frozen = None if any(isinstance(t, Partners) for t in rest) else first.concatenate(*rest)
         return Topology._made({kind: (np.concatenate([t.items(kind)[0] for t in tops]), np.concatenate([t.items(kind)[1] for t in tops]))
-                               for kind in KINDS}, frozen)
+                               for kind in WIDTHS}, frozen)
 
     def repeat(self, n: int, copies: int) -> Topology:
         """The items of `copies` copies of `n` atoms each; no item goes from one copy to another."""
         parts = {}
-        for kind, atoms, types in self:
+        for kind, atoms, types in self.every():
             offset = np.repeat(np.arange(copies) * n, len(atoms))
             parts[kind] = np.tile(atoms, (copies, 1)) + offset[:, None], np.tile(types, copies)
         return Topology._made(parts, self.frozen and self.frozen.repeat(n, copies))
@@ -239,9 +259,9 @@ class Topology:
         times = np.asarray(times)
         grid = np.stack(np.meshgrid(*map(np.arange, times), indexing="ij"), -1).reshape(-1, 3)
         parts = {}
-        for kind, atoms, types in self:
+        for kind, atoms, types in self.every():
             at = np.zeros((*atoms.shape, 3), np.int64)     # the copy of every atom, counted from that of the first
-            chain = {"angle": ((1, 0), (1, 2)), "bond": ((0, 1),)}.get(kind, ((1, 0), (1, 2), (2, 3)))
+            chain = {"angle": ((1, 0), (1, 2)), "bond": ((0, 1),)}.get(kind, ((1, 0), (1, 2), (2, 3), (3, 4))[:WIDTHS[kind] - 1])
             for known, new in chain:
                 _, shift = box.minimum_image(x[atoms[:, new]] - x[atoms[:, known]])
                 at[:, new] = at[:, known] + shift

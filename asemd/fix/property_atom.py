@@ -139,8 +139,12 @@ class PropertyAtom(Fix):
         shown = [re.sub(r"^([id])2_", r"\1_", name) for name, _ in self.properties]
         return f"{self.id} # {' '.join(shown)}"
 
-    def read_section(self, system, lines) -> None:
-        """Values from the lines (place, words) of a section of a data file."""
+    def data_sections(self, system) -> dict[str, dict]:
+        """Its section of a data file: heading -> columns."""
+        return {self.heading(): {"id": system.id, **dict(enumerate(self.columns_in(system)))}}
+
+    def read_section(self, system, lines, offset: int = 0) -> None:
+        """Values from the lines (place, words) of a section of a data file; `offset` is added to atom ids."""
         columns = self.columns_in(system)
         width = len(columns)
         for where, words in lines:
@@ -148,7 +152,7 @@ class PropertyAtom(Fix):
                 raise InputError(f"fix {self.id} (style property/atom): a line of its section has {len(words)} words, not {width + 1}: "
                                  "the atom id and its values", where)
             try:
-                row = system.index_of(whole(words[0], "atom id"))[0]
+                row = system.index_of(whole(words[0], "atom id") + offset)[0]
                 for column, word in zip(columns, words[1:]):
                     column[row] = whole(word, "value") if column.dtype.kind == "i" else number(word, "value")
             except InputError as e:

@@ -35,8 +35,8 @@ class DataFile:
         Section -> list of (place, words); types as numbers, without comments.
     styles_hint, headings
         Section -> style named after ``#`` in its heading, and its place.
-    title, fix_lines
-        First line; ID of a fix -> list of (place, words) of its sections.
+    title, fix_lines, fix_headers
+        First line; ID of a fix -> list of (place, words) of its sections, and of its header lines.
     """
 
     system: System
@@ -46,6 +46,7 @@ class DataFile:
     headings: dict[str, Where] = field(default_factory=dict)
     title: str = ""
     fix_lines: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
+    fix_headers: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
 
 
 def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
@@ -111,7 +112,7 @@ class _Reader(DataText):
         coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
         self.check_hints(self.units)
         return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
-                        {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip(), self.fix_lines())
+                        {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip(), self.fix_lines(), self.fix_headers())
 
     def read_box(self) -> tuple[Box, np.ndarray | None]:
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""

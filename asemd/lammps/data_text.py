@@ -13,6 +13,9 @@ from asemd.errors import InputError, InputWarning, Where, nearest
 from asemd.lammps.data_format import COEFFS, HEADER, LABELS, REAL_HEADER, SECTIONS, TOPOLOGY, UNSUPPORTED
 from asemd.lammps.data_lines import read_lines
 
+_FOR_CMAP = ": it is for fix cmap, which must be there before: fix ID all cmap FILE, then read_data ... fix ID crossterm CMAP"
+FOR_FIXES = {"crossterms": _FOR_CMAP, "CMAP": _FOR_CMAP}
+
 
 @dataclass
 class Section:
@@ -39,6 +42,7 @@ class DataText:
     def __init__(self, path: str | os.PathLike, atom_style: str, fixes: Sequence[tuple[str, str, str]] = ()):
         self.path, self.lines, self.atom_style, self.fixes = os.fspath(path), read_lines(path), atom_style, fixes
         self.of_fixes: dict[str, list[Section]] = {}        # ID -> sections for it
+        self.headers_of_fixes: dict[str, list[int]] = {}        # ID -> header lines for it
         self.header: dict[str, list[float]] = {}
         self.header_line: dict[str, int] = {}
         self.sections: dict[str, Section] = {}
@@ -64,6 +68,10 @@ class DataText:
         return {id: [(self.where(i), self.lines[i].split("#", 1)[0].split()) for s in sections for i in self.content(s)]
                 for id, sections in self.of_fixes.items()}
 
+    def fix_headers(self) -> dict[str, list[tuple[Where, list[str]]]]:
+        """ID of a fix -> place and words of the header lines for it."""
+        return {id: [(self.where(i), self.lines[i].split("#", 1)[0].split()) for i in lines] for id, lines in self.headers_of_fixes.items()}
+
     def number(self, word: str) -> int:
         return int(self.header.get(word, [0])[0])
 
@@ -76,11 +84,14 @@ class DataText:
                 if words[0][0].isalpha():
                     break
                 values, word = _leading_numbers(words)
-                if any(header != "NULL" and header in self.lines[i] for _, header, _, _ in self.fixes):
+                owner = next((id for id, header, *_ in self.fixes if header != "NULL" and header in self.lines[i]), None)
+                if owner is not None:
+                    self.headers_of_fixes.setdefault(owner, []).append(i)
                     i += 1
                     continue
                 if word not in HEADER:
-                    raise self.fail(f"unknown header line {' '.join(words)!r}{nearest(word, HEADER)}", i)
+                    hint = FOR_FIXES.get(word, nearest(word, HEADER))
+                    raise self.fail(f"unknown header line {' '.join(words)!r}{hint}", i)
                 if len(values) != HEADER[word]:
                     raise self.fail(f"header line {word!r} needs {HEADER[word]} number{'s' * (HEADER[word] > 1)}, got {len(values)}", i)
                 if word not in REAL_HEADER and (values[0] < 0 or values[0] != int(values[0])):
@@ -112,7 +123,7 @@ class DataText:
                     continue
                 same = [s for s in SECTIONS if s.lower() == name.lower()]
                 similar = nearest(same[0] if same else name, [*SECTIONS, *HEADER])
-                raise self.fail(f"unknown section {name!r}{similar}", i)
+                raise self.fail(f"unknown section {name!r}{FOR_FIXES.get(name, similar)}", i)
             if name in UNSUPPORTED:
                 raise self.fail(f"section {name} belongs to atom_style {UNSUPPORTED[name]}, which is not supported", i)
             if name in self.sections:

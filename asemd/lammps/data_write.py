@@ -45,7 +45,7 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     progress : callable, optional
         Told from time to time how many lines are written, and how many there are.
     fixes : sequence of Fix
-        Fixes property/atom, which write sections of their own.
+        Fixes that write lines of the header (``data_header``) or sections (``data_sections``: heading -> columns) of their own.
 
     Raises
     ------
@@ -60,13 +60,14 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
     """
     if not atom_styles.known(system.atom_style):
         raise InputError(f"write_data: atom_style {system.atom_style} is not supported")
-    written = {name for fix in fixes for name, _ in fix.properties}
+    written = {name for fix in fixes for name, _ in getattr(fix, "properties", ())}
     if system.rmass is not None and not atom_styles.has(system.atom_style, "density") and "rmass" not in written:
         raise InputError(f"write_data: atoms with their own masses cannot be written with atom_style {system.atom_style}")
     inside = _lammps_frame(system)
     if margins:
         inside.box = keeping_margins(inside.box, not inside.topology.is_empty)
-    parts = _file(_general_frame(inside) if general else inside, interactions, pair, types, labels, general, progress)
+    own = [fix.data_header(inside) for fix in fixes if hasattr(fix, "data_header")]
+    parts = _file(_general_frame(inside) if general else inside, interactions, pair, types, labels, general, progress, own)
     path = os.fspath(path)
     try:
         with (gzip.open if path.endswith(".gz") else open)(path, "wt", encoding="utf-8") as f:
@@ -74,8 +75,8 @@ def write_data(path: str | os.PathLike, system: System, interactions: Interactio
                 f.write(part)
                 f.write("\n")
             for fix in fixes:
-                columns = {"id": inside.id, **dict(enumerate(fix.columns_in(inside)))}
-                f.writelines(f"{line}\n" for line in _section(fix.heading(), _table(columns, {}, _Told(None, 0))))
+                for heading, columns in fix.data_sections(inside).items():
+                    f.writelines(f"{line}\n" for line in _section(heading, _table(columns, {}, _Told(None, 0))))
     except OSError as e:
         raise InputError(f"write_data: cannot write {path}: {e.strerror or e}") from None
 
@@ -122,7 +123,8 @@ def _lammps_frame(system: System) -> System:
     return out
 
 
-def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool, general: bool, progress) -> Iterator[str]:
+def _file(s: System, interactions: Interactions | None, pair: str, types: str, labels: bool, general: bool, progress,
+          own: Iterable[str]) -> Iterator[str]:
     units = "" if s.units == "ase" else f", units = {s.units}"
     yield f"LAMMPS data file written by asemd, timestep = {s.step}{units}"
     yield ""
@@ -132,6 +134,7 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         if kind in atom_styles.bonded(s.atom_style) and s.counts[f"n{kind}types"]:
             yield f"{np.count_nonzero(s.topology.items(kind)[1]) + len(_torn(s, kind))} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
+    yield from own
     yield ""
     yield from _box(s.box, general)
     names = {kind: {t: str(t) for t in range(1, _count(s, kind) + 1)} for kind in LABELLED}

@@ -54,6 +54,7 @@ def run(session, args):
                          fixes)
     for warning in caught:
         session.warn(str(warning.message))
+    smallest = data.system.id.min(initial=2**62)
     if old is None:
         new, scene.system = data.system, data.system
         new.step = scene.first_step
@@ -67,8 +68,7 @@ def run(session, args):
             session.warn("read_data add: the box grows while atoms have image flags, their unwrapped positions change")
         _join(scene, old, new)
     scene.sync_groups()
-    for id, lines in data.fix_lines.items():
-        scene.fixes[id].read_section(scene.system, lines)
+    _read_for_fixes(scene, data, options, int(new.id.min()) - int(smallest) if old is not None and new.n else 0)
     if options.group:
         mask = np.isin(scene.system.id, new.id)
         scene.groups[options.group] = scene.groups.get(options.group, False) | mask
@@ -76,6 +76,26 @@ def run(session, args):
         _set_coefficients(session, data, types)
     session.stale()
     _report(session, data, new, started)
+
+
+def _read_for_fixes(scene, data: DataFile, options: _Options, offset: int) -> None:
+    """Header lines and sections of fixes; `offset` is what was added to atom ids.
+
+    Raises
+    ------
+    InputError
+        A header line promises what is not there, or is without numbers.
+    """
+    for id, lines in data.fix_headers.items():
+        if hasattr(scene.fixes[id], "read_header"):
+            for where, words in lines:
+                try:
+                    scene.fixes[id].read_header(words)
+                except InputError as e:
+                    raise e.at(where) from None
+    for id, *_ in options.fixes:
+        if id in data.fix_lines or getattr(scene.fixes[id], "promised", None):
+            scene.fixes[id].read_section(scene.system, data.fix_lines.get(id, []), offset)
 
 
 def _read_options(words: list[str]) -> _Options:
