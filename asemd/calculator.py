@@ -15,7 +15,7 @@ from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.forcefield import Interactions
-from asemd.loads import Load, constraints_of, loads_of
+from asemd.loads import Load, Maps, constraints_of, loads_of, together
 from asemd.native import as_json, coefficients, with_keys
 from asemd.result import with_masks
 from asemd.system import System
@@ -82,7 +82,7 @@ class ForceField(Calculator):
         self.like: System | None = None
         self.settings = Settings(skin=skin, threads=threads, precision=precision)
         self.bits: dict[str, int] = {}           # group -> bit in the atoms' array "groups"
-        self.loads: list[Load] = []
+        self.loads: list[Load | Maps] = []
         self.left_out: list[str] = []
         self._engine: Engine | None = None
         self._system_now: System | None = None
@@ -349,7 +349,7 @@ class ForceField(Calculator):
         topology = self.topology if topology is None else topology
         self._seen_topology = None if topology is None else topology.copy()
 
-    def convert(self, result: Result, atoms) -> dict[str, Any]:
+    def convert(self, result: Result, atoms, of_loop: bool = False) -> dict[str, Any]:
         """A result of an engine for these atoms as ASE's properties, with the forces of fixes added.
 
         Parameters
@@ -357,6 +357,8 @@ class ForceField(Calculator):
         result : Result
             In the units of the force field, without the loads.
         atoms : ase.Atoms
+        of_loop : bool
+            The loads acted as fixes when the result was made, and its virial has what they count there.
 
         Returns
         -------
@@ -368,12 +370,9 @@ class ForceField(Calculator):
         virial = result.virial + result.virial_of.get("tail", 0.0)
         shares, strains = np.zeros(len(atoms)), np.zeros((len(atoms), 6))
         if self.loads:
-            forces = forces.copy()
-            x = atoms.positions + (atoms.arrays["image"] @ atoms.cell.array if "image" in atoms.arrays else 0.0)
-            for load in self.loads:
-                e, f, w = load.act(x / u["distance"], self.mask(atoms, load.group))
-                shares, strains, forces = shares + e, strains + w, forces + f
-            energy, virial = energy + float(shares.sum()), virial + strains.sum(axis=0)
+            shares, added, strains, of_fixes = together(self.loads, atoms, u["distance"], self.mask, self._topology_of(atoms))
+            energy, forces = energy + float(shares.sum()), forces + added
+            virial = virial + strains.sum(axis=0) - (of_fixes if of_loop else 0.0)
         energy *= u["energy"]
         out = {"energy": energy, "free_energy": energy, "forces": forces * u["force"]}
         volume = atoms.cell.volume if atoms.cell.rank == 3 else 0.0

@@ -12,7 +12,6 @@ from asemd import units as unit_styles
 from asemd.calculator import ForceField
 from asemd.errors import InputError
 from asemd.fix import Fix
-from asemd.fix.addforce import AddForce
 from asemd.fix.setforce import SetForce
 from asemd.loop import Loop
 
@@ -90,7 +89,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         fixes = list(self.fixes)
         for k, load in enumerate(calc.loads):
             groups[f"load {k}"] = calc.mask(atoms, load.group)
-            fixes.append(AddForce(f"load {k}", load.force))
+            fixes.append(load.fix(f"load {k}"))
         held = self._held(atoms)
         for pattern in np.unique(held, axis=0) if len(held) else ():
             if pattern.any():
@@ -148,7 +147,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         atoms, calc = self.atoms, self.atoms.calc
         self._move(atoms, self._loop.system)
         if result is not None:
-            results = calc.convert(result, atoms)
+            results = calc.convert(result, atoms, of_loop=True)
             if not self._forces_are_own:     # the loop's forces hold those of thermostats too: the calculator computes its own when asked
                 del results["forces"]
             calc.adopt(atoms, results)

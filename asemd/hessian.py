@@ -16,6 +16,7 @@ from asemd.engine import Engine
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import bonded, curvature, image
 from asemd.kernels.generate import Builder, plain_source
+from asemd.loads import Maps
 from asemd.term import BondedTerm, PairListTerm
 
 CHUNK = 20_000
@@ -96,7 +97,30 @@ def of_calculator(calculator, atoms, numerical: bool = False):
     system = calculator._system(atoms)
     calculator.interactions.check_complete(system)
     matrix = hessian_of(system, calculator.interactions, calculator.neighbor_settings(atoms), numerical)
+    for load in calculator.loads:
+        if isinstance(load, Maps) and len(system.topology.crossterms):
+            if not numerical:
+                raise InputError("no second derivatives of fix cmap: numerical=True takes differences instead")
+            matrix = matrix + _of_maps(load, system)
     return matrix * unit_styles.factor("energy/distance^2", calculator.units)
+
+
+def _of_maps(load: Maps, system):
+    """The part of correction maps, by central differences of their forces: of one cross term after the other, which may share atoms."""
+    x, n, blocks = system.x.copy(), system.n, []
+    for m, atoms in enumerate(system.topology.crossterms):
+        inner = np.zeros((15, 15))
+        for a in range(15):
+            at = atoms[a // 3], a % 3
+            here = x[at]
+            for count, weight in SHIFT:
+                x[at] = here + count * STEP
+                inner[a] -= weight / STEP * load.items(x, system.box, system.topology, slice(m, m + 1))[1][0, 7:]
+            x[at] = here
+        index = (3 * atoms[:, None].astype(np.int64) + np.arange(3)).ravel()
+        blocks.append((np.repeat(index, 15), np.tile(index, 15), 0.5 * (inner + inner.T).ravel()))
+    rows, columns, numbers = (np.concatenate(part) for part in zip(*blocks))
+    return sparse.coo_matrix((numbers, (rows, columns)), shape=(3 * n, 3 * n)).tocsr()
 
 
 def _block(atoms: np.ndarray, pairs, inner: np.ndarray):

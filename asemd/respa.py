@@ -336,10 +336,12 @@ class RespaLoop(Loop):
                 e.acc[:, [t.index for t in self._whole]] = 0.0
                 self._compute(self._whole_calls)
         self._compute(calls)
-        began = time.perf_counter()
+        began, before = time.perf_counter(), self.state.virial.copy()
         for n, fix in enumerate(self.fixes):
             if "post_force" in self._kinds[n]:
                 self._post_force(n, fix, level)
+        if not energy:      # of the steps of a level the last one counts
+            self.state.virial[:] = before
         self._level_forces[level - 1][:] = self.engine.buffers[0]
         e.timings["Modify"] += time.perf_counter() - began
 

@@ -36,7 +36,7 @@ class DataFile:
     styles_hint, headings
         Section -> style named after ``#`` in its heading, and its place.
     title, fix_lines, fix_headers
-        First line; ID of a fix -> list of (place, words) of its sections, and of its header lines.
+        First line; ID of a fix -> (place, words) of the lines of its sections, of its header lines.
     """
 
     system: System
@@ -107,12 +107,12 @@ class _Reader(DataText):
         self.types = {"atom": counts["ntypes"], **{kind: counts[f"n{kind}types"] for kind in ATOMS}}
         counts = {name: n + self.extra.get(name, 0) for name, n in counts.items()}
         box, rotation = self.read_box()
-        mass = self.read_masses(counts["ntypes"])
-        system = self.read_atoms(box, rotation, counts, mass)
+        system = self.read_atoms(box, rotation, counts, self.read_masses(counts["ntypes"]))
+        headings = {s.name: self.where(s.line) for s in self.sections.values()}
         coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
         self.check_hints(self.units)
-        return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint},
-                        {s.name: self.where(s.line) for s in self.sections.values()}, self.lines[0].strip(), self.fix_lines(), self.fix_headers())
+        return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint}, headings,
+                        self.lines[0].strip(), self.fix_lines(), self.fix_headers())
 
     def read_box(self) -> tuple[Box, np.ndarray | None]:
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""
