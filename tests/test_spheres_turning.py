@@ -21,7 +21,7 @@ set group all dipole/random 4711 0.6
 set atom 1*9 omega 0.3 -0.7 1.2
 set atom 5 dipole 0 0 1
 velocity all create 1.44 87287
-group some id 1:5
+group some id 1:4 6 9
 group rest subtract all some
 region half block INF 2.5 INF INF INF INF units box
 pair_style lj/cut 2.0
@@ -85,6 +85,27 @@ CASES = {
     "nph": (SOLID, [FIELD, "fix 1 all nph/sphere aniso 0 2 0.5 update dipole/dlm ptemp 1.5 fixedpoint 0 0 0 couple xy"]),
     "nph in two dimensions": (FLAT, ["fix 1 all nph/sphere x 0 2 0.5 disc", FLAT2]),
 }
+
+SPIN = "fix 1 all nve/sphere update dipole"
+REST = "fix 1 rest nve/sphere"
+OTHERS = {      # with the field, in which spheres turn
+    "nve/limit": ["fix 1 all nve/limit 0.002"], "nve/noforce": ["fix 1 all nve/noforce"],
+    "gravity": [SPIN, "fix 2 all gravity 1.5 vector 0.3 0.2 -1"],
+    "viscous": [SPIN, "fix 2 all viscous 0.8 scale 1 1.3"],
+    "drag": [SPIN, "fix 2 some drag 1 1 1 0.7 0.4"],
+    "indent": [SPIN, "fix 2 all indent 50 sphere 2.1 2.3 2.2 1.5"],
+    "wall/reflect": ["change_box all boundary p p f", SPIN, "fix 4 all wall/reflect zlo EDGE zhi EDGE"],
+    "temp/berendsen": [SPIN, "fix 2 all temp/berendsen 1 2 0.1", "fix_modify 2 temp t"],
+    "press/berendsen": [SPIN, "fix 2 all press/berendsen iso 0 1 0.5", "fix_modify 2 temp t"],
+    "move": [REST, "fix 2 some move rotate 1 1 1 0 0 1 2.0"],
+    "dt/reset": [SPIN, "fix 2 all dt/reset 5 NULL 0.01 0.01 units box"],
+    "rigid": ["fix 1 rest nve/sphere update dipole", "fix 2 some rigid single", "compute k all erotate/sphere"],
+    "rigid/small": ["set group some mol 1", "comm_modify cutoff 4", REST, "fix 2 some rigid/small molecule"],
+    "rigid/nve in two dimensions": ["group pair id 3:6", "group single subtract all pair", "fix 1 single nve/sphere",
+                                    "fix 2 pair rigid/nve single", FLAT2],
+    "rigid/npt": [REST, "fix 2 some rigid/npt single temp 1 2 0.1 iso 0 1 0.5"],
+}
+CASES |= {name: (FLAT if "two dim" in name else SOLID, [FIELD, *more]) for name, more in OTHERS.items()}
 
 
 def lines(name):

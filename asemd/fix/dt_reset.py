@@ -17,7 +17,7 @@ from asemd.errors import InputError, nearest
 from asemd.fix import Fix
 from asemd.words import choice, number, take, whole
 
-FREE = ("nve", "nve/noforce", "move")        # of the fixes that move atoms, those that keep nothing that belongs to a timestep
+FREE = ("nve", "nve/sphere", "nve/noforce", "move")        # of those that move atoms: they keep nothing that belongs to a timestep
 
 
 class DtReset(Fix):

@@ -8,7 +8,8 @@ the angular velocity :math:`\omega = I^{-1} L`:
 by half steps of v and L before and after the forces. Between them the orientation q takes a whole step and two half steps at constant L,
 which are extrapolated, :math:`q = 2 q_{\text{half}} - q_{\text{whole}}`, and normalised. The atoms then get the places and velocities that
 the body gives them; what that does to them counts as virial. A body has six degrees of freedom (five if its atoms are on a line, three in
-two dimensions). Interactions within bodies do no work; ``neigh_modify exclude`` saves their computation.
+two dimensions). Interactions within bodies do no work; ``neigh_modify exclude`` saves their computation. Spheres bring their own moments
+of inertia, angular momenta and torques, and turn with the body; so do dipoles.
 
 Source: LAMMPS manual, fix rigid. Output: the temperature of the bodies, and 15 numbers for each body, f_ID[i][j]: centre of mass, its
 velocity, force, torque, image flags. ``fix rigid/small`` is the same without that array.
@@ -195,6 +196,8 @@ class Rigid(Fix):
                 self.kept.moves[lo - 1:hi, column:column + 3] = flags
         if loop.system.dimension == 2:
             self.kept.moves[:, 2:5] = 0.0
+            if any(fix.style == "enforce2d" for fix in loop.fixes):     # spheres may turn about another axis before the run
+                self.kept.v[:, 2] = self.kept.momentum[:, :2] = 0.0
 
     def _check_order(self, loop) -> None:
         at = loop.fixes.index(self)
@@ -230,7 +233,9 @@ class Rigid(Fix):
         b = self.kept
         rows = loop.system.index_of(self.members.ids)       # they change when other atoms leave
         b.rows[:] = rows
-        return b
+        _, spin, mu = rb.spheres(loop.system, rows)
+        self.kept = b._replace(spin=spin, mu=mu)
+        return self.kept
 
     def setup(self, loop) -> None:
         """Forces and torques on the bodies, and the atoms' velocities, with twice the second half of a step's virial."""
@@ -241,6 +246,8 @@ class Rigid(Fix):
         b.half_virial[:] = 0.0
         b.force[:] = np.add.reduceat(f, b.first[:-1], axis=0) + b.bath[:, :3] + b.mass[:, None] * self.p[13:16]
         b.torque[:] = np.add.reduceat(np.cross(r - b.x[body], f), b.first[:-1], axis=0) + b.bath[:, 3:]
+        if b.radius.any():
+            b.torque[:] += np.add.reduceat((b.radius > 0.0)[:, None] * system.extra["torque"][b.rows], b.first[:-1], axis=0)
         v = rb.velocities(b, body)
         push = (system.atom_masses()[b.rows] / (0.5 * loop.dt * self.p[10]))[:, None] * (v - system.v[b.rows]) - f
         for c, (i, j) in enumerate(COMPONENTS):
@@ -352,9 +359,10 @@ class Rigid(Fix):
         if ((inside > 0) & (inside != size)).any() and key not in self.warned:
             self.warned.add(key)
             self._warn("Computing temperature of portions of rigid bodies")
+        finite = np.add.reduceat((b.radius > 0.0).astype(np.int64), b.first[:-1])      # their rotation, too
         if int(self.p[11]) == 2:
-            return float((2 * size - 3)[inside == size].sum())
-        return float((3 * size - 6 + (b.moments == 0.0).any(axis=1))[inside == size].sum())
+            return float((2 * size + finite - 3)[inside == size].sum())
+        return float((3 * (size + finite) - 6 + (b.moments == 0.0).any(axis=1))[inside == size].sum())
 
     def bodies_energies(self) -> tuple[np.ndarray, np.ndarray]:
         """Energy of translation and of rotation of each body, in energy units, without components that do not act."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd.compute.erotate_sphere import INERTIA
 from asemd.errors import InputError
 from asemd.kernels.rigid import Bodies
 from asemd.words import number, whole
@@ -136,7 +137,9 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     system.box.wrap(center, image)
     d = r - image[body] @ system.box.cell - center[body]
     tensor = np.einsum("i,ij->i", m, d * d)[:, None, None] * np.eye(3) - np.einsum("i,ia,ib->iab", m, d, d)
-    tensor = total(tensor)
+    radius, spin, mu = spheres(system, rows)
+    own = INERTIA * m * radius**2
+    tensor = total(tensor + own[:, None, None] * np.eye(3))
     for k, values in given.items():
         xx, yy, zz, xy, xz, yz = values[4:10]
         tensor[k] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
@@ -145,9 +148,9 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     axes[:, 2] *= np.where(np.einsum("ni,ni->n", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2]) < 0.0, -1.0, 1.0)[:, None]
     place = np.einsum("iab,ib->ia", axes[body], d)
     if not given:
-        _check_moments(moments, total(np.einsum("i,ij->i", m, place**2)[:, None] - m[:, None] * place**2), style)
+        _check_moments(moments, total((own + np.einsum("i,ij->i", m, place**2))[:, None] - m[:, None] * place**2), style)
     velocity = total(m[:, None] * v) / mass[:, None]
-    momentum = total(m[:, None] * np.cross(d, v))
+    momentum = total(m[:, None] * np.cross(d, v) + (own[:, None] * spin[rows] if own.any() else 0.0))
     if file:        # LAMMPS takes no motion from the atoms then
         velocity, momentum = np.zeros((nb, 3)), np.zeros((nb, 3))
         for k, values in given.items():
@@ -158,7 +161,14 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     box = np.tile(np.concatenate([system.box.origin, system.box.cell.ravel()]), (nb, 1))
     return Bodies(mass, center, velocity, np.zeros((nb, 3)), np.zeros((nb, 3)), momentum, np.zeros((nb, 3)), moments,
                   np.ascontiguousarray(axes), quaternions(axes), np.zeros((nb, 4)), image.astype(float), moves, np.zeros((nb, 6)),
-                  np.zeros((nb, 6)), box, first, rows, place, np.zeros((len(rows), 6)))
+                  np.zeros((nb, 6)), box, first, rows, place, np.zeros((len(rows), 6)), radius,
+                  np.einsum("iab,ib->ia", axes[body], mu[rows]) if len(mu) == system.n and mu[rows].any() else np.zeros((0, 3)), spin, mu)
+
+
+def spheres(system, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Radii of the atoms of the bodies (m,), angular velocities and dipoles of all atoms (n, 3), of one row where there are none."""
+    extra, nothing = system.extra, np.zeros((1, 3))
+    return extra["radius"][rows] if "radius" in extra else np.zeros(len(rows)), extra.get("omega", nothing), extra.get("mu", nothing)
 
 
 def _check_moments(moments: np.ndarray, again: np.ndarray, style: str) -> None:
@@ -179,6 +189,9 @@ def velocities(b: Bodies, body: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         w = np.where(b.moments > 0.0, np.einsum("nka,na->nk", b.axes, b.momentum) / b.moments, 0.0)
     b.omega[:] = np.einsum("nk,nka->na", w, b.axes)
+    turning = b.radius > 0.0
+    if turning.any():
+        b.spin[b.rows[turning]] = b.omega[body[turning]]
     return np.cross(b.omega[body], np.einsum("na,nab->nb", b.place, b.axes[body])) + b.v[body]
 
 

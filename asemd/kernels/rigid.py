@@ -34,6 +34,10 @@ class Bodies(NamedTuple):
     rows: np.ndarray          # (m,) int64 atom rows
     place: np.ndarray         # (m, 3) positions of the atoms along the axes of their body
     virial: np.ndarray        # (m, 6) of the constraint, xx yy zz xy xz yz
+    radius: np.ndarray        # (m,) of spheres, which bring torques of their own and turn with their body; 0 for points
+    dipole: np.ndarray        # (m, 3) dipoles along the axes of their body; (0, 3) if there are none
+    spin: np.ndarray          # (n, 3) angular velocities of all atoms by row; not read where there are no spheres
+    mu: np.ndarray            # (n, 3) dipoles of all atoms by row; the same
 
 
 def turn_axes(q, e):
@@ -176,6 +180,10 @@ def gather_forces(s, p, b, k):
         tx += dy * gz - dz * gy
         ty += dz * gx - dx * gz
         tz += dx * gy - dy * gx
+        if b.radius[j] > 0.0:
+            tx += s.torque[0, i]
+            ty += s.torque[1, i]
+            tz += s.torque[2, i]
     b.force[k, 0], b.force[k, 1], b.force[k, 2] = fx + b.bath[k, 0], fy + b.bath[k, 1], fz + b.bath[k, 2]
     for d in range(3):
         b.force[k, d] += b.mass[k] * p[13 + d]
@@ -222,6 +230,11 @@ def place_atoms(s, b, k, half, moving, sums):
             sums[4] += x * gz
             sums[5] += y * gz
         s.v[0, i], s.v[1, i], s.v[2, i] = vx, vy, vz
+        if b.radius[j] > 0.0:
+            b.spin[r, 0], b.spin[r, 1], b.spin[r, 2] = wx, wy, wz
+        if moving and b.dipole.shape[0] > 0:
+            for c in range(3):
+                b.mu[r, c] = e[0, c] * b.dipole[j, 0] + e[1, c] * b.dipole[j, 1] + e[2, c] * b.dipole[j, 2]
         if moving:
             s.x[0, i], s.x[1, i], s.x[2, i] = dx + b.x[k, 0] - ox, dy + b.x[k, 1] - oy, dz + b.x[k, 2] - oz
 
