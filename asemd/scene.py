@@ -140,6 +140,7 @@ class Scene:
     list_style: str = "bin"     # as the command neighbor has it
     first_group: str = ""       # atom_modify first
     sort: tuple[int, float] = (1000, 0.0)       # atom_modify sort: steps, width of the bins
+    order: np.ndarray | None = None     # atom IDs as a data file has them, LAMMPS's first order of atoms
     threads: int = 1
     precision: str = "double"
     compat: str = ""

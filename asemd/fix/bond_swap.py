@@ -79,7 +79,7 @@ class BondSwap(Fix):
         if not scene.need_system("fix bond/swap").molecular:
             raise InputError("fix bond/swap: Cannot use fix bond/swap with non-molecular systems: use an atom_style with bonds")
         pairs, fix.newton_bond = scene.newton
-        fix.storage = Storage(*scene.sort, scene.list_style != "nsq", pairs)
+        fix.storage = Storage(*scene.sort, scene.list_style != "nsq", pairs, scene.order)
         return fix
 
     def to_lammps(self) -> list[str]:

@@ -17,6 +17,8 @@ class Storage:
         Whether lists come from bins (``neighbor ... bin``).
     newton : bool
         As ``newton``, for pairs.
+    order : sequence of int, optional
+        Atom IDs as a data file has them; atoms of other systems begin in the order of their IDs.
 
     Attributes
     ----------
@@ -24,15 +26,18 @@ class Storage:
         Place of each atom row.
     """
 
-    def __init__(self, every: int = 1000, width: float = 0.0, bins: bool = True, newton: bool = True):
-        self.every, self.width, self.bins, self.newton = every, width, bins, newton
+    def __init__(self, every: int = 1000, width: float = 0.0, bins: bool = True, newton: bool = True, order=None):
+        self.every, self.width, self.bins, self.newton, self.order = every, width, bins, newton, order
         self.place = np.zeros(0, np.int64)
         self.due = 0
 
     def begin(self, loop) -> None:
         """A run begins, or atoms left or joined."""
         if len(self.place) != loop.system.n:
-            self.place = np.arange(loop.system.n)
+            ids = loop.system.id
+            self.place = np.arange(len(ids))
+            if self.order is not None and np.array_equal(np.sort(self.order), np.sort(ids)):
+                self.place[np.argsort(ids)] = np.argsort(self.order)
         self.due = loop.step
         self.listed(loop)
 
@@ -42,9 +47,11 @@ class Storage:
         self.x = np.ascontiguousarray(e.held[:, e.slot_of].T)
         self.low, self.high = _bounds(loop.system.box)
         self.made = None
-        if self.every and loop.step >= self.due and e.reach > 0.0:
+        # also of pair style zero, which needs no list
+        cutoff = max(loop.interactions.cutoff(loop.system.counts["ntypes"], e.units), e.reach - e.settings.skin)
+        if self.every and loop.step >= self.due and cutoff > 0.0:
             self.due = loop.step // self.every * self.every + self.every
-            at = self._bin(loop, self.width or 0.5 * e.reach)
+            at = self._bin(loop, self.width or 0.5 * (cutoff + e.settings.skin))
             width = at.max(axis=0) + 1
             key = (at[:, 2] * width[1] + at[:, 1]) * width[0] + at[:, 0]
             order = np.lexsort((self.place, key))

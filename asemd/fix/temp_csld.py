@@ -16,6 +16,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.fix.formula import write
+from asemd.fix.storage import Storage
 from asemd.fix.thermostat import Thermostat
 from asemd.marsaglia import Marsaglia
 from asemd.words import number, whole
@@ -47,20 +48,32 @@ class TempCSLD(Thermostat):
         super().__init__(group, temperature, damping)
         if not 0 < seed <= 900_000_000:
             raise InputError(f"fix {self.style}: seed must be a whole number from 1 to 900000000, got {seed}")
-        self.seed, self.energy, self.random = seed, 0.0, Marsaglia(seed)
+        self.seed, self.energy, self.random, self.storage = seed, 0.0, Marsaglia(seed), Storage()
 
     @classmethod
     def from_lammps(cls, group, words, session):
         if len(words) != 4:
             raise InputError(f"fix {cls.style} needs Tstart Tstop Tdamp seed, got {len(words)} values")
         damping, seed = number(words[2], f"fix {cls.style} Tdamp"), whole(words[3], f"fix {cls.style} seed")
-        return cls(group, cls.read_ramp(words, session), damping, seed)
+        fix = cls(group, cls.read_ramp(words, session), damping, seed)
+        fix.storage = Storage(*session.scene.sort, order=session.scene.order)
+        return fix
 
     def to_lammps(self) -> list[str]:
         return [write(self.start), repr(self.stop), repr(self.damping), str(self.seed)]
 
+    def setup(self, loop) -> None:
+        self.storage.begin(loop)
+
+    def resize(self, loop) -> None:
+        if len(self.storage.place) != loop.system.n:
+            self.storage.begin(loop)
+
+    def post_neighbor(self, loop) -> None:
+        self.storage.listed(loop)
+
     def end_of_step(self, loop) -> None:
-        """Mix the velocities with random ones."""
+        """Mix the velocities with random ones, drawn in the order in which LAMMPS keeps atoms."""
         target = self.target(loop)
         loop.sync_out()
         system, mask, state = loop.system, loop.groups[self.group], loop.snapshot()
@@ -69,7 +82,8 @@ class TempCSLD(Thermostat):
             return
         unit = 0.5 * loop.units.boltz * dof
         before, held = self.temp.scalar(state), system.v[mask].copy()
-        noise = np.array([self.random.gaussian() for _ in range(held.size)]).reshape(held.shape)
+        noise = np.empty_like(held)
+        noise[np.argsort(self.storage.place[mask])] = np.reshape([self.random.gaussian() for _ in range(held.size)], held.shape)
         system.v[mask] = noise / np.sqrt(system.atom_masses()[mask])[:, None]
         keep = math.exp(-loop.dt / self.damping)
         mix = math.sqrt((1.0 - keep * keep) * target / self.temp.scalar(state))

@@ -37,6 +37,8 @@ class DataFile:
         Section -> style named after ``#`` in its heading, and its place.
     title, fix_lines, fix_headers
         First line; ID of a fix -> (place, words) of the lines of its sections, of its header lines.
+    order : (n,) int
+        Atom IDs in the order of the file.
     """
 
     system: System
@@ -47,6 +49,7 @@ class DataFile:
     title: str = ""
     fix_lines: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
     fix_headers: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
+    order: np.ndarray | None = None
 
 
 def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
@@ -112,7 +115,7 @@ class _Reader(DataText):
         coeffs = {name: self.read_coeffs(name) for name in self.sections if name in COEFFS}
         self.check_hints(self.units)
         return DataFile(system, self.whole, coeffs, {s.name: s.hint for s in self.sections.values() if s.hint}, headings,
-                        self.lines[0].strip(), self.fix_lines(), self.fix_headers())
+                        self.lines[0].strip(), self.fix_lines(), self.fix_headers(), self.order)
 
     def read_box(self) -> tuple[Box, np.ndarray | None]:
         """The box of the file, and for general vectors the rotation into LAMMPS's frame."""
@@ -235,7 +238,7 @@ class _Reader(DataText):
             a, where = self.table("Atoms", columns, n, optional=IMAGE)
         else:
             a, where = {c: np.zeros(0) for c in columns}, None
-        ids = a["id"].astype(np.int64)
+        ids = self.order = a["id"].astype(np.int64)
         order = np.argsort(ids, kind="stable")
         ids = ids[order]
         line = {} if n == 0 else (lambda row: where(int(order[row])))     # line of an atom in order of id

@@ -56,7 +56,7 @@ def run(session, args):
         session.warn(str(warning.message))
     smallest = data.system.id.min(initial=2**62)
     if old is None:
-        new, scene.system = data.system, data.system
+        new, scene.system, scene.order = data.system, data.system, data.order
         new.step = scene.first_step
         scene.special_room = new.counts["extra_special_per_atom"]
         scene.groups.resize(new.n)
