@@ -102,6 +102,8 @@ class Fix:
         What must be known of a step on which its outputs are asked for, as in `needs`.
     needs : set of str
         What its Python hooks want to see of the steps on which they act: ``energy``, ``virial``, ``energies``, ``virials``.
+    restarts : tuple of str
+        How the log names what a restart file holds of it: ``global``, ``peratom``, which is also said of a fix without `state`.
     minimizing : bool
         Set while a minimisation goes on.
     id : str
@@ -113,6 +115,7 @@ class Fix:
     needs_atoms: ClassVar[bool] = False
     minimizes: ClassVar[bool] = False
     ecouple: ClassVar[bool] = False
+    restarts: ClassVar[tuple[str, ...]] = ("global",)
     levels: ClassVar[str] = ""
     box_moves: str = ""
     virial_every: int = 0

@@ -71,6 +71,7 @@ class CMAP(Forcing):
     """
 
     style = "cmap"
+    restarts = ("global", "peratom")
     before_box = writedata = True
     modifies = ("energy", "virial")
     thermo_energy = True

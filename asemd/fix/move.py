@@ -46,6 +46,7 @@ class Move(Fix):
     """
 
     style = "move"
+    restarts = ("global", "peratom")
     integrates = True
     levels = "every"
 

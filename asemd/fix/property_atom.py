@@ -44,6 +44,7 @@ class PropertyAtom(Fix):
     """
 
     style = "property/atom"
+    restarts = ("peratom",)
     before_box = True
 
     def __init__(self, properties=(), group: str = "all", writedata: bool = True):

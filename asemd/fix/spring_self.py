@@ -39,6 +39,7 @@ class SpringSelf(Forcing):
     """
 
     style = "spring/self"
+    restarts = ("peratom",)
     told = 1
     modifies = ("energy",)
     by_atom = True

@@ -38,6 +38,7 @@ class StoreState(Fix):
     """
 
     style = "store/state"
+    restarts = ("peratom",)
     session = None
 
     def __init__(self, group: str = "all", values=(), every: int = 0, com: bool = False):

@@ -59,6 +59,7 @@ class TISpring(Fix):
     """
 
     style = "ti/spring"
+    restarts = ("peratom",)
     size = 2
     extensive = True
     minimizes = True

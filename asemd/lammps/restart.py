@@ -110,8 +110,8 @@ def contents(session, state: dict[str, Any] | None = None) -> dict[str, Any]:
     """Everything a restart file keeps; `state` is that of `checkpoint.take`."""
     scene, system = session.scene, session.scene.need_system("write_restart")
     kept = ("units", "dimension", "boundary", "atom_style", "newton", "map_style", "dt", "time_base", "max_special")
-    fixes = [{"id": f.id, "style": f.style, "group": f.group, "words": [str(w) for w in f.to_lammps()], "state": f.state()}
-             for f in scene.fixes.values()]
+    fixes = [{"id": f.id, "style": f.style, "group": f.group, "words": [str(w) for w in f.to_lammps()], "state": f.state(),
+              "restarts": list(f.restarts)} for f in scene.fixes.values()]
     return {"asemd": __version__, "step": scene.step, "scene": {name: getattr(scene, name) for name in kept},
             "neighbor": {name: getattr(scene.neighbor, name) for name in NEIGHBOR}, "exclusions": len(scene.neighbor.exclude),
             "system": {f.name: getattr(system, f.name) for f in fields(system) if f.name not in ("topology", "f")},
@@ -196,7 +196,8 @@ def take_up(session, document: dict[str, Any]) -> None:
         if count:
             session.print(f"  {count} {kind}s")
     report_special(session)
-    scene.restored = {"fixes": [f for f in document["fixes"] if f["state"]], "state": document["state"], "told": False}
+    fixes = [{"restarts": ["global"], **f} for f in document["fixes"]]
+    scene.restored = {"fixes": [f for f in fixes if f["state"] or "peratom" in f["restarts"]], "state": document["state"]}
     if document["exclusions"]:
         session.warn("read_restart: neigh_modify exclude is not kept in restart files, give it again where it is still wanted")
 
@@ -227,10 +228,8 @@ def restore_fix(session, fix) -> None:
     kept = session.scene.restored
     found = [f for f in kept["fixes"] if f["id"] == fix.id and f["style"] == fix.style] if kept else []
     if found:
-        if not kept["told"]:
-            session.print("Resetting global fix info from restart file:")
-            kept["told"] = True
-        session.print(f"  fix style: {fix.style}, fix ID: {fix.id}")
+        for kind in found[0]["restarts"]:
+            session.print(f"Resetting {kind} fix info from restart file:\n  fix style: {fix.style}, fix ID: {fix.id}")
         fix.restore(found[0]["state"])
         found[0]["used"] = True
 
@@ -240,11 +239,13 @@ def first_run(session) -> dict[str, Any] | None:
     kept, session.scene.restored = session.scene.restored, None
     if kept is None:
         return None
-    unused = [f for f in kept["fixes"] if "used" not in f]
-    if unused:
-        session.print("Unused restart file global fix info:")
-        for f in unused:
-            session.print(f"  fix style: {f['style']}, fix ID: {f['id']}")
-    elif kept["fixes"]:
-        session.print("All restart file global fix info was re-assigned")
+    for kind in ("global", "peratom"):
+        fixes = [f for f in kept["fixes"] if kind in f["restarts"]]
+        unused = [f for f in fixes if "used" not in f]
+        if unused:
+            session.print(f"Unused restart file {kind} fix info:")
+            for f in unused:
+                session.print(f"  fix style: {f['style']}, fix ID: {f['id']}")
+        elif fixes:
+            session.print(f"All restart file {kind} fix info was re-assigned")
     return kept["state"]

@@ -94,6 +94,9 @@ def _read_for_fixes(scene, data: DataFile, options: _Options, offset: int) -> No
                 except InputError as e:
                     raise e.at(where) from None
     for id, *_ in options.fixes:
+        lines, atoms = data.fix_lines.get(id, []), data.system.n
+        if hasattr(scene.fixes[id], "properties") and lines and len(lines) % atoms:
+            raise InputError(f"the section of fix {id} has {len(lines)} lines, but there are {atoms} atoms (truncated file?)", lines[-1][0])
         if id in data.fix_lines or getattr(scene.fixes[id], "promised", None):
             scene.fixes[id].read_section(scene.system, data.fix_lines.get(id, []), offset)
 
