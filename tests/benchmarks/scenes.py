@@ -68,7 +68,7 @@ def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
     return LJ.format(cells=cells, neigh=neigh)
 
 
-def _kept() -> Path:
+def kept() -> Path:
     """The folder of data files that are built once."""
     folder = Path(tempfile.gettempdir()) / f"asemd-benchmarks-{os.getuid() if hasattr(os, 'getuid') else 0}"
     folder.mkdir(exist_ok=True)
@@ -80,7 +80,7 @@ def chain(chains: int = 320, beads: int = 100) -> str:
 
     The chains are random walks, pushed off and run for 2000 steps once; the data file is kept in the temporary folder.
     """
-    folder = _kept()
+    folder = kept()
     data = folder / f"chain-{chains}x{beads}.data"
     if not data.exists():
         spec = importlib.util.spec_from_file_location("polymer_melt", MELT / "run.py")
@@ -95,6 +95,6 @@ def chain(chains: int = 320, beads: int = 100) -> str:
 
 def peptide() -> str:
     """Bonded terms of sixteen helices in water, as in LAMMPS's ``examples/peptide``; the data file is kept in the temporary folder."""
-    data = _kept() / "peptide.data"
+    data = kept() / "peptide.data"
     write_peptide(data)
     return PEPTIDE.format(data=data)
