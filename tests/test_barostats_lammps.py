@@ -14,6 +14,7 @@ T, P = "temp 300 350 50", "0 500 100"
 
 
 PULL = ["fix 9 some addforce 0.1 0 0"]       # so that the centre of mass does not move evenly
+DRIVE = "fix 3 all accelerate/cos 0.0005"
 BIASED = {"com": "temp/com", "partial": "temp/partial 1 0 1", "profile": "temp/profile 1 1 0 z 3", "rotate": "temp/rotate",
           "ramp": "temp/ramp vx -0.001 0.002 z 0 12 units box"}
 
@@ -68,6 +69,11 @@ CASES = {
     "nph tri, biased": ([TILT, "compute t all temp/com", f"fix 1 all nph tri {P}", "fix_modify 1 temp t", *PULL], ["c_t", *OUT]),
     "npt pressure with another bias": (["compute t all temp/com", "compute p all pressure t", f"fix 1 all npt {T} iso {P}",
                                         "fix_modify 1 press p"], OUT),
+    **{f"{name} cos": (["compute t all viscosity/cos", f"fix 1 all {words}", "fix_modify 1 temp t", DRIVE], ["c_t", "c_t[7]", *OUT[3:]])
+       for name, words in (("nvt", "nvt temp 300 350 50 tloop 2"), ("npt iso", f"npt {T} iso {P}"))},
+    **{f"{words.split()[0]} cos": (["compute t all viscosity/cos", NVE, f"fix 2 all {words}", "fix_modify 2 temp t", DRIVE],
+                               ["c_t", "c_t[7]"])
+       for words in ("temp/berendsen 300 400 20", "temp/rescale 5 300 350 5 0.9")},
     "nph and berendsen": ([f"fix 1 all nph iso {P}", "fix 2 all temp/berendsen 300 400 20"], OUT + ["f_2"]),
 }
 
@@ -142,3 +148,7 @@ def test_temperatures_that_are_refused():
     lmp.commands_string("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncompute t all temp/region b\nfix 1 all nvt temp 1 1 1")
     with pytest.raises(InputError, match="fix nvt takes a compute of style temp, temp/com.*; t has style temp/region"):
         lmp.command("fix_modify 1 temp t")
+    lmp.commands_string("create_atoms 1 random 9 77 b\nunfix 1\nuncompute t\ncompute t all viscosity/cos\nfix 1 all nph aniso 0 1 1")
+    lmp.commands_string("pair_style none\nvelocity all create 1 77\nfix_modify 1 temp t")
+    with pytest.raises(InputError, match="fix 1 .style nph.: a temperature of style viscosity/cos goes with iso only"):
+        lmp.command("run 1")

@@ -16,13 +16,13 @@ ROOT = Path(__file__).resolve().parents[1]
 WORKFLOWS = sorted(p.parent.name for p in (ROOT / "workflows").glob("*/run.py"))
 
 
-def run(name: str, folder: Path, *options: str) -> dict:
+def run(name: str, folder: Path, *options: str, picture: str = "melt.png") -> dict:
     env = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
     pytest.importorskip("matplotlib")
     command = [sys.executable, str(ROOT / "workflows" / name / "run.py"), "--folder", str(folder), *options]
     done = subprocess.run(command, env=env, cwd=folder, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    assert (folder / "melt.png").stat().st_size > 5000
+    assert (folder / picture).stat().st_size > 5000
     return json.loads((folder / "result.json").read_text())
 
 
@@ -55,6 +55,36 @@ def test_lj_melt(tmp_path):
     result = run("lj-melt", tmp_path, "--cells", "6", "--steps", "1000")
     assert result["temperature"] == pytest.approx(0.70, abs=0.04) and result["drift"] < 6e-3
     assert result["peak"] == pytest.approx(1.08, abs=0.05) and result["height"] == pytest.approx(3.0, abs=0.4)
+
+
+@pytest.mark.parametrize("name, expected, methods", [("viscosity", 0.84, 6), ("thermal_conductivity", 3.5, 5)])
+def test_transport(tmp_path, name, expected, methods):
+    """All routes run; runs of seconds come within a factor of the value, those of minutes stand in docs/transport.md."""
+    result = run(name, tmp_path, "--quick", picture=f"{name}.png")
+    assert len(result) == methods
+    for method, (value, error) in result.items():
+        assert 0.2 * expected < value < 4 * expected and error > 0.0, method
+    rows = (tmp_path / "result.csv").read_text().splitlines()
+    assert len(rows) == 1 + methods + 2 and rows[0].startswith("method") and "+-" in (tmp_path / "result.md").read_text()
+
+
+def test_statistics_of_transport(tmp_path, monkeypatch):
+    """Block errors, gradients between layers and Green-Kubo integrals of data whose answer is known."""
+    monkeypatch.syspath_prepend(str(ROOT / "workflows"))
+    import transport
+    blocks = np.random.default_rng(2).normal(3.0, 0.5, 400)
+    mean, error = transport.estimate(blocks)
+    assert mean == pytest.approx(blocks.mean()) and error == pytest.approx(blocks.std(ddof=1) / 20)
+    assert transport.estimate(blocks, lambda m: 1 / m)[1] == pytest.approx(error / mean**2, rel=0.02)
+    for width in (1, 2):        # a tent: up from the lower layers to those in the middle, down again
+        z = (np.arange(24) - (width - 1) / 2) % 24
+        assert transport.slope(0.3 * np.minimum(z, 24 - z), 48.0, width) == pytest.approx(0.15)
+    t = np.arange(0, 400, 4)
+    table = "\n".join(f"{k} {s} 1 {np.exp(-s * 0.005 / 0.2)} {np.exp(-s * 0.005 / 0.2)}" for k, s in enumerate(t))
+    (tmp_path / "green-kubo.dat").write_text("# a\n" + "".join(f"{b} {len(t)}\n{table}\n" for b in range(4)))
+    (value, error), (times, values, _) = transport.green_kubo(tmp_path, 5.0, 1.9)
+    assert value == pytest.approx(1.0, rel=2e-3) and error == pytest.approx(0.0, abs=1e-12)
+    assert times[-1] == pytest.approx(t[-1] * 0.005) and values[-1] == pytest.approx(value, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", WORKFLOWS)

@@ -105,7 +105,7 @@ class Pressure(Compute):
         """(6,) xx yy zz xy xz yz; in two dimensions only xx, yy and xy are not zero."""
         total = self.virial(state)
         if "ke" in self.terms:
-            total = total + self.temperature.vector(state)
+            total = total + self.temperature.vector(state)[:6]
         if state.system.dimension == 2:
             total[[2, 4, 5]] = 0.0
         return total * self._per_volume(state)

@@ -20,6 +20,7 @@ class ViscosityCos(Temp):
     style = "viscosity/cos"
     bias = True
     size = 7
+    measured: float | None = None       # amplitude when the temperature was last asked for
 
     def _wave(self, state) -> np.ndarray:
         """(n,) cosine of each atom."""
@@ -33,11 +34,19 @@ class ViscosityCos(Temp):
         return float(2.0 * (weights * state.system.v[:, 0]) @ self._wave(state) / total) if total > 0.0 else 0.0
 
     def remove_bias(self, state) -> np.ndarray:
-        """(n, 3) velocities without the flow."""
+        """(n, 3) velocities without the flow, whose amplitude is that of the last temperature: a thermostat leaves out what it measured."""
+        if self.measured is None:
+            self.measured = self.amplitude(state)
         v = state.system.v.copy()
-        v[:, 0] -= self.amplitude(state) * self._wave(state)
+        v[:, 0] -= self.measured * self._wave(state)
         return v
+
+    def scalar(self, state) -> float:
+        """The temperature of what is not flow."""
+        self.measured = self.amplitude(state)
+        return super().scalar(state)
 
     def vector(self, state) -> np.ndarray:
         """(7,) sum of m v v without the flow, xx yy zz xy xz yz, and the amplitude of the flow."""
-        return np.append(super().vector(state), self.amplitude(state))
+        self.measured = self.amplitude(state)
+        return np.append(super().vector(state), self.measured)

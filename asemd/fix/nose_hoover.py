@@ -92,7 +92,7 @@ class NoseHoover(Thermostat):
     levels = "every"
     takes_bias = True
     kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate",
-             "temp/sphere")      # of the temperature it takes
+             "temp/sphere", "viscosity/cos")      # of the temperature it takes
     turns = False       # whether it moves spheres that turn: fixes nvt/sphere ...
 
     def modify_option(self, keyword, value, session):

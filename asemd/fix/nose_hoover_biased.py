@@ -13,7 +13,8 @@ from asemd.fix.spheres import kick_spheres, turn_dipoles
 from asemd.fix.thermostat import scale_thermal
 from asemd.kernels.box import follow
 
-LIVE = ("temp/ramp", "temp/deform")     # flows that LAMMPS takes from the present positions; others are those of the last temperature
+# flows that LAMMPS takes from the present positions; others are those of the last temperature
+LIVE = ("temp/ramp", "temp/deform", "viscosity/cos")
 
 
 def scale(fix, loop, factor: float) -> None:
@@ -75,7 +76,7 @@ def measure(fix, loop, begins: bool) -> None:
     state, own = loop.snapshot(), fix.press.temperature or fix.temp
     for temp, row in ((fix.temp, 9), (own, 10)):
         if row == 9 or own is fix.temp or begins:
-            fix.b[row] = temp.vector(state)
+            fix.b[row] = temp.vector(state)[:6]
             if fix.q[0] == 1.0:         # then LAMMPS takes the scalar, which counts degrees of freedom
                 dimension = int(fix.q[26])
                 fix.b[row, :dimension] = temp.dof(state) * state.units.boltz * temp.scalar(state) / dimension
@@ -115,6 +116,9 @@ def end(fix: NoseHoover, loop) -> None:
     th, s, p, box = loop._thread(), loop.state, fix.p, hasattr(fix, "press")
     kick(fix, loop, loop.group_bit(fix.group))
     if box:
+        if fix.seen != loop.engine.builds:      # LAMMPS measures once more after a list build
+            loop.sync_out()
+            fix.temp.scalar(loop.snapshot())
         anew = fix.temp.hides or fix.temp.style in LIVE or fix.seen != loop.engine.builds
         drag(fix, loop, flow(fix, loop) if anew else fix.flow)
         measure(fix, loop, False)

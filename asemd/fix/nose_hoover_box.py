@@ -230,7 +230,9 @@ class NoseHooverBox(NoseHoover):
             e[2, 1:n] = (e[3, :n - 1] * e[1, :n - 1] ** 2 - kt) / e[3, 1:n]
         snapshot, measured = loop.snapshot(), self.press.temperature or self.temp
         self.m[4] = state.box.vectors
-        b[9], b[10] = self.temp.vector(snapshot), measured.vector(snapshot)
+        if self.temp.style == "viscosity/cos" and self.q[0] != 1.0:
+            raise InputError(f"fix {self.id} (style {self.style}): a temperature of style viscosity/cos goes with iso only")
+        b[9], b[10] = self.temp.vector(snapshot)[:6], measured.vector(snapshot)[:6]
         q[32] = self._volume(state.box.vectors, q[26])
 
     @staticmethod
