@@ -81,6 +81,10 @@ def test_energy_of_each_atom_adds_up():
     ("fix 2 all nve/sphere disc", "two dimensions"),
     ("fix 2 all nve/sphere upate dipole", "did you mean update"),
     ("compute x all temp/sphere bias t", "removes no bias"),
+    ("fix 2 all viscous/sphere", "1 value"), ("fix 2 all viscous/sphere 1 scale 3 1", "no atom type 3"),
+    ("fix 2 all viscous/sphere 1 scale v_none", "undefined variable none"), ("fix 2 all viscous/sphere 1 tscale 1 1", "unknown keyword"),
+    ("variable d equal 1\nfix 2 all viscous/sphere 1 scale v_d", "style atom"),
+    ("variable d atom 1\nfix 2 all viscous/sphere 1 scale v_d scale 1 1", "not both"),
     ("fix 2 some langevin 1 1 1 7 omega yes\nset atom 3 diameter 0\nrun 0", "atom 3 is a point"),
     ("fix 2 some langevin 1 1 1 7 omega perhaps", "yes or no"),
     ("fix 2 all nvt/sphere temp 1 1 1 update dipoles", "did you mean dipole"),
@@ -98,6 +102,15 @@ def test_energy_of_each_atom_adds_up():
 def test_mistakes(line, said):
     with pytest.raises(InputError, match=said):
         asemd(CASES["spheres"] + line)
+
+
+def test_radii_that_change():
+    """The number behind sphere is 0 or 1."""
+    assert asemd("atom_style hybrid sphere 1 dipole").scene.atom_style == "hybrid sphere dipole"
+    with pytest.raises(InputError, match="0 or 1"):
+        asemd("atom_style sphere 2")
+    with pytest.raises(InputError, match="no arguments"):
+        asemd("atom_style atomic 1")
 
 
 def test_atoms_without_radius():

@@ -9,7 +9,9 @@ from wheel import ask
 SCENE = """
 units lj
 dimension {dimension}
-atom_style hybrid sphere dipole angle
+atom_style hybrid sphere 1 dipole angle
+variable grow equal 0.7+0.01*step
+variable a atom 0.6+0.1*x
 lattice {lattice} 0.8
 region b block 0 3 0 3 {height}
 create_box 1 b angle/types 1 extra/angle/per/atom 3 extra/special/per/atom 6
@@ -99,13 +101,19 @@ OTHERS = {      # with the field, in which spheres turn
     "press/berendsen": [SPIN, "fix 2 all press/berendsen iso 0 1 0.5", "fix_modify 2 temp t"],
     "move": [REST, "fix 2 some move rotate 1 1 1 0 0 1 2.0"],
     "dt/reset": [SPIN, "fix 2 all dt/reset 5 NULL 0.01 0.01 units box"],
+    "diameters": [SPIN, "fix 2 all adapt 3 atom diameter v_grow"],
+    "diameters, reset": [SPIN, "fix 2 all adapt 3 atom diameter v_grow scale yes reset yes"],
+    "diameters, masses stay": [SPIN, "fix 2 some adapt 3 atom diameter v_grow mass no"],
+    "diameters of discs": [SPIN + " disc", "fix 2 all adapt 3 atom diameter v_grow", FLAT2],
+    "viscous/sphere": [SPIN, "fix 2 all viscous/sphere 0.4 scale 1 1.7"],
+    "viscous/sphere, variable": [SPIN, "fix 2 some viscous/sphere 0.4 scale v_a"],
     "rigid": ["fix 1 rest nve/sphere update dipole", "fix 2 some rigid single", "compute k all erotate/sphere"],
     "rigid/small": ["set group some mol 1", "comm_modify cutoff 4", REST, "fix 2 some rigid/small molecule"],
     "rigid/nve in two dimensions": ["group pair id 3:6", "group single subtract all pair", "fix 1 single nve/sphere",
                                     "fix 2 pair rigid/nve single", FLAT2],
     "rigid/npt": [REST, "fix 2 some rigid/npt single temp 1 2 0.1 iso 0 1 0.5"],
 }
-CASES |= {name: (FLAT if "two dim" in name else SOLID, [FIELD, *more]) for name, more in OTHERS.items()}
+CASES |= {name: (FLAT if "two dim" in name or "discs" in name else SOLID, [FIELD, *more]) for name, more in OTHERS.items()}
 
 
 def lines(name):

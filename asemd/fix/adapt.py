@@ -2,8 +2,8 @@
 
 ``pair STYLE COEFFICIENT I J v_name``, ``bond|angle|dihedral|improper STYLE COEFFICIENT TYPE v_name``, ``atom charge|diameter v_name``; on
 the first step of a run and on multiples of N (N = 0: on the first step only). ``scale yes``: the variable multiplies what the coefficient
-was. Pairs of types without own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. ``mass yes``:
-masses follow diameters, densities stay.
+was. Pairs of types without own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. Masses follow
+diameters and densities stay, unless ``mass no``.
 
 Source: LAMMPS manual, fix adapt.
 """
@@ -50,7 +50,7 @@ class Adapt(Fix):
     levels = "outermost"
 
     def __init__(self, group: str = "all", every: int = 1, pair=(), bond=(), angle=(), dihedral=(), improper=(), charge=None, diameter=None,
-                 scale: bool = False, reset: bool = False, mass: bool = False):
+                 scale: bool = False, reset: bool = False, mass: bool = True):
         super().__init__(group)
         if every < 0:
             raise InputError(f"fix adapt: N must not be negative, got {every}")
@@ -158,11 +158,16 @@ class Adapt(Fix):
     def finish(self, loop) -> None:
         if self.reset:
             for holder, key, value in reversed(self._kept):
-                holder[key] = value
+                _put(holder, key, value)
             self._kept = []
+            self._follow_masses(loop)
+            extra, seen = loop.system.extra, [loop.system.f.copy()]     # forces and torques stay those of the last step
+            seen += [extra["torque"].copy()] if "torque" in extra else []
             self._follow(loop)
             loop.engine.forces(True)
             loop.sync_out()
+            for array, values in zip((loop.system.f, extra.get("torque")), seen):
+                array[:] = values
 
     def _set(self, holder, key, value) -> None:
         """Set one coefficient or array, and remember what it was."""
@@ -171,7 +176,7 @@ class Adapt(Fix):
             before = [np.copy(holder[key]) if isinstance(holder[key], np.ndarray) else holder[key]]
             self._kept.append((holder, key, before[0]))
         new = value * before[0] if self.scale else value
-        holder[key] = float(new) if not isinstance(before[0], np.ndarray) else new
+        _put(holder, key, float(new) if not isinstance(before[0], np.ndarray) else new)
 
     def _change(self, loop) -> None:
         system, counts = loop.system, loop.system.counts
@@ -208,8 +213,21 @@ class Adapt(Fix):
             self._set(system.extra, "radius", _masked(before, mask, half, self.scale))
             if self.mass and system.rmass is not None:
                 ratio = np.divide(system.extra["radius"], before, out=np.ones_like(before), where=before > 0.0)
-                self._kept.append((own, "rmass", system.rmass.copy()))
-                system.rmass = system.rmass * ratio**3
+                if not any(h is own and k == "rmass" for h, k, _ in self._kept):
+                    self._kept.append((own, "rmass", system.rmass.copy()))
+                system.rmass *= ratio**3
+                self._follow_masses(loop)
+
+    def _follow_masses(self, loop) -> None:
+        """Those that move atoms take the masses as they are now."""
+        if self.diameter is None or not self.mass:
+            return
+        e, s = loop.engine, loop.state
+        e.mass_row[:] = loop.system.atom_masses()
+        e.inverse_row[:] = e.units.ftm2v / e.mass_row
+        e.varies[1] = True
+        used = s.row >= 0
+        s.mass[used], s.inverse_mass[used] = e.mass_row[s.row[used]], e.inverse_row[s.row[used]]
 
     def _follow(self, loop) -> None:
         """Running terms take the coefficients and charges as they are now."""
@@ -217,6 +235,14 @@ class Adapt(Fix):
         if self.charge is not None or not _in_place(e, loop.interactions, loop.system):
             retie(loop)
             loop._make_module()
+
+
+def _put(holder, key, value) -> None:
+    """Arrays keep their place: others work on them."""
+    if isinstance(value, np.ndarray):
+        holder[key][:] = value
+    else:
+        holder[key] = value
 
 
 def _masked(old: np.ndarray, mask: np.ndarray, value, factor: bool) -> np.ndarray:

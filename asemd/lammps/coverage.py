@@ -36,7 +36,6 @@ PARTIAL = {
     ("command", "set"): "keywords of the atom styles listed under atom",
     ("command", "special_bonds"): "one/five yes needs atom_style amoeba",
     ("atom", "dipole"): "only fixes nve/sphere, nvt/sphere, npt/sphere and nph/sphere turn dipoles, of atom_style hybrid sphere dipole",
-    ("atom", "sphere"): "radii stay as they are",
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("dump", "local"): "no local values of fixes",
