@@ -172,7 +172,8 @@ def limits(state, cutoff: float, own: bool) -> np.ndarray | None:
     return None if (limit[1:, 1:] >= cutoff * cutoff).all() else limit
 
 
-def interactions(state, pairs: Half, only=None, beyond: bool = False) -> tuple[np.ndarray, np.ndarray]:
+def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None,
+                 charges=None) -> tuple[np.ndarray, np.ndarray]:
     """Energies (m,) of pairs and the force (m, 3) on the first atom of each, summed over the pair styles.
 
     Parameters
@@ -181,6 +182,8 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False) -> tuple[n
         Which terms (`asemd.pairing.PairTerm`) count.
     beyond : bool
         Formulas go on beyond the cutoff, where no list has a pair; not those of hybrid styles.
+    terms, charges : optional
+        Terms and charges (n,) other than those of the engine and the system.
 
     Raises
     ------
@@ -194,10 +197,10 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False) -> tuple[n
     rows = np.concatenate([pairs.i, pairs.j])
     types = np.ascontiguousarray(state.system.type[rows], np.int32)
     if state.system.q is not None:
-        q[:] = state.system.q[rows]
+        q[:] = (state.system.q if charges is None else charges)[rows]
     first, second = np.arange(m, dtype=np.int32), np.arange(m, 2 * m, dtype=np.int32)
     rules = engine.exclusions
-    for term in engine.pair_terms:
+    for term in engine.pair_terms if terms is None else terms:
         if only is not None and not only(term):
             continue
         if np.ndim(term.use.factor) > 0:

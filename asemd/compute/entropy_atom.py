@@ -31,7 +31,8 @@ class EntropyAtom(Compute):
     average : float, optional
         Mean over the atom and its neighbours closer than this.
     local : bool
-        The density is that of the atoms in the neighbour list of the atom (cutoff of the pair style plus skin), not that of the box.
+        The density is that of the atoms in the neighbour list of the atom (cutoff of the pair style plus skin), which stays until
+        the list of the pair style is built again, not that of the box.
 
     Raises
     ------
@@ -47,6 +48,10 @@ class EntropyAtom(Compute):
             if value <= 0.0:
                 raise InputError(f"compute entropy/atom: {name} must be positive, got {value:g}")
         self.sigma, self.cutoff, self.average, self.near = sigma, cutoff, average, local
+        self._counted: tuple = (None, 0, None)
+
+    def __getstate__(self):
+        return {**self.__dict__, "_counted": (None, 0, None)}
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -81,8 +86,7 @@ class EntropyAtom(Compute):
         start, other, _, square = half(state, reach, own=reach > listed).around(system.n)
         density = np.full(system.n, system.n / system.box.volume)
         if self.near:
-            pairs = half(state, listed)
-            density = np.bincount(np.append(pairs.i, pairs.j), minlength=system.n) / (4.0 / 3.0 * np.pi * listed**3)
+            density = self._listed(state, listed) / (4.0 / 3.0 * np.pi * listed**3)
         atoms = np.arange(system.n) if self.average else np.flatnonzero(mask)
         out = np.zeros(system.n)
         order.entropies(atoms, start, square, self.sigma, self.cutoff, density, out)
@@ -92,3 +96,16 @@ class EntropyAtom(Compute):
             total = np.bincount(np.repeat(np.arange(system.n), np.diff(start))[close], out[other[close]], minlength=system.n)
             out = (out + total) / (1.0 + count)
         return np.where(mask, out, 0.0)
+
+    def setup(self, state) -> None:
+        """A run begins with a new list."""
+        self._counted = (None, 0, None)
+
+    def _listed(self, state, reach: float) -> np.ndarray:
+        """(n,) how many atoms each has in its neighbour list: LAMMPS makes that on the first evaluation after the list of the pair style
+        was built, and keeps it until that is built again."""
+        engine = state.engine
+        if self._counted[:2] != (engine, engine.builds):
+            pairs = half(state, reach)
+            self._counted = engine, engine.builds, np.bincount(np.append(pairs.i, pairs.j), minlength=state.system.n)
+        return self._counted[2]

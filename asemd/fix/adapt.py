@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.compute._perturbed import uses_of
 from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
@@ -116,23 +117,10 @@ class Adapt(Fix):
     def _check(self, interactions) -> None:
         """Refuse styles and coefficients that are not there."""
         for style, name, *_ in self.pair:
-            self._uses(interactions, "pair", style, name)
+            uses_of(interactions, "pair", style, name, "fix adapt")
         for category, given in self.bonded.items():
             for style, name, *_ in given:
-                self._uses(interactions, category, style, name)
-
-    @staticmethod
-    def _uses(interactions, category: str, style: str, name: str) -> list:
-        uses = [u for u in interactions.uses[category] if style in (u.label, u.style.name)]
-        if not uses:
-            known = [u.label for u in interactions.uses[category]]
-            raise InputError(f"fix adapt: there is no {category} style {style!r} in use{nearest(style, known)}")
-        coefficients = [p.name for p in uses[0].style.coeff
-                        if p.unit not in ("word", "path", "integer") and not p.name.startswith("cut")]
-        if name not in coefficients:
-            raise InputError(f"fix adapt: {category} style {style} has no coefficient {name!r} that can change, it has "
-                             f"{' '.join(coefficients) or 'none'}")
-        return uses
+                uses_of(interactions, category, style, name, "fix adapt")
 
     # ---- hooks
     def next_step(self, step: int) -> int:
@@ -184,7 +172,7 @@ class Adapt(Fix):
         for style, name, i, j, value in self.pair:
             number, (ilo, ihi), (jlo, jhi) = float(value(loop)), *(_range(t, counts["ntypes"], system.labels["atom"]) for t in (i, j))
             pairs = [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]
-            for use in self._uses(loop.interactions, "pair", style, name):
+            for use in uses_of(loop.interactions, "pair", style, name, "fix adapt"):
                 for pair in pairs:
                     if name in use.coeff.get(pair, ()):
                         self._set(use.coeff[pair], name, number)
@@ -192,7 +180,7 @@ class Adapt(Fix):
         for category, given in self.bonded.items():
             for style, name, t, value in given:
                 number, (lo, hi) = float(value(loop)), _range(t, counts[f"n{category}types"], system.labels[category])
-                for use in self._uses(loop.interactions, category, style, name):
+                for use in uses_of(loop.interactions, category, style, name, "fix adapt"):
                     for k in range(lo, hi + 1):
                         if name in use.coeff.get(k, ()):
                             self._set(use.coeff[k], name, number)

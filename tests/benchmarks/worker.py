@@ -1,7 +1,8 @@
 """One engine in one process (under mpiexec: one rank of it). It executes the lists of commands it finds in its folder.
 
 ``python worker.py asemd|lammps FOLDER switches...``. ``0.go``, ``1.go`` ... hold one JSON list of commands each; ``0.done`` ... tell the
-seconds they took and the largest memory so far. A file ``stop`` ends it. Waiting costs no processor time, so engines can alternate.
+seconds they took, those of the processor, and the largest memory so far. A file ``stop`` ends it. Waiting costs no processor time, so
+engines can alternate.
 """
 from __future__ import annotations
 
@@ -35,12 +36,13 @@ def main() -> None:
             time.sleep(0.002)
             continue
         commands = json.loads(ticket.read_text())
-        began = time.perf_counter()
+        began, cpu = time.perf_counter(), time.process_time()
         for command in commands:
             lmp.command(command)
         seconds = time.perf_counter() - began
         if first:
-            answer = {"seconds": seconds, "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
+            answer = {"seconds": seconds, "cpu": time.process_time() - cpu,
+                      "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
             (folder / "answer").write_text(json.dumps(answer))
             os.replace(folder / "answer", folder / f"{number}.done")
         number += 1
