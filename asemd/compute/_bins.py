@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -15,15 +16,20 @@ class Frame:
 
     def __init__(self, system, reduced: bool):
         box = system.box
-        self.periodic, self.reduced, self.cell = box.periodic, reduced, box.cell
+        self.system, self.periodic, self.reduced, self.cell = system, box.periodic, reduced, box.cell
         lo, hi = np.asarray(box.lo), np.asarray(box.hi)
-        self.real = self if not reduced else Frame(system, False)
         self.lo, self.hi = (np.zeros(3), np.ones(3)) if reduced else (lo, hi)
-        self.length, self.x = self.hi - self.lo, box.fractional(system.x) if reduced else system.x.copy()
+        x = system.x.copy(order="F")        # columns in one piece
+        self.length, self.x = self.hi - self.lo, box.fractional(x) if reduced else x
         for k in np.flatnonzero(self.periodic):
             c = self.x[:, k]
             c += np.where(c < self.lo[k], self.length[k], 0.0)
             c -= np.where(c >= self.hi[k], self.length[k], 0.0)
+
+    @cached_property
+    def real(self) -> Frame:
+        """The box as it is."""
+        return Frame(self.system, False) if self.reduced else self
 
     def point(self, c: np.ndarray, axes: list[int]) -> np.ndarray:
         """Coordinates along some axes as distance units."""

@@ -14,15 +14,19 @@ class Original:
     """
 
     def __init__(self, system, values: np.ndarray):
-        order = np.argsort(system.id, kind="stable")
-        self.id, self.values = system.id[order], np.array(values)[order]
+        self.given, order = system.id.copy(), np.argsort(system.id, kind="stable")
+        self.rows = np.array(values)        # by atom row, as long as the atoms are the same
+        self.rows.flags.writeable = False
+        self.id, self.values = system.id[order], self.rows[order]
 
     def _places(self, system) -> tuple[np.ndarray, np.ndarray]:
         at = np.minimum(np.searchsorted(self.id, system.id), max(len(self.id) - 1, 0))
         return at, self.id[at] == system.id if len(self.id) else np.zeros(system.n, bool)
 
     def of(self, system, fresh: np.ndarray) -> np.ndarray:
-        """By atom row now; atoms that were not there then have what `fresh` says."""
+        """By atom row now, not to be written to; atoms that were not there then have what `fresh` says."""
+        if np.array_equal(system.id, self.given):
+            return self.rows
         at, known = self._places(system)
         out = np.array(fresh)
         out[known] = self.values[at[known]]

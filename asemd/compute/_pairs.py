@@ -101,12 +101,12 @@ def of_slots(values: np.ndarray, row: np.ndarray) -> np.ndarray:
 
 def _serves(engine, system, reach: float) -> bool:
     """Whether the engine has a list of the present positions that reaches so far."""
-    if engine.mode == "none" or engine.state is None or engine.system is not system or engine.settings.outdated:
+    if engine.mode == "none" or engine.state is None or engine.system is not system:
         return False
     s, n = engine.state, system.n
     if len(engine.slot_of) != n or not np.array_equal(s.x[:, engine.slot_of], system.x.T):
         return False
-    if reach <= engine.cutoff:
+    if reach <= engine.cutoff and not engine.settings.outdated:
         return True
     moved = engine.k.moved(s.x, engine.held, engine.ns)
     return not engine.box_moves and reach <= engine.reach - 2.0 * moved**0.5

@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import half, within_force_cutoff
+from asemd.compute._pairs import half, in_slots, limits, within_force_cutoff
 from asemd.errors import InputError, nearest
+from asemd.kernels import surroundings as loops
 from asemd.words import bounds, choice, exactly, number, take
 
 
@@ -89,9 +90,16 @@ class CoordAtom(Compute):
             same = np.einsum("ma,ma->m", q[pairs.i], q[pairs.j].conj()).real > self.threshold
             out = np.bincount(pairs.i[same], minlength=n) + np.bincount(pairs.j[same], minlength=n)
             return np.where(mask, out, 0).astype(float)
-        pairs, other = half(state, within_force_cutoff(state, self.cutoff, "compute coord/atom")), state.mask(self.neighbors)
-        centre, around = np.concatenate([pairs.i, pairs.j]), np.concatenate([pairs.j, pairs.i])
-        t, columns = state.system.type[around], []
-        for low, high in self._ranges(state.system):
-            columns.append(np.bincount(centre[(low <= t) & (t <= high) & other[around]], minlength=n) * mask)
-        return np.asarray(columns[0] if len(columns) == 1 else np.column_stack(columns), float)
+        cutoff, other = within_force_cutoff(state, self.cutoff, "compute coord/atom"), state.mask(self.neighbors)
+        ranges, out = np.array(self._ranges(state.system)), np.zeros((n, max(1, len(self.types))))
+        if limits(state, cutoff, False) is None:
+            f = in_slots(state, cutoff)
+            loops.coordination(f.x, f.row, f.i, f.j, f.code, f.shifts, cutoff * cutoff, state.system.type, other, ranges, out)
+        else:
+            pairs = half(state, cutoff)
+            centre, around = np.concatenate([pairs.i, pairs.j]), np.concatenate([pairs.j, pairs.i])
+            t = state.system.type[around]
+            for k, (low, high) in enumerate(ranges):
+                out[:, k] = np.bincount(centre[(low <= t) & (t <= high) & other[around]], minlength=n)
+        out[~mask] = 0.0
+        return out[:, 0] if out.shape[1] == 1 else out

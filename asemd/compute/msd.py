@@ -77,10 +77,10 @@ class MSD(Compute):
                 self.samples, self.seen = self.samples + 1, state.step
                 before = (before * self.samples + now) / (self.samples + 1)
                 self.original.update(system, before)
-        return (now - before)[mask]
+        return now - before if mask.all() else (now - before)[mask]
 
     def vector(self, state) -> np.ndarray:
         """(4,) mean squares along x, y, z and in all."""
         d = self.displacements(state)
-        squares = (d * d).sum(axis=0) / max(len(d), 1)
+        squares = np.einsum("ia,ia->a", d, d) / max(len(d), 1)
         return np.array([*squares, squares.sum()])

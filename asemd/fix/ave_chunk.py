@@ -125,7 +125,8 @@ class AveChunk(Sampled):
         rows = np.flatnonzero((at > 0) & snapshot.mask(self.group))
         at = at[rows] - 1
         atoms = np.bincount(at, minlength=chunks).astype(float)
-        now = np.stack([np.bincount(at, self._atoms(v, snapshot, rows), chunks) for v in self.values], axis=1)
+        now = np.stack([atoms if v.word == "density/number" else np.bincount(at, self._atoms(v, snapshot, rows), chunks)
+                        for v in self.values], axis=1)
         now = np.stack([self._per_sample(v, column, atoms, snapshot) for v, column in zip(self.values, now.T)], axis=1)
         if self.count == 0:
             self._atoms_sum, self._sum = np.zeros(chunks), np.zeros((chunks, len(self.values)))
@@ -137,14 +138,12 @@ class AveChunk(Sampled):
         system, u = snapshot.system, snapshot.units
         if value.kind != "special":
             return value.per_atom(snapshot)[rows]
-        if value.id == "density/number":
-            return np.ones(len(rows))
         mass = system.atom_masses()[rows]
         if value.id == "temp":
             v = system.v
             if self.flow is not None:
                 v = np.where(snapshot.mask(self.flow.group)[:, None], self.flow.remove_bias(snapshot), v)
-            return u.mvv2e / u.boltz * mass * (v[rows] ** 2).sum(axis=1)
+            return u.mvv2e / u.boltz * mass * np.einsum("ia,ia->i", v, v)[rows]
         return mass
 
     def _degrees(self, atoms: np.ndarray, samples: int, snapshot) -> np.ndarray:

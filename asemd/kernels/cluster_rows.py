@@ -83,12 +83,28 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
 
     Returns the number, or -1 if the arrays are too small.
     """
-    n = 0
+    longest = 0
     for ci in range(c0, c1):
-        s = ci * CLUSTER
+        longest = max(longest, first[ci + 1] - first[ci])
+    px, py, pz, square = np.empty(longest), np.empty(longest), np.empty(longest), np.empty(longest)
+    slot, code = np.empty(longest, np.int32), np.empty(longest, np.int32)
+    n = np.int64(0)
+    for ci in range(c0, c1):
+        s, m = ci * CLUSTER, np.int64(0)
+        for k in range(first[ci], first[ci + 1]):
+            e = entries[k]
+            j = e & SLOT_BITS
+            c = e >> 26
+            if row[j] < 0 or (c == 13 and j // CLUSTER == ci):
+                continue
+            px[m], py[m], pz[m] = x[0, j] + shifts[c, 0], x[1, j] + shifts[c, 1], x[2, j] + shifts[c, 2]
+            slot[m], code[m] = j, c * 4
+            m += 1
         for a in range(CLUSTER):
             if row[s + a] < 0:
                 break
+            if n + m + CLUSTER > out_i.shape[0]:
+                return -1
             for b in range(a + 1, CLUSTER):
                 if row[s + b] < 0:
                     break
@@ -96,28 +112,20 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
                 dy = x[1, s + a] - x[1, s + b]
                 dz = x[2, s + a] - x[2, s + b]
                 if dx * dx + dy * dy + dz * dz < reach2:
-                    if n >= out_i.shape[0]:
-                        return -1
                     out_i[n] = s + a
                     out_j[n] = s + b
                     out_code[n] = 13 * 4
                     n += 1
-            for k in range(first[ci], first[ci + 1]):
-                e = entries[k]
-                j = e & SLOT_BITS
-                c = e >> 26
-                if row[j] < 0 or (c == 13 and j // CLUSTER == ci):
-                    continue
-                dx = x[0, s + a] - (x[0, j] + shifts[c, 0])
-                dy = x[1, s + a] - (x[1, j] + shifts[c, 1])
-                dz = x[2, s + a] - (x[2, j] + shifts[c, 2])
-                if dx * dx + dy * dy + dz * dz < reach2:
-                    if n >= out_i.shape[0]:
-                        return -1
-                    out_i[n] = s + a
-                    out_j[n] = j
-                    out_code[n] = c * 4
-                    n += 1
+            x0, y0, z0 = x[0, s + a], x[1, s + a], x[2, s + a]
+            for k in range(m):
+                dx = x0 - px[k]
+                dy = y0 - py[k]
+                dz = z0 - pz[k]
+                square[k] = dx * dx + dy * dy + dz * dz
+            for k in range(m):      # without branches to mispredict
+                at = np.uint64(n)
+                out_i[at], out_j[at], out_code[at] = s + a, slot[np.uint64(k)], code[np.uint64(k)]
+                n += square[np.uint64(k)] < reach2
     return n
 
 

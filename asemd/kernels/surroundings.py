@@ -44,6 +44,24 @@ def surroundings(n, i, j, d, r2):
 
 
 @njit(cache=True, nogil=True)
+def coordination(x, row, i, j, code, shifts, limit, types, counts_as, ranges, out):
+    """Count the neighbours of atoms closer than the root of `limit`, by atom row: `out (n, k)` those of types ``ranges (k, 2)``, both ends
+    included, that are `counts_as (n,)`."""
+    for m in range(len(i)):
+        a, b, s = i[m], j[m], code[m] >> 2
+        u = x[0, a] - (x[0, b] + shifts[s, 0])
+        v = x[1, a] - (x[1, b] + shifts[s, 1])
+        w = x[2, a] - (x[2, b] + shifts[s, 2])
+        if u * u + v * v + w * w < limit:
+            p, q = row[a], row[b]
+            for k in range(len(ranges)):
+                if counts_as[q] and ranges[k, 0] <= types[q] <= ranges[k, 1]:
+                    out[p, k] += 1.0
+                if counts_as[p] and ranges[k, 0] <= types[p] <= ranges[k, 1]:
+                    out[q, k] += 1.0
+
+
+@njit(cache=True, nogil=True)
 def radial(x, kind, i, j, code, shifts, inverse_width, counts):
     """Count pairs by distance: `counts (kinds, kinds, bins + 1)`, beyond the last bin in one more; ``kind (cap,)`` of each slot."""
     bins = counts.shape[2] - 1
