@@ -14,7 +14,7 @@ from asemd.compute import Compute
 from asemd.errors import InputError, nearest
 from asemd.words import number, take, whole, yes_no
 
-KEYWORDS = ("only_group", "surface", "edge_histo", "edge_threshold", "face_threshold", "neighbors", "peratom")
+KEYWORDS = ("only_group", "occupation", "surface", "edge_histo", "edge_threshold", "face_threshold", "neighbors", "peratom")
 CLOSED = 1e-9       # edges shorter than this, relative to the largest cell width, are points
 
 
@@ -35,6 +35,8 @@ class VoronoiAtom(Compute):
         Shorter edges and smaller faces are not counted (in the histogram all faces are).
     neighbors : bool
         Local rows: ID of an atom, of its neighbour, area of their face; 0 stands for a wall.
+    occupation : bool
+        Cells stay as on the first evaluation; per atom: how many atoms are now in the cell that was its own, and in the one where it is.
 
     Raises
     ------
@@ -45,12 +47,16 @@ class VoronoiAtom(Compute):
     style = "voronoi/atom"
 
     def __init__(self, group: str = "all", only_group: bool = False, surface: str | None = None, edge_histo: int | None = None,
-                 edge_threshold: float = 0.0, face_threshold: float = 0.0, neighbors: bool = False, peratom: bool = True):
+                 edge_threshold: float = 0.0, face_threshold: float = 0.0, neighbors: bool = False, peratom: bool = True,
+                 occupation: bool = False):
         super().__init__(group)
+        if occupation and (surface or edge_histo is not None):
+            raise InputError("compute voronoi/atom: occupation cannot be used with surface or edge_histo")
         if edge_threshold < 0.0 or face_threshold < 0.0 or (edge_histo is not None and edge_histo < 1):
             raise InputError("compute voronoi/atom: thresholds must not be negative, and edge_histo must be positive")
         self.only_group, self.surface, self.edge_histo, self.neighbors, self.peratom = only_group, surface, edge_histo, neighbors, peratom
         self.edge_threshold, self.face_threshold = edge_threshold, face_threshold
+        self.occupation, self.sites = occupation, None       # box, ids and wrapped positions of the first evaluation
         self._last: tuple = (None, None)
 
     def __getstate__(self):
@@ -61,11 +67,11 @@ class VoronoiAtom(Compute):
         rest, given, what = list(words), {}, "compute voronoi/atom"
         while rest:
             word = rest.pop(0)
-            if word in ("occupation", "radius"):
+            if word == "radius":
                 raise InputError(f"{what} {word} is not supported: run this script with LAMMPS")
             if word not in KEYWORDS:
                 raise InputError(f"{what}: unknown keyword {word!r}{nearest(word, KEYWORDS)}")
-            if word == "only_group":
+            if word in ("only_group", "occupation"):
                 given[word] = True
                 continue
             value = take(rest, 1, f"{what} {word}")[0]
@@ -82,7 +88,7 @@ class VoronoiAtom(Compute):
         return cls(group, **given)
 
     def to_lammps(self) -> list[str]:
-        out = ["only_group"] * self.only_group + (["surface", self.surface] if self.surface else [])
+        out = ["only_group"] * self.only_group + ["occupation"] * self.occupation + (["surface", self.surface] if self.surface else [])
         out += ["edge_histo", str(self.edge_histo)] if self.edge_histo else []
         out += ["edge_threshold", repr(self.edge_threshold), "face_threshold", repr(self.face_threshold)]
         return [*out, "neighbors", "yes" if self.neighbors else "no", "peratom", "yes" if self.peratom else "no"]
@@ -107,6 +113,8 @@ class VoronoiAtom(Compute):
         """(n, 2 or 3) volume, number of faces, area towards the other group; zero outside the group."""
         if not self.peratom:
             return super().per_atom(state)
+        if self.occupation:
+            return self._occupied(state)
         out = np.zeros((state.system.n, self.per_atom_columns()))
         towards = state.mask(self.surface) if self.surface else None
         for row, volume, faces in self.cells(state):
@@ -114,6 +122,24 @@ class VoronoiAtom(Compute):
             out[row, :2] = volume, len(counted)
             if self.surface:
                 out[row, 2] = sum(area for other, area, _ in faces if area >= self.face_threshold and (other < 0 or towards[other]))
+        return out
+
+    def _occupied(self, state) -> np.ndarray:
+        """(n, 2) how many atoms are in the cell that was an atom's own on the first evaluation, and in the one where it is now."""
+        system = state.system
+        if self.sites is None:
+            rows = np.flatnonzero(state.mask(self.group)) if self.only_group else np.arange(system.n)
+            self.sites = system.box, system.id[rows].copy(), system.x[rows].copy()
+        box, ids, places = self.sites
+        out = np.zeros((system.n, 2))
+        if not len(ids):
+            return out
+        at = _nearest(box, system.dimension, places, system.x)
+        count = np.bincount(at[at >= 0], minlength=len(ids))
+        order = np.argsort(ids)
+        mine = order[np.minimum(np.searchsorted(ids[order], system.id), len(ids) - 1)]
+        out[:, 0] = np.where(ids[mine] == system.id, count[mine], 0)
+        out[:, 1] = np.where(at >= 0, count[at], 0)
         return out
 
     def vector(self, state) -> np.ndarray:
@@ -167,6 +193,26 @@ def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float) -> lis
                 faces[one].append((int(rows[owner[other]]) if owner[other] >= 0 else -1, area, int((length > tiny).sum())))
     least = (CLOSED * float(widths.max())) ** 2
     return [(int(rows[k]), volume[k], [f for f in faces[k] if f[1] > least]) for k in faces]
+
+
+def _nearest(box, dimension: int, places: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """(n,) which of some places is nearest to each position, whose cell it is in; -1 beyond a wall."""
+    from scipy.spatial import cKDTree
+    periodic, at = np.array(box.periodic, bool), []
+    if dimension == 2:
+        periodic[2] = False
+    for part in (places, x):
+        part = part.copy()
+        box.wrap(part, np.zeros((len(part), 3), np.int32))
+        at.append((part - box.origin) @ box.inverse)
+    widths = 1.0 / np.linalg.norm(box.inverse, axis=0)
+    reach = 2.5 * (box.volume / len(places)) ** (1 / 3)
+    while True:
+        points, owner = _surrounded(at[0], periodic, reach / widths)
+        distance, k = cKDTree(points @ box.cell).query(at[1] @ box.cell)
+        if distance.max(initial=0.0) <= reach:
+            return owner[k]
+        reach = 2.0 * float(distance.max())
 
 
 def _surrounded(s: np.ndarray, periodic: np.ndarray, margin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

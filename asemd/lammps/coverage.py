@@ -24,7 +24,7 @@ PARTIAL = {
     ("compute", "group/group"): "no kspace",
     ("fix", "msst"): "no dftb",
     ("compute", "ti"): "pair styles and the whole tail correction",
-    ("compute", "voronoi/atom"): "no occupation, no radius",
+    ("compute", "voronoi/atom"): "no radius",
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
