@@ -164,7 +164,7 @@ def _closest(engine, term: PairListTerm, scale) -> list[Item]:
         engine.buffers[0][:, [i, j]] = 0.0
         arguments[10:12] = m, m + 1
         kernel(*arguments)
-        return float(engine.acc[0, term.index, :2].sum()), engine.buffers[0][:, [i, j]].T.copy()
+        return float(engine.acc[0, term.index, :2].sum()), engine.buffers[0, :3][:, [i, j]].T.copy()
     best, item = -1.0, None
     for m in near.tolist():
         energy, force = single(m)

@@ -6,7 +6,7 @@ import pytest
 from both import asemd, lines_of
 from wheel import ask
 
-from asemd.errors import InputError
+from asemd.errors import InputError, SimulationError
 
 SCENE = """
 units lj
@@ -117,3 +117,10 @@ def test_atoms_without_radius():
     with pytest.raises(InputError, match="atom_style sphere"):
         asemd(CASES["spheres"].replace("hybrid sphere dipole", "dipole").replace("set group all mass 1.3\nset group all diameter 0.7\n", "")
               .replace("set atom 1*9 omega 0.3 -0.7 1.2\n", "mass * 1\n"))
+
+
+def test_what_tears_spheres_apart_is_named():
+    """Two of them almost coincide: the message names them, with torques beside the forces."""
+    crowded = CASES["dipoles"] + "create_atoms 1 single 0.01 0 0\nset atom 109 diameter 0.7\nset atom 109 mass 1.3\nrun 20"
+    with pytest.raises(SimulationError, match="strongest pull.*between atoms 1 109"):
+        asemd(crowded)
