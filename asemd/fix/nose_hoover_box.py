@@ -73,6 +73,7 @@ class NoseHooverBox(NoseHoover):
         self.shape, self.couple, self.deviatoric = shape, couple, bool(components)
         self.pressure_chain, self.pressure_loops, self.mtk, self.nreset = pressure_chain, pressure_loops, mtk, nreset
         self.flip, self.dilate, self.fixed_point, self.ptemp = flip, dilate, fixed_point, ptemp
+        self.centred = fixed_point is None
         self.scale = {"xy": scalexy, "yz": scaleyz, "xz": scalexz}
         self.temp = Temp("all")
         self.press = Pressure("all", self.temp, ())
@@ -324,7 +325,8 @@ class NoseHooverBox(NoseHoover):
     def state(self) -> dict:
         """The chains, the box's rates, and where strain is counted from."""
         own = {"omega": self.b[6].copy(), "omega_dot": self.b[7].copy(), "etap": self.e[0].copy(), "etap_dot": self.e[1].copy(),
-               "volume": float(self.q[18]), "reference": float(self.reference_temperature), "box": self.m[0].copy()}
+               "volume": float(self.q[18]), "reference": float(self.reference_temperature), "box": self.m[0].copy(),
+               "fixed_point": self.fixed_point}
         return (super().state() if self.thermal else {}) | own
 
     def restore(self, state: dict) -> None:
@@ -333,3 +335,5 @@ class NoseHooverBox(NoseHoover):
         if len(state["etap"]) == self.pressure_chain + 1:
             self.e[0], self.e[1] = state["etap"], state["etap_dot"]
         self.q[18], self.reference_temperature, self.m[0] = state["volume"], state["reference"], state["box"]
+        if self.centred and state.get("fixed_point"):       # the centre of the first box, to the last bit
+            self.fixed_point = tuple(state["fixed_point"])

@@ -70,18 +70,23 @@ def digest(system) -> str:
     return h.hexdigest()
 
 
+def arrays_of(a: np.ndarray | tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
+    """The arrays of a fix, which may have one or several."""
+    return (a,) if isinstance(a, np.ndarray) else a
+
+
 def take(loop: Loop, alone: np.ndarray) -> dict[str, Any] | None:
     """The state of a run; `alone` is what `renew` returned at this step. None for respa, which begins afresh."""
     if hasattr(loop, "levels"):
         return None
-    numbers = [{"p": p.copy(), "a": a.copy() if isinstance(a, np.ndarray) else np.zeros((1, 1))} for p, a in loop.fix_data]
+    numbers = [{"p": p.copy(), "a": [array.copy() for array in arrays_of(a)]} for p, a in loop.fix_data]
     return {"forces": loop.system.f.copy(), "alone": alone, "dt": loop.dt, "atoms": digest(loop.system), "fixes": describe(loop.fixes),
             "numbers": numbers}
 
 
 def resume(loop: Loop, kept: dict[str, Any]) -> bool:
-    """After ``loop.setup``: go on from the state `kept` if atoms, interactions and fixes are those of that run."""
-    if loop.dt != kept["dt"] or describe(loop.fixes) != kept["fixes"] or digest(loop.system) != kept["atoms"]:
+    """After ``loop.setup``: go on from the state `kept` if interactions and fixes are those of that run."""
+    if loop.dt != kept["dt"] or describe(loop.fixes) != kept["fixes"]:
         return False
     alone = renew(loop)
     largest = float(np.abs(kept["alone"]).max(initial=0.0))
@@ -90,7 +95,9 @@ def resume(loop: Loop, kept: dict[str, Any]) -> bool:
     for (p, a), old in zip(loop.fix_data, kept["numbers"], strict=True):
         if p.shape == old["p"].shape:
             p[:] = old["p"]
-        if isinstance(a, np.ndarray) and a.shape == old["a"].shape:
-            a[:] = old["a"]
+        kept_arrays = [old["a"]] if isinstance(old["a"], np.ndarray) else old["a"]
+        if [array.shape for array in arrays_of(a)] == [array.shape for array in kept_arrays]:
+            for array, before in zip(arrays_of(a), kept_arrays, strict=True):
+                array[:] = before
     set_forces(loop, kept["forces"])
     return True

@@ -235,7 +235,13 @@ def restore_fix(session, fix) -> None:
 
 
 def first_run(session) -> dict[str, Any] | None:
-    """Called when a run begins: what nobody took up is forgotten; returns the state between two steps, if the file has one."""
+    """Called when a run begins: what nobody took up is forgotten.
+
+    Returns
+    -------
+    dict or None
+        The state between two steps, if the file has one and the atoms are still those of the file.
+    """
     kept, session.scene.restored = session.scene.restored, None
     if kept is None:
         return None
@@ -248,4 +254,5 @@ def first_run(session) -> dict[str, Any] | None:
                 session.print(f"  fix style: {f['style']}, fix ID: {f['id']}")
         elif fixes:
             session.print(f"All restart file {kind} fix info was re-assigned")
-    return kept["state"]
+    state = kept["state"]
+    return state if state and checkpoint.digest(session.scene.system) == state["atoms"] else None
