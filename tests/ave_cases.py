@@ -136,7 +136,11 @@ thermo_style custom step temp pe v_cc f_k[1] f_k[2] f_k[3] v_cc2
 fix m all ave/moments 2 5 10 c_t v_v mean stddev variance skew kurtosis
 fix m2 all ave/moments 2 4 20 c_t kurtosis mean history 3
 fix m3 all ave/moments 2 4 10 c_t skew start 15
-thermo_style custom step temp f_m[1] f_m[2] f_m[3] f_m[4] f_m[5] f_m[6] f_m[7] f_m2[1] f_m2[2] f_m2[1][2] f_m2[2][3] f_m3[1]
+fix m4 all ave/moments 1 12 5 c_t mean variance history 3
+fix m5 all ave/moments 2 20 10 c_thermo_pe mean start 15
+fix m6 all ave/moments 1 2 2 c_t mean
+thermo_style custom step f_m4[1] f_m4[2][2] f_m4[1][3] f_m5[1] f_m5[1][1] f_m6[1] temp &
+  f_m[1] f_m[2] f_m[3] f_m[4] f_m[5] f_m[6] f_m[7] f_m2[1] f_m2[2] f_m2[1][2] f_m2[2][3] f_m3[1]
 """,
     "adapt": """
 variable e equal ramp(1.0,1.3)
@@ -173,7 +177,9 @@ REFUSED = {
     "adapt -1 pair lj/cut epsilon 1 1 v_v": "negative", "controller 5 1 1 1 1 c_t 1": "needs 8 values",
     "controller 0 1 1 1 1 c_t 1 c": "undefined variable c", "controller 5 1 1 1 1 c_t 1 v": "internal",
     "ave/moments 2 3 10 c_t": "needs 5 values", "ave/moments 2 3 10 c_t men": "unknown keyword 'men'",
-    "ave/moments 2 3 10 c_t mean history 0": "at least 1", "ave/spatial 2 3 10 vx 1 2 3": "dim origin delta",
+    "ave/moments 2 3 10 c_t mean history 0": "at least 1", "ave/moments 3 3 10 c_t mean": "must be a multiple of Nevery 3",
+    "ave/moments 2 3 10 c_t[1][2] mean": "element of an array", "ave/moments 2 3 10 c_t c_thermo_pe mean": "cannot be in one array",
+    "ave/spatial 2 3 10 vx 1 2 3": "dim origin delta",
     "ave/spatial 2 3 10 x lower 0.5 temp": "unknown keyword 'temp'", "ave/spatial 2 3 10 x lower 0.5 vx overwrite": "ave running",
     "store/state 0": "needs 2 values", "store/state 0 xx": "unknown value 'xx'", "store/state -1 x": "negative",
     "store/force 1": "no arguments",

@@ -4,13 +4,16 @@ r"""Mean, standard deviation, variance, skewness and excess kurtosis of values o
           G_1 = \frac{\sqrt{N (N - 1)}}{N - 2} \frac{m_3}{m_2^{3/2}}, \qquad
           G_2 = \frac{N - 1}{(N - 2)(N - 3)} \left( (N + 1) \left( \frac{m_4}{m_2^2} - 3 \right) + 6 \right)
 
-of N = Nrepeat samples, Nevery steps apart, with central moments :math:`m_k`; known on multiples of Nfreq. What is not defined
-for so few samples, or samples that are all equal, is nan.
+of the last N = Nrepeat samples, Nevery steps apart, with central moments :math:`m_k`; known on multiples of Nfreq. With Nevery * Nrepeat
+above Nfreq results have samples in common, and the first ones are of as many as there are. As in LAMMPS results are 0 as long as there are
+fewer than three samples. What is not defined for so few samples, or samples that are all equal, is nan.
 
-Source: LAMMPS, fix ave/moments (2025). Output: a vector, for each value all moments in the order they are named; with ``history M`` an
-array whose columns are the last M results, the newest first.
+Source: LAMMPS, fix ave/moments (2025). Output: a vector, for each value all moments in the order they are named; an array whose columns
+are the last M results (``history M``, by default 1), the newest first.
 """
 from __future__ import annotations
+
+from collections import deque
 
 import numpy as np
 
@@ -52,7 +55,7 @@ class AveMoments(Sampled):
     moments : sequence of str
         Some of mean, stddev, variance, skew, kurtosis.
     sample_every, repeat, freq : int
-        Steps between samples, samples of a result, steps between results.
+        Steps between samples, samples of a result, steps between results (a multiple of the first).
     history : int
         How many results are kept.
     start : int
@@ -61,10 +64,11 @@ class AveMoments(Sampled):
     Raises
     ------
     InputError
-        Intervals that do not fit together, no value, no moment.
+        Intervals that do not fit together, no value, no moment, values that grow with the system together with such that do not.
     """
 
     style = "ave/moments"
+    overlaps = True
 
     def __init__(self, group: str = "all", values=(), moments=("mean", "stddev"), sample_every: int = 1, repeat: int = 1, freq: int = 1,
                  history: int = 1, start: int = 0):
@@ -74,11 +78,13 @@ class AveMoments(Sampled):
             raise InputError(f"{what} needs at least one value")
         if not moments or set(moments) - set(MOMENTS):
             raise InputError(f"{what} needs moments out of {' '.join(MOMENTS)}, got {' '.join(moments) or 'none'}")
+        if len({v.extensive() for v in self.values}) > 1:
+            raise InputError(f"{what}: values that grow with the system and values that do not cannot be in one array")
         if history < 1:
             raise InputError(f"{what}: history must be at least 1, got {history}")
         self.moments, self.history = tuple(moments), history
         self.results: list[np.ndarray] = []     # newest first
-        self._samples: list[list[float]] = []
+        self._samples: deque[list[float]] = deque(maxlen=repeat)
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -87,6 +93,9 @@ class AveMoments(Sampled):
         names, rest = sampled.split(words[3:])
         k = next((k for k, w in enumerate(rest) if w not in MOMENTS), len(rest))
         options = sampled.keywords(rest[k:], KEYWORDS, what)
+        for word in names:
+            if word.count("[") > 1:
+                raise InputError(f"{what}: {word} is an element of an array, it takes scalars and elements of vectors")
         values = [read(w, session, what).check("scalar", what) for w in expand(names, session)]
         numbers = {name: whole(value[0], f"{what} {name}") for name, value in options.items()}
         fix = cls(group, values, rest[:k], every, repeat, freq, **numbers)
@@ -99,29 +108,44 @@ class AveMoments(Sampled):
         own = [*(str(n) for n in (self.sample_every, self.repeat, self.freq)), *(v.word for v in self.values), *self.moments]
         return getattr(self, "words", own)
 
+    def first_sample(self, step: int) -> int:
+        """The first step with a sample; one that has begun before `step` goes on behind it."""
+        due = super().first_sample(step)
+        whole_window = (self.repeat - 1) * self.sample_every
+        earlier = due - self.freq
+        if earlier < step < earlier + whole_window and earlier + whole_window >= self.start:
+            return (step // self.sample_every + 1) * self.sample_every
+        return due
+
+    def end_of_step(self, loop) -> None:
+        """Take a sample; on multiples of Nfreq, the result."""
+        step = loop.step
+        self.sample(self.look(loop))
+        if step % self.freq == 0 and step >= self.start:
+            self.conclude(step)
+        window = (step // self.freq + 1) * self.freq - (self.repeat - 1) * self.sample_every
+        self.next_sample = max(step + self.sample_every, window)
+
     def sample(self, snapshot) -> None:
-        if self.count == 0:
-            self._samples = []
         self._samples.append([v.scalar(snapshot) for v in self.values])
 
     def conclude(self, step: int) -> None:
-        self.results.insert(0, np.array([moment(name, column) for column in np.array(self._samples).T for name in self.moments]))
-        del self.results[self.history:]
+        if len(self._samples) > 2:
+            self.results.insert(0, np.array([moment(name, column) for column in np.array(self._samples).T for name in self.moments]))
+            del self.results[self.history:]
 
     # ---- outputs
     @property
     def size(self) -> int:
         return len(self.values) * len(self.moments)
 
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        return ("vector", "array") if self.history > 1 else ("vector",)
+    outputs = ("vector", "array")
 
     def array_columns(self) -> int:
         return self.history
 
     def extensive_at(self, index) -> bool:
-        return False
+        return self.values[0].extensive()
 
     def vector(self, i: int) -> float:
         """Moment `i` of the newest result."""
@@ -129,8 +153,6 @@ class AveMoments(Sampled):
 
     def array(self, i: int, j: int) -> float:
         """Moment `i`, `j` - 1 results ago."""
-        if self.history == 1:
-            raise InputError(f"fix {self.id} (style {self.style}) has no global array without history")
         return self._at(i, j)
 
     def _at(self, i: int, j: int) -> float:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix
@@ -31,6 +31,7 @@ class Sampled(Fix):
         Nfreq is not a multiple of Nevery, or Nrepeat samples do not fit.
     """
 
+    overlaps: ClassVar[bool] = False        # whether results may have samples in common
     session: Any = None
     file: OutputFile | None = None
 
@@ -40,9 +41,9 @@ class Sampled(Fix):
         for name, n in (("Nevery", sample_every), ("Nrepeat", repeat), ("Nfreq", freq)):
             if n < 1:
                 raise InputError(f"{what}: {name} must be at least 1, got {n}")
-        if freq % sample_every or sample_every * repeat > freq:
-            raise InputError(f"{what}: Nfreq {freq} must be a multiple of Nevery {sample_every}, and at least Nevery * Nrepeat = "
-                             f"{sample_every * repeat}")
+        if freq % sample_every or (sample_every * repeat > freq and not self.overlaps):
+            least = "" if self.overlaps else f", and at least Nevery * Nrepeat = {sample_every * repeat}"
+            raise InputError(f"{what}: Nfreq {freq} must be a multiple of Nevery {sample_every}{least}")
         self.values = [given(v, k) for k, v in enumerate(values, 1)]
         self.sample_every, self.repeat, self.freq, self.start = sample_every, repeat, freq, start
         self.next_sample: int | None = None
