@@ -139,8 +139,9 @@ fix m3 all ave/moments 2 4 10 c_t skew start 15
 fix m4 all ave/moments 1 12 5 c_t mean variance history 3
 fix m5 all ave/moments 2 20 10 c_thermo_pe mean start 15
 fix m6 all ave/moments 1 2 2 c_t mean
-thermo_style custom step f_m4[1] f_m4[2][2] f_m4[1][3] f_m5[1] f_m5[1][1] f_m6[1] temp &
-  f_m[1] f_m[2] f_m[3] f_m[4] f_m[5] f_m[6] f_m[7] f_m2[1] f_m2[2] f_m2[1][2] f_m2[2][3] f_m3[1]
+thermo_style custom step f_m4[1] f_m4[2][2] f_m4[1][3] f_m5[1] f_m5[1][1] f_m6[1]
+run 33
+thermo_style custom step temp f_m[1] f_m[2] f_m[3] f_m[4] f_m[5] f_m[6] f_m[7] f_m2[1] f_m2[2] f_m2[1][2] f_m2[2][3] f_m3[1]
 """,
     "adapt": """
 variable e equal ramp(1.0,1.3)
