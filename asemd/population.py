@@ -1,7 +1,7 @@
 """Atoms that leave or join a running simulation: system, groups, exclusions, lists and the arrays of fixes follow."""
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +29,54 @@ def remove(loop: Loop, rows, lost: bool = True) -> None:
     SimulationError
         An atom is bonded to one that stays, unless ``settings.lost_bond`` says otherwise.
     """
-    e, system, s = loop.engine, loop.system, loop.settings
+    loop.engine.store()
+    gone = _take_out(loop, rows, lost)
+    _go_on(loop, lambda old, new: old[~gone] if len(old) == len(gone) else new)
+
+
+def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:
+    """Let atoms join in the midst of a run, behind those that are there, with the ids they have.
+
+    Parameters
+    ----------
+    atoms : System
+        In the same units; topology items among themselves.
+    groups : iterable of str, or mapping of str to (n,) bool
+        The groups they belong to besides ``all``; the mapping says which of them.
+
+    Raises
+    ------
+    InputError
+        An id that exists.
+    """
+    loop.engine.store()
+    before = loop.system.n
+    _put_in(loop, atoms, groups)
+    _go_on(loop, _joined(np.zeros(before, bool)))
+
+
+def exchange(loop: Loop, rows, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:
+    """Atoms go, as by `remove` on purpose, and others join, as by `insert`, with one new list."""
+    loop.engine.store()
+    gone = _take_out(loop, rows, False)
+    _put_in(loop, atoms, groups)
+    _go_on(loop, _joined(gone))
+
+
+def _joined(gone: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """Old numbers of the atoms that stayed before the new ones."""
+    left = int(np.count_nonzero(~gone))
+
+    def joined(old, new):
+        if len(old) == len(gone) and new.shape[1:] == old.shape[1:]:
+            new[:left] = old[~gone]
+        return new
+    return joined
+
+
+def _take_out(loop: Loop, rows, lost: bool) -> np.ndarray:
+    """The system, groups and exclusions without some atoms; (n,) bool which of those that were there are gone."""
+    system, s = loop.system, loop.settings
     gone = np.zeros(system.n, bool)
     gone[rows] = True
     for kind, atoms, _ in system.topology.every():
@@ -42,7 +89,6 @@ def remove(loop: Loop, rows, lost: bool = True) -> None:
                                   "to go on without them")
         if len(torn) and s.lost_bond == "warn":
             loop.warn(f"step {loop.step}: {len(torn)} {kind}{'s' * (len(torn) > 1)} lost with an atom")
-    e.store()
     system.keep(~gone)
     for name in loop.groups:
         loop.gone[name] = loop.gone.get(name, 0) + int(np.count_nonzero(loop.groups[name] & gone))
@@ -50,44 +96,29 @@ def remove(loop: Loop, rows, lost: bool = True) -> None:
     s.exclude = [(kind, *(m if kind == "type" else m[~gone] for m in masks)) for kind, *masks in s.exclude]
     if not lost:
         loop.natoms -= int(np.count_nonzero(gone))
-    _go_on(loop, lambda old, new: old[~gone] if len(old) == len(gone) else new)
+    return gone
 
 
-def insert(loop: Loop, atoms: System, groups: Iterable[str] = ()) -> None:
-    """Let atoms join in the midst of a run, behind those that are there, with the ids they have.
-
-    Parameters
-    ----------
-    atoms : System
-        In the same units; topology items among themselves.
-    groups : iterable of str
-        The groups they belong to besides ``all``.
-
-    Raises
-    ------
-    InputError
-        An id that exists.
-    """
-    e, system, s, n = loop.engine, loop.system, loop.settings, atoms.n
-    e.store()
-    before, joins = system.n, {"all", *groups}
+def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray]) -> None:
+    """The system, groups and exclusions with more atoms."""
+    system, s, n = loop.system, loop.settings, atoms.n
+    chosen = groups if isinstance(groups, Mapping) else dict.fromkeys(groups, np.ones(n, bool))
+    joins = {name: np.ones(n, bool) if name == "all" else np.asarray(chosen.get(name, np.zeros(n, bool)), bool) for name in loop.groups}
     system.__dict__.update(system.append(atoms, keep_ids=True).__dict__)
 
     def longer(mask):       # exclusions hold masks, no names of groups
-        same = [name in joins for name in loop.groups if np.array_equal(loop.groups[name], mask)]
-        other = [name not in joins for name in loop.groups if np.array_equal(loop.groups[name], ~mask)]
-        return np.append(mask, np.full(n, any(same or other)))
+        join = np.zeros(n, bool)
+        for name, which in joins.items():
+            if np.array_equal(loop.groups[name], mask):
+                join |= which
+            if np.array_equal(loop.groups[name], ~mask):
+                join |= ~which
+        return np.append(mask, join)
     s.exclude = [(kind, *(m if kind == "type" else longer(m) for m in masks)) for kind, *masks in s.exclude]
-    for name in loop.groups:
-        loop.groups[name] = np.append(loop.groups[name], np.full(n, name in joins))
-        loop.gone[name] = loop.gone.get(name, 0) - n * (name in joins)
+    for name, which in joins.items():
+        loop.groups[name] = np.append(loop.groups[name], which)
+        loop.gone[name] = loop.gone.get(name, 0) - int(np.count_nonzero(which))
     loop.natoms += n
-
-    def joined(old, new):
-        if len(old) == before and new.shape[1:] == old.shape[1:]:
-            new[:before] = old
-        return new
-    _go_on(loop, joined)
 
 
 def retie(loop: Loop) -> None:

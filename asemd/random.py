@@ -58,7 +58,7 @@ class ParkMiller:
         if seed <= 0:
             raise InputError(f"random seed must be a positive whole number, got {seed}")
         self.state = int(seed)
-        self._saved: float | None = None
+        self.saved: float | None = None
 
     def _states(self, n: int) -> np.ndarray:
         """The next n states, without advancing."""
@@ -70,18 +70,21 @@ class ParkMiller:
 
     def uniform(self, n: int | None = None) -> float | np.ndarray:
         """The next number in (0, 1), or the next n of them."""
-        states = self._states(1 if n is None else n)
+        if n is None:
+            self.state = self.state * MULTIPLIER % MODULUS
+            return self.state * (1.0 / MODULUS)
+        states = self._states(n)
         if len(states):
             self.state = int(states[-1])
-        return float(_unit(states)[0]) if n is None else _unit(states)
+        return _unit(states)
 
     def gaussian(self, n: int | None = None) -> float | np.ndarray:
         """The next number of mean 0 and variance 1, or the next n of them; polar method, one of each pair kept for the next call."""
         want = 1 if n is None else n
-        out = [] if self._saved is None or want == 0 else [np.array([self._saved])]
+        out = [] if self.saved is None or want == 0 else [np.array([self.saved])]
         missing = want - len(out)
         if out:
-            self._saved = None
+            self.saved = None
         while missing > 0:
             need = (missing + 1) // 2
             tries = int(need * 1.3) + 16
@@ -92,7 +95,7 @@ class ParkMiller:
             pairs = np.column_stack([second[used], first[used]]).ravel()
             self.state = int(states[2 * tried - 1])
             if len(pairs) > missing:
-                self._saved, pairs = float(pairs[-1]), pairs[:-1]
+                self.saved, pairs = float(pairs[-1]), pairs[:-1]
             out.append(pairs)
             missing -= len(pairs)
         values = np.concatenate(out) if out else np.empty(0)

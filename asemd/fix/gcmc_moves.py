@@ -1,0 +1,332 @@
+"""The moves of `asemd.fix.gcmc`: which atoms, where to, and whether it is accepted."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd.errors import SimulationError
+from asemd.fix.reservoir import Reservoir
+
+ACCEPTABLE = 1e50       # energies beyond are refused without a random number
+TRANSLATION, INSERTION, DELETION, ROTATION = 0, 2, 4, 6     # where their attempts are counted; successes follow
+
+
+def boltzmann(exponent: float) -> float:
+    return math.exp(exponent) if exponent < 700.0 else math.inf
+
+
+class Moves(Reservoir):
+    """One series of attempts on copies of the atoms of a loop; `carry_over` makes them real."""
+
+    def __init__(self, fix, loop):
+        super().__init__(fix, loop)
+        self._gas = None
+        self.size = 1 if fix.molecule is None else fix.molecule.natoms
+        # with energies of the whole system LAMMPS draws the number that decides from the stream of all processes
+        self.decides = fix.random if fix.full_energy else fix.other
+        self.count = fix.counts
+        self.born: dict[int, np.ndarray] = {}
+        self.angle = math.radians(fix.max_angle)
+        self.one_type = fix.as_lammps and not fix.full_energy and fix.molecule is None     # that of inserted atoms, whatever an atom is
+
+    # ---- choosing
+    @property
+    def gas(self) -> np.ndarray:
+        """Indices of the gas atoms, of those in the region if there is one."""
+        if self._gas is None:
+            a, fix, region = self.atoms, self.fix, self.fix.region
+            self._gas = np.flatnonzero(a.gas[:a.n])
+            if region is not None and len(self._gas):
+                x = a.centres(fix.gas_mass)[a.molecule[self._gas]] if fix.by_molecule else a.x[self._gas]
+                inside = region.inside(x)
+                if fix.by_molecule and fix.as_lammps:       # which does not look at the newest molecule
+                    inside &= a.molecule[self._gas] != a.molecule[:a.n].max()
+                self._gas = self._gas[inside]
+        return self._gas
+
+    def pick(self) -> int:
+        return int(self.gas[int(len(self.gas) * self.fix.random.uniform())])
+
+    def changed(self) -> None:
+        """Places or numbers of atoms are others."""
+        self._gas = None
+
+    def attempt(self) -> None:
+        """One attempt."""
+        fix, random = self.fix, self.fix.random
+        cycles = fix.exchanges + fix.moves
+        if int(random.uniform() * cycles) + 1 <= fix.moves:
+            which = random.uniform()
+            if which < fix.chances[0]:
+                self.translate_atom()
+            elif which < fix.chances[0] + fix.chances[1]:
+                self.translate_molecule()
+            else:
+                self.rotate_molecule()
+        elif random.uniform() < 0.5:
+            (self.delete_atom if fix.molecule is None else self.delete_molecule)()
+        else:
+            (self.insert_atom if fix.molecule is None else self.insert_molecule)()
+
+    def moved(self, before: float, after: float, random) -> bool:
+        """Whether a move is accepted."""
+        after += self.tail.of_move()
+        good = after < ACCEPTABLE and random.uniform() < boltzmann(self.fix.beta * (before - after))
+        self.tail.decided(good)
+        return good
+
+    # ---- atoms
+    def atom_energy(self, i: int, x) -> float:
+        return self.with_others(x, self.types if self.one_type else self.atoms.type[i:i + 1], self.atoms.q[i:i + 1], i)
+
+    def translate_atom(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[TRANSLATION] += 1
+        if not len(self.gas):
+            return
+        i = self.pick()
+        before = self.atom_energy(i, a.x[i:i + 1])
+        at = self.displaced(a.x[i], fix.other)
+        if self.moved(before, self.atom_energy(i, at[None]), self.decides):
+            a.place([i], at, a.image[i])
+            self.changed()
+            self.count[TRANSLATION + 1] += 1
+
+    def displaced(self, x, random) -> np.ndarray:
+        """A place at most `displace` from x, in the region if there is one."""
+        fix = self.fix
+        while True:
+            at = x + fix.displace * np.array(self.ball(random))
+            if fix.region is None or fix.region.inside(at[None])[0]:
+                self.check_inside(at[None])
+                return at
+
+    def check_inside(self, x) -> None:
+        """Moves may not end beyond a face that is not periodic."""
+        out = self.box.beyond(x)
+        if out.any():
+            raise SimulationError(f"{self.fix.what}: step {self.loop.step}: a move put an atom beyond a face of the box that is not periodic")
+
+    def delete_atom(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[DELETION] += 1
+        n = len(self.gas)
+        if not n or n <= fix.least:
+            return
+        i = self.pick()
+        energy = self.atom_energy(i, a.x[i:i + 1])
+        if fix.full_energy:
+            energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1])
+        good = self.decides.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume)
+        self.tail.decided(good)
+        if good:
+            a.delete(i)
+            self.changed()
+            self.count[DELETION + 1] += 1
+
+    def insert_atom(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[INSERTION] += 1
+        n = len(self.gas)
+        if n >= fix.most:
+            return
+        at = self.point()
+        if at is None:
+            return
+        at = self.wrapped(at[None])
+        if fix.full_energy:
+            v = [fix.other.gaussian() * fix.speed for _ in range(3)]
+        energy = self.with_others(at, self.types, self.charges)
+        if fix.full_energy:
+            energy += self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
+        good = energy < ACCEPTABLE and self.decides.uniform() < fix.activity * self.volume * boltzmann(-fix.beta * energy) / (n + 1)
+        self.tail.decided(good)
+        if good:
+            if not fix.full_energy:
+                v = [fix.other.gaussian() * fix.speed for _ in range(3)]
+            a.add(x=at[0], type=fix.kind, q=self.kept_charge, v=v, id=int(a.id[:a.n].max(initial=0)) + 1, mass=self.system.mass[fix.kind])
+            self.changed()
+            self.count[INSERTION + 1] += 1
+
+    def alone_atom(self, kind: int, charge: float) -> float:
+        """Energy of an atom with its own images."""
+        if not self.energies.narrow:
+            return 0.0
+        atom = self._new_atoms(np.array([kind]), np.array([charge]), self.box.origin[None].copy())
+        return self.alone(atom, ("atom", kind, charge))
+
+    # ---- molecules
+    def molecule_energy(self, rows, x, molecule: int) -> float:
+        return self.with_others(x, self.atoms.type[rows], self.atoms.q[rows], molecule=molecule)
+
+    def unwrapped(self, rows) -> np.ndarray:
+        return self.atoms.x[rows] + self.atoms.image[rows] @ self.box.cell
+
+    def centre(self, rows) -> np.ndarray:
+        """Centre of mass of a molecule as if it had the mass of the template."""
+        return (self.atoms.mass[rows, None] * self.unwrapped(rows)).sum(axis=0) / self.fix.gas_mass
+
+    def translate_molecule(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[TRANSLATION] += 1
+        if not len(self.gas):
+            return
+        molecule = int(a.molecule[self.pick()])
+        rows = a.members(molecule)
+        before = self.molecule_energy(rows, a.x[rows], molecule)
+        shift = fix.displace * np.array(self.ball(fix.random))
+        if fix.region is not None:
+            centre = self.centre(rows)
+            while not fix.region.inside((centre + shift)[None])[0]:
+                shift = fix.displace * np.array(self.ball(fix.random))
+        at = a.x[rows] + shift
+        self.check_inside(at)
+        if self.moved(before, self.molecule_energy(rows, at, molecule), fix.random):
+            a.place(rows, at, a.image[rows])
+            self.changed()
+            self.count[TRANSLATION + 1] += 1
+
+    def rotate_molecule(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[ROTATION] += 1
+        if not len(self.gas):
+            return
+        molecule = int(a.molecule[self.pick()])
+        rows = a.members(molecule)
+        before = self.molecule_energy(rows, a.x[rows], molecule)
+        centre = self.centre(rows)
+        matrix = self.orientation(self.angle)
+        at = (self.unwrapped(rows) - centre) @ matrix.T + centre
+        after = self.molecule_energy(rows, self.wrapped(at), molecule)
+        if fix.full_energy and self.energies.narrow:
+            before, after = before + self.alone(self._part(rows)), after + self.alone(self._part(rows, at))
+        if self.moved(before, after, fix.random):
+            a.place(rows, at, np.zeros(at.shape, np.int32))
+            self.changed()
+            self.count[ROTATION + 1] += 1
+
+    def delete_molecule(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[DELETION] += 1
+        n = len(self.gas)
+        if not n or n <= fix.least or n == self.size:
+            return
+        molecule = int(a.molecule[self.pick()])
+        rows = a.members(molecule)
+        energy = self.molecule_energy(rows, a.x[rows], molecule)
+        if fix.full_energy:
+            energy += self.alone(self._part(rows), None if self.energies.narrow else molecule) - fix.intra_energy
+            energy += self.tail.of_deletion(a.type[rows])
+        good = fix.random.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume * self.size)
+        self.tail.decided(good)
+        if good:
+            i = 0
+            while i < a.n:
+                if a.molecule[i] == molecule:
+                    a.delete(i)
+                else:
+                    i += 1
+            self.own.pop(molecule, None)
+            self.changed()
+            self.count[DELETION + 1] += 1
+
+    def insert_molecule(self) -> None:
+        fix, a = self.fix, self.atoms
+        self.count[INSERTION] += 1
+        n = len(self.gas)
+        if n >= fix.most:
+            return
+        centre = self.point()
+        if centre is None:
+            return
+        at, matrix = self.molecule_at(centre)
+        if fix.full_energy:
+            v = [fix.random.gaussian() * fix.speed for _ in range(3)]
+        inside = self.wrapped(at)
+        self.check_inside(inside)
+        energy = self.with_others(inside, self.types, self.charges)
+        if fix.full_energy:
+            energy += self.template_energy(at) - fix.intra_energy + self.tail.of_insertion(self.types)
+        good = energy < ACCEPTABLE and fix.random.uniform() < (
+            fix.activity * self.volume * self.size * boltzmann(-fix.beta * energy) / (n + self.size))
+        self.tail.decided(good)
+        if good:
+            if not fix.full_energy:
+                v = [fix.random.gaussian() * fix.speed for _ in range(3)]
+            number, last = int(a.molecule[:a.n].max(initial=0)) + 1, int(a.id[:a.n].max(initial=0))
+            if fix.full_energy and not self.energies.narrow:
+                self.own[number] = self.own["template"]
+            rows = [a.add(x=x, type=t, q=q, v=v, id=last + 1 + k, molecule=number, mass=m)
+                    for k, (x, t, q, m) in enumerate(zip(at, self.types, self.charges, self._masses()))]
+            a.place(rows, at, np.zeros(at.shape, np.int32))
+            self.born[number] = matrix
+            self.changed()
+            self.count[INSERTION + 1] += 1
+
+    def _masses(self) -> np.ndarray:
+        m = self.fix.molecule
+        return m.rmass if m.rmass is not None else self.system.mass[self.types]
+
+    def template_energy(self, at) -> float:
+        """Energy of the template by itself, at positions (m, 3)."""
+        if self.energies.narrow or "template" not in self.own:
+            one = self.fix.molecule.copies(at[None], self.system, 0, [np.eye(3)])
+            one.mass = self.system.mass
+            return self.alone(one, "template")
+        return self.own["template"]
+
+    def _part(self, rows, at=None):
+        """A molecule that is in the system or was inserted, by itself."""
+        a, fix = self.atoms, self.fix
+        if (a.row[rows] < 0).any():
+            one = fix.molecule.copies(self.unwrapped(rows)[None], self.system, 0, [np.eye(3)])
+            one.mass = self.system.mass
+        else:
+            chosen = np.zeros(self.system.n, bool)
+            chosen[a.row[rows]] = True
+            one = self.system.select(chosen)
+            order = np.argsort(a.row[rows])
+            one.x[:], one.image[:] = a.x[rows][order], a.image[rows][order]
+            at = None if at is None else at[order]
+        if at is not None:
+            one.x[:], one.image[:] = at, 0
+            self.box.wrap(one.x, one.image)
+        return one
+
+    # ---- the end
+    def _new_atoms(self, types, charges, x):
+        """Single atoms as a system."""
+        from asemd.atom_style import fresh
+        from asemd.system import System
+        system, own = self.system, fresh(self.system.atom_style, len(types))
+        if own["q"] is not None:
+            own["q"] = np.array(charges, float)
+        return System(box=self.box, x=x, type=types, id=np.arange(1, len(types) + 1), units=system.units, dimension=3, mass=system.mass,
+                      counts=dict(system.counts), **own)
+
+    def make(self, new):
+        """New atoms as a system, molecule by molecule."""
+        a, fix = self.atoms, self.fix
+        if fix.molecule is None:
+            atoms = self._new_atoms(a.type[new], a.q[new], a.x[new].copy())
+        else:
+            new = new[np.argsort(a.id[new])]
+            numbers = np.unique(a.molecule[new])
+            places = np.array([self.unwrapped(new[a.molecule[new] == k]) for k in numbers])
+            atoms = fix.molecule.copies(places, self.system, 0, [self.born[int(k)] for k in numbers])
+            new = np.concatenate([new[a.molecule[new] == k] for k in numbers])
+            atoms.molecule[:] = a.molecule[new]
+        atoms.id[:], atoms.x[:], atoms.image[:], atoms.v[:] = a.id[new], a.x[new], a.image[new], a.v[new]
+        return atoms
+
+    def members(self, atoms) -> dict[str, np.ndarray]:
+        everybody = np.ones(atoms.n, bool)
+        out = dict.fromkeys((self.fix.group, *self.fix.groups), everybody)
+        for kind, name in self.fix.type_groups:
+            out[name] = out.get(name, False) | (atoms.type == kind)
+        return out
+
+    def carry_over(self) -> None:
+        """The loop's system becomes what the moves made of it."""
+        self.atoms.carry_over(self.make, self.members)

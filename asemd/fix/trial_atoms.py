@@ -1,0 +1,209 @@
+"""Atoms that Monte Carlo moves act on: copies in the order in which LAMMPS stores its atoms, so that the same random numbers choose them.
+
+Moves change the copies only; `TrialAtoms.carry_over` brings what is left of them into the system at once.
+"""
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from asemd import population
+from asemd.errors import InputError
+from asemd.kernels import trial
+
+NOBODY = -1
+
+
+class Storage:
+    """The order in which LAMMPS stores the atoms: as they were made, sorted by place now and then, holes filled by the last one.
+
+    Parameters
+    ----------
+    every : int
+        Steps between two times of sorting; 0: never.
+    width : float
+        Of the bins that it sorts into; 0: half the reach of the neighbour list.
+    """
+
+    def __init__(self, every: int = 1000, width: float = 0.0):
+        self.every, self.width = every, width
+        self.ids = np.zeros(0, np.int64)
+        self.due = 0
+
+    def rows(self, system) -> np.ndarray:
+        """Rows of the atoms in this order; atoms that came otherwise are the last ones."""
+        ids = self.ids[np.isin(self.ids, system.id)]
+        self.ids = np.concatenate([ids, system.id[~np.isin(system.id, ids)]])
+        return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
+
+    def sort(self, loop) -> None:
+        """Sort by bins of the box, those of x first; within a bin the order stays."""
+        width = self.width or 0.5 * loop.engine.reach
+        system, box = loop.system, loop.system.box
+        if not self.every or not width:
+            return
+        self.due = (loop.step // self.every + 1) * self.every
+        rows = self.rows(system)
+        x, image = system.x[rows].copy(), system.image[rows].copy()
+        box.wrap(x, image)
+        corners = np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell
+        low, high = box.origin + corners.min(axis=0), box.origin + corners.max(axis=0)
+        count = np.maximum(((high - low) * (1.0 / width)).astype(int), 1)
+        bins = np.clip(((x - low) * (count / (high - low))).astype(int), 0, count - 1)
+        number = (bins[:, 2] * count[1] + bins[:, 1]) * count[0] + bins[:, 0]
+        self.ids = self.ids[np.argsort(number, kind="stable")]
+
+
+def storage_of(loop, own: Storage) -> Storage:
+    """The one that all fixes of a run share."""
+    return next((f.storage for f in loop.fixes if isinstance(getattr(f, "storage", None), Storage)), own)
+
+
+class Energies:
+    """Pair energies of atoms at trial positions.
+
+    Parameters
+    ----------
+    loop : asemd.loop.Loop
+    exact : bool
+        All images count, and types that ``neigh_modify exclude`` separates do not interact. Otherwise, as LAMMPS has it without
+        full_energy, only images that its list would know: those within cutoff and skin of the box.
+    overlap : float
+        Positions nearer to an atom are refused.
+    """
+
+    def __init__(self, loop, exact: bool, overlap: float, what: str):
+        system, engine, units = loop.system, loop.engine, loop.units
+        n = system.counts["ntypes"]
+        terms = engine.pair_terms if exact else [t for t in loop.interactions.pair_terms(n, units) if t.style.parts]
+        if any(np.ndim(t.use.factor) > 0 for t in terms):
+            raise InputError(f"{what}: a pair style whose factor differs from atom to atom has no energy")
+        if any(t.molecules == "same" for t in terms):
+            raise InputError(f"{what}: pair_style hybrid/molecular is not supported")
+        self.kernel = trial.kernel(tuple(t.style for t in terms))
+        one = np.ones(5)
+        self.tables = tuple((t.tables.rows, t.tables.constants, t.tables.arrays, np.array([w[0] for w in t.weights(one, one)]))
+                            for t in terms)
+        self.cut2 = np.zeros((n + 1, n + 1))
+        for t in terms:
+            for k in t.cut_rows:
+                np.maximum(self.cut2, t.tables.rows[k], out=self.cut2)
+        self.cutoff, self.overlap, self.exact = max(float(self.cut2.max()) ** 0.5, overlap), overlap, exact
+        self.ghosts, self.qqr2e = engine.cutoff + loop.settings.skin, engine.qqr2e
+        self.numbers = np.array([-1.0, -1.0, overlap**2, self.qqr2e, float(not exact)])
+
+    def see(self, box, dimension: int) -> None:
+        """Take the present box."""
+        self.cell, self.inverse = np.ascontiguousarray(box.cell, float), np.ascontiguousarray(box.inverse)
+        heights = 1.0 / np.linalg.norm(self.inverse, axis=0)
+        periodic = np.array(box.periodic)
+        self.reach = np.where(periodic, self.cutoff / heights, -1.0)
+        corner = box.origin @ self.inverse
+        self.low, self.high = corner - self.ghosts / heights, corner + 1.0 + self.ghosts / heights
+        self.narrow = bool((heights[periodic] < self.cutoff).any())     # an atom sees its own images
+
+    def of(self, atoms: TrialAtoms, at: np.ndarray, types: np.ndarray, charges: np.ndarray, skip: int = -1, molecule: int = NOBODY) -> float:
+        """Energy of atoms at `at` (m, 3) with the others: without atom `skip`, without `molecule`."""
+        self.numbers[0], self.numbers[1] = skip, molecule
+        return self.kernel(at, types, charges, atoms.n, self.numbers, atoms.x, atoms.type, atoms.q, atoms.molecule, self.inverse,
+                           self.cell, self.reach, self.low, self.high, self.cut2, self.tables)
+
+
+class TrialAtoms:
+    """Copies of all atoms of a loop.
+
+    Parameters
+    ----------
+    loop : asemd.loop.Loop
+    storage : Storage
+    group : str
+        Whose atoms are the gas.
+
+    Attributes
+    ----------
+    n : int
+        How many there are now; the arrays are longer.
+    row : (cap,) int
+        Row in the system, -1 for those that are not in it yet.
+    """
+
+    def __init__(self, loop, storage: Storage, group: str):
+        self.loop, self.storage = loop, storage
+        system, rows = loop.system, storage.rows(loop.system)
+        n = self.n = len(rows)
+        cap = n + 64
+        s = SimpleNamespace(x=system.x, image=system.image, type=np.asarray(system.type, np.int64), v=system.v, id=system.id,
+                            q=np.zeros(n) if system.q is None else system.q, molecule=np.asarray(system.molecule, np.int64),
+                            mass=system.atom_masses(), gas=loop.groups[group], row=np.arange(n))
+        for name, values in vars(s).items():
+            array = np.zeros((cap, *values.shape[1:]), values.dtype)
+            array[:n] = values[rows]
+            setattr(self, name, array)
+        self.moved = np.zeros(cap, bool)
+        self.names = (*vars(s), "moved")
+        system.box.wrap(self.x[:n], self.image[:n])
+        self.removed = False
+
+    def delete(self, i: int) -> None:
+        """The last one takes the place of atom i."""
+        self.n -= 1
+        self.removed |= bool(self.row[i] >= 0)
+        for name in self.names:
+            array = getattr(self, name)
+            array[i] = array[self.n]
+
+    def add(self, **values) -> int:
+        """One more atom, the last one."""
+        if self.n == len(self.x):
+            for name in self.names:
+                array = getattr(self, name)
+                setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
+        i, self.n = self.n, self.n + 1
+        for name, value in ({"image": 0, "row": -1, "gas": True, "moved": False, "molecule": 0, "q": 0.0} | values).items():
+            getattr(self, name)[i] = value
+        return i
+
+    def members(self, molecule: int) -> np.ndarray:
+        """The atoms of a molecule."""
+        return np.flatnonzero(self.molecule[:self.n] == molecule)
+
+    def place(self, i, x, image) -> None:
+        """Atoms are elsewhere, maybe outside the box: they are wrapped."""
+        x, image = np.atleast_2d(x).copy(), np.atleast_2d(image).copy()
+        self.loop.system.box.wrap(x, image)
+        self.x[i], self.image[i], self.moved[i] = x, image, True
+
+    def centres(self, mass: float) -> np.ndarray:
+        """(largest molecule number + 1, 3) sums of mass times unwrapped position, divided by `mass`, in the box."""
+        n, box = self.n, self.loop.system.box
+        out = np.zeros((int(self.molecule[:n].max(initial=0)) + 1, 3))
+        np.add.at(out, self.molecule[:n], self.mass[:n, None] * (self.x[:n] + self.image[:n] @ box.cell))
+        out /= mass
+        box.wrap(out, np.zeros(out.shape, np.int32))
+        return out
+
+    def carry_over(self, make, members) -> None:
+        """The system becomes what the copies are.
+
+        Parameters
+        ----------
+        make : callable
+            Indices of new atoms -> a `asemd.system.System` of them, in some order, with their ids.
+        members : callable
+            That system -> the groups that they join, see `asemd.population.insert`.
+        """
+        loop, system, n = self.loop, self.loop.system, self.n
+        self.storage.ids = self.id[:n].copy()
+        old, moved = self.row[:n] >= 0, np.flatnonzero(self.moved[:n] & (self.row[:n] >= 0))
+        if len(moved):
+            rows = self.row[moved]
+            system.x[rows], system.image[rows] = self.x[moved], self.image[moved]
+            loop.sync_in()
+        new = np.flatnonzero(~old)
+        gone = np.setdiff1d(np.arange(system.n), self.row[:n][old]) if self.removed else np.zeros(0, int)
+        if len(new):
+            atoms = make(new)
+            population.exchange(loop, gone, atoms, members(atoms))
+        elif len(gone):
+            population.remove(loop, gone, lost=False)
