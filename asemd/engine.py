@@ -45,6 +45,7 @@ class Engine:
         self.system, self.interactions, self.settings, self.box_moves = system, interactions, settings or Settings(), box_moves
         self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
+        self.slot_of = np.zeros(0, np.int32)
         self.sparse = False
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
         self.parallel = Team(self.threads)
@@ -158,7 +159,8 @@ class Engine:
             if name != "all":
                 self.mask_row[mask] |= np.array(self.bits[name]).astype(np.int32)
         self.varies = np.array([len(a) > 0 and bool((a != a[0]).any()) for a in (self.type_row, self.mass_row, self.q_row, self.mask_row)])
-        self.slot_of = np.zeros(n, np.int32)
+        if len(self.slot_of) != n:
+            self.slot_of = np.zeros(n, np.int32)
 
     def _allocate(self, capacity: int) -> None:
         old, capacity = self.state, -(-capacity // 8) * 8      # rows of whole cache lines

@@ -1,10 +1,10 @@
-r"""Grand canonical Monte Carlo: atoms or molecules are exchanged with an ideal gas reservoir and moved, between or without steps of dynamics.
+r"""Grand canonical Monte Carlo: atoms or molecules are exchanged with an ideal gas reservoir and moved, with or without dynamics.
 
 Every N steps X exchanges (insertions and deletions in equal parts) and M moves (translations, for molecules also rotations) are tried.
 With :math:`\beta = 1 / k_B T`, thermal wavelength :math:`\Lambda` (1 in units lj) and n gas atoms in volume V, acceptance is
 
-$$z = e^{\beta\mu} / \Lambda^3,\quad P_{insert} = \frac{z V}{n + 1} e^{-\beta \Delta E},\quad P_{delete} = \frac{n}{z V} e^{-\beta \Delta E},\quad
-P_{move} = e^{-\beta \Delta E}$$
+$$z = e^{\beta\mu} / \Lambda^3,\quad P_{insert} = \frac{z V}{n + 1} e^{-\beta \Delta E},\quad
+P_{delete} = \frac{n}{z V} e^{-\beta \Delta E},\quad P_{move} = e^{-\beta \Delta E}$$
 
 with :math:`z = \beta \phi P` if a pressure P (and fugacity coefficient :math:`\phi`) is given. Energies are those of pairs with the trial
 atoms; with ``full_energy`` those of the whole system, of which only the difference is computed. Random numbers, their order and the order
@@ -21,14 +21,14 @@ distance, degrees. Output: a vector, attempts and successes of translations, ins
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from asemd.errors import InputError, nearest
+from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.fix.gcmc_moves import Moves
-from asemd.fix.reservoir import check_scene, find_molecule, find_region, gas_type, region_volume
+from asemd.fix.reservoir import check_scene, find_molecule, find_region, gas_type, read, region_volume
 from asemd.fix.trial_atoms import Storage, storage_of
 from asemd.random import ParkMiller
 from asemd.words import bounds, number, take, whole
@@ -210,25 +210,6 @@ class GCMC(Fix):
             stream.state, stream.saved = int(number_), None if saved is None else float(saved)
         self.counts, self.next_reneighbor = np.array(state["counts"], float), int(state["next"])
         self.storage.ids, self.storage.due = np.array(state["ids"], np.int64), int(state["due"])
-
-
-def read(words: Sequence[str], values: Mapping[str, int], what: str) -> dict[str, list]:
-    """Keywords and their values; those that may come several times as lists ``groups`` and ``grouptypes``."""
-    given: dict[str, list] = {}
-    words = list(words)
-    while words:
-        key = words[0]
-        if key not in values:
-            raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, values)}")
-        if key in ("rigid", "shake"):
-            raise InputError(f"{what} {key}: molecules that fix {key} holds cannot be exchanged yet; leave the keyword out")
-        found = take(words[1:], values[key], f"{what} {key}")
-        if key in ("group", "grouptype"):
-            given.setdefault(f"{key}s", []).append(found)
-        else:
-            given[key] = found
-        words = words[1 + values[key]:]
-    return given
 
 
 __all__ = ["GCMC"]

@@ -27,6 +27,7 @@ class Moves(Reservoir):
         self.decides = fix.random if fix.full_energy else fix.other
         self.count = fix.counts
         self.born: dict[int, np.ndarray] = {}
+        self.closed = not self.box.periodic.all()
         self.angle = math.radians(fix.max_angle)
         self.one_type = fix.as_lammps and not fix.full_energy and fix.molecule is None     # that of inserted atoms, whatever an atom is
 
@@ -104,9 +105,8 @@ class Moves(Reservoir):
 
     def check_inside(self, x) -> None:
         """Moves may not end beyond a face that is not periodic."""
-        out = self.box.beyond(x)
-        if out.any():
-            raise SimulationError(f"{self.fix.what}: step {self.loop.step}: a move put an atom beyond a face of the box that is not periodic")
+        if self.closed and self.box.beyond(x).any():
+            raise SimulationError(f"{self.fix.what}: step {self.loop.step}: a move put an atom beyond a face that is not periodic")
 
     def delete_atom(self) -> None:
         fix, a = self.fix, self.atoms
@@ -116,8 +116,7 @@ class Moves(Reservoir):
             return
         i = self.pick()
         energy = self.atom_energy(i, a.x[i:i + 1])
-        if fix.full_energy:
-            energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1])
+        energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1])
         good = self.decides.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume)
         self.tail.decided(good)
         if good:
@@ -138,8 +137,7 @@ class Moves(Reservoir):
         if fix.full_energy:
             v = [fix.other.gaussian() * fix.speed for _ in range(3)]
         energy = self.with_others(at, self.types, self.charges)
-        if fix.full_energy:
-            energy += self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
+        energy += self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
         good = energy < ACCEPTABLE and self.decides.uniform() < fix.activity * self.volume * boltzmann(-fix.beta * energy) / (n + 1)
         self.tail.decided(good)
         if good:
@@ -148,13 +146,6 @@ class Moves(Reservoir):
             a.add(x=at[0], type=fix.kind, q=self.kept_charge, v=v, id=int(a.id[:a.n].max(initial=0)) + 1, mass=self.system.mass[fix.kind])
             self.changed()
             self.count[INSERTION + 1] += 1
-
-    def alone_atom(self, kind: int, charge: float) -> float:
-        """Energy of an atom with its own images."""
-        if not self.energies.narrow:
-            return 0.0
-        atom = self._new_atoms(np.array([kind]), np.array([charge]), self.box.origin[None].copy())
-        return self.alone(atom, ("atom", kind, charge))
 
     # ---- molecules
     def molecule_energy(self, rows, x, molecule: int) -> float:
@@ -268,14 +259,6 @@ class Moves(Reservoir):
         m = self.fix.molecule
         return m.rmass if m.rmass is not None else self.system.mass[self.types]
 
-    def template_energy(self, at) -> float:
-        """Energy of the template by itself, at positions (m, 3)."""
-        if self.energies.narrow or "template" not in self.own:
-            one = self.fix.molecule.copies(at[None], self.system, 0, [np.eye(3)])
-            one.mass = self.system.mass
-            return self.alone(one, "template")
-        return self.own["template"]
-
     def _part(self, rows, at=None):
         """A molecule that is in the system or was inserted, by itself."""
         a, fix = self.atoms, self.fix
@@ -295,21 +278,11 @@ class Moves(Reservoir):
         return one
 
     # ---- the end
-    def _new_atoms(self, types, charges, x):
-        """Single atoms as a system."""
-        from asemd.atom_style import fresh
-        from asemd.system import System
-        system, own = self.system, fresh(self.system.atom_style, len(types))
-        if own["q"] is not None:
-            own["q"] = np.array(charges, float)
-        return System(box=self.box, x=x, type=types, id=np.arange(1, len(types) + 1), units=system.units, dimension=3, mass=system.mass,
-                      counts=dict(system.counts), **own)
-
     def make(self, new):
         """New atoms as a system, molecule by molecule."""
         a, fix = self.atoms, self.fix
         if fix.molecule is None:
-            atoms = self._new_atoms(a.type[new], a.q[new], a.x[new].copy())
+            atoms = self.new_atoms(a.type[new], a.q[new], a.x[new].copy())
         else:
             new = new[np.argsort(a.id[new])]
             numbers = np.unique(a.molecule[new])

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -9,10 +10,29 @@ from asemd.engine import Engine, Settings
 from asemd.errors import InputError, nearest
 from asemd.fix.trial_atoms import Energies, TrialAtoms
 from asemd.molecule import rotation, turned
-from asemd.words import bounds, whole
+from asemd.words import bounds, take, whole
 
 SAMPLES = 10_000_000        # points that estimate the volume of a region
 TRIES = 1000                # points of a region's box until one is in the region
+
+
+def read(words: Sequence[str], values: Mapping[str, int], what: str) -> dict[str, list]:
+    """Keywords and their values; those that may come several times as lists ``groups`` and ``grouptypes``."""
+    given: dict[str, list] = {}
+    words = list(words)
+    while words:
+        key = words[0]
+        if key not in values:
+            raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, values)}")
+        if key in ("rigid", "shake"):
+            raise InputError(f"{what} {key}: molecules that fix {key} holds cannot be exchanged yet; leave the keyword out")
+        found = take(words[1:], values[key], f"{what} {key}")
+        if key in ("group", "grouptype"):
+            given.setdefault(f"{key}s", []).append(found)
+        else:
+            given[key] = found
+        words = words[1 + values[key]:]
+    return given
 
 
 def find_molecule(words, scene, what: str):
@@ -85,11 +105,13 @@ def check_scene(fix, loop) -> float:
         if not system.molecular:
             raise InputError(f"{what}: molecules need an atom style with molecule numbers, such as full")
         if (system.molecule[gas] == 0).any():
-            raise InputError(f"{what}: atoms of group {fix.group} have no molecule, such as atom {system.id[gas & (system.molecule == 0)][0]}")
+            single = system.id[gas & (system.molecule == 0)][0]
+            raise InputError(f"{what}: atoms of group {fix.group} have no molecule, such as atom {single}")
     elif (system.molecule[gas] != 0).any():
         loop.warn(f"{what} takes single atoms, but atoms of group {fix.group} belong to molecules")
     inter = loop.interactions
-    if not fix.full_energy and (not inter.uses["pair"] or inter.hybrid["pair"] or any(inter.modified(u, "tail") for u in inter.uses["pair"])):
+    uses = inter.uses["pair"]
+    if not fix.full_energy and (not uses or inter.hybrid["pair"] or any(inter.modified(u, "tail") for u in uses)):
         fix.full_energy = True
         loop.warn(f"{what} takes energies of the whole system (full_energy), since the pair style is a hybrid, has a tail or is none")
     if fix.full_energy:
@@ -194,7 +216,44 @@ class Reservoir:
         """Energy of a particle with all others."""
         return self.energies.of(self.atoms, at, types, charges, skip, molecule)
 
+    def insertion_energy(self, place) -> float:
+        """Energy that the particle would have at a place, in a random orientation."""
+        fix = self.fix
+        if fix.molecule is None:
+            energy = self.with_others(self.wrapped(place[None]), self.types, self.charges)
+            return energy + self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
+        at, _ = self.molecule_at(place)
+        energy = self.with_others(self.wrapped(at), self.types, self.charges)
+        if fix.full_energy:
+            energy += self.template_energy(at) - fix.intra_energy + self.tail.of_insertion(self.types)
+        return energy
+
     # ---- what only energies of the whole system have
+    def new_atoms(self, types, charges, x):
+        """Single atoms as a system."""
+        from asemd.atom_style import fresh
+        from asemd.system import System
+        system, own = self.system, fresh(self.system.atom_style, len(types))
+        if own["q"] is not None:
+            own["q"] = np.array(charges, float)
+        return System(box=self.box, x=x, type=types, id=np.arange(1, len(types) + 1), units=system.units, dimension=3, mass=system.mass,
+                      counts=dict(system.counts), **own)
+
+    def alone_atom(self, kind: int, charge: float) -> float:
+        """Energy of an atom with its own images, as far as they count."""
+        if not (self.energies.exact and self.energies.narrow):
+            return 0.0
+        return self.alone(self.new_atoms(np.array([kind]), np.array([charge]), self.box.origin[None].copy()), ("atom", kind, charge))
+
+    def template_energy(self, at) -> float:
+        """Energy of the template by itself, at positions (m, 3)."""
+        if self.energies.narrow or "template" not in self.own:
+            one = self.fix.molecule.copies(at[None], self.system, 0, [np.eye(3)])
+            one.mass = self.system.mass
+            self.own.pop("template", None)
+            return self.alone(one, "template")
+        return self.own["template"]
+
     def alone(self, atoms, key=None) -> float:
         """Energy of some atoms by themselves, bonds and images included; remembered by `key`."""
         if key is not None and key in self.own:
@@ -218,8 +277,8 @@ class Tail:
     ----------
     reservoir : Reservoir
     fix : Fix
-        With ``held_tail``, the correction as LAMMPS holds it at present (None: as the atoms are), which finds it anew for each exchange that
-        is tried but not after a deletion; used with ``as_lammps``.
+        With ``held_tail``, the correction as LAMMPS holds it at present (None: as the atoms are), which finds it anew for each exchange
+        that is tried but not after a deletion; used with ``as_lammps``.
     """
 
     def __init__(self, reservoir: Reservoir, fix):
@@ -270,4 +329,4 @@ class Tail:
             self.accepted = self.held = self.trial
 
 
-__all__ = ["Reservoir", "Tail", "check_scene", "find_molecule", "find_region", "gas_type", "masses_of", "region_volume"]
+__all__ = ["Reservoir", "Tail", "check_scene", "find_molecule", "find_region", "gas_type", "masses_of", "read", "region_volume"]

@@ -90,8 +90,8 @@ class Energies:
             for k in t.cut_rows:
                 np.maximum(self.cut2, t.tables.rows[k], out=self.cut2)
         self.cutoff, self.overlap, self.exact = max(float(self.cut2.max()) ** 0.5, overlap), overlap, exact
-        self.ghosts, self.qqr2e = engine.cutoff + loop.settings.skin, engine.qqr2e
-        self.numbers = np.array([-1.0, -1.0, overlap**2, self.qqr2e, float(not exact)])
+        self.ghosts = float(self.cut2.max()) ** 0.5 + loop.settings.skin
+        self.numbers = np.array([-1.0, -1.0, overlap**2, engine.qqr2e, float(not exact)])
 
     def see(self, box, dimension: int) -> None:
         """Take the present box."""
@@ -103,7 +103,7 @@ class Energies:
         self.low, self.high = corner - self.ghosts / heights, corner + 1.0 + self.ghosts / heights
         self.narrow = bool((heights[periodic] < self.cutoff).any())     # an atom sees its own images
 
-    def of(self, atoms: TrialAtoms, at: np.ndarray, types: np.ndarray, charges: np.ndarray, skip: int = -1, molecule: int = NOBODY) -> float:
+    def of(self, atoms: TrialAtoms, at, types, charges, skip: int = -1, molecule: int = NOBODY) -> float:
         """Energy of atoms at `at` (m, 3) with the others: without atom `skip`, without `molecule`."""
         self.numbers[0], self.numbers[1] = skip, molecule
         return self.kernel(at, types, charges, atoms.n, self.numbers, atoms.x, atoms.type, atoms.q, atoms.molecule, self.inverse,
@@ -200,6 +200,8 @@ class TrialAtoms:
             rows = self.row[moved]
             system.x[rows], system.image[rows] = self.x[moved], self.image[moved]
             loop.sync_in()
+            slots = loop.engine.slot_of[rows]       # it is no motion that a list would have to follow
+            loop.engine.held[:, slots] = loop.state.x[:, slots]
         new = np.flatnonzero(~old)
         gone = np.setdiff1d(np.arange(system.n), self.row[:n][old]) if self.removed else np.zeros(0, int)
         if len(new):
