@@ -45,8 +45,7 @@ class Engine:
         self.system, self.interactions, self.settings, self.box_moves = system, interactions, settings or Settings(), box_moves
         self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
-        self.slot_of = np.zeros(0, np.int32)
-        self.sparse = False
+        self.slot_of, self.sparse = np.zeros(0, np.int32), False
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
         self.parallel = Team(self.threads)
         self.groups: dict[str, np.ndarray] = {}
@@ -159,8 +158,7 @@ class Engine:
             if name != "all":
                 self.mask_row[mask] |= np.array(self.bits[name]).astype(np.int32)
         self.varies = np.array([len(a) > 0 and bool((a != a[0]).any()) for a in (self.type_row, self.mass_row, self.q_row, self.mask_row)])
-        if len(self.slot_of) != n:
-            self.slot_of = np.zeros(n, np.int32)
+        self.slot_of = self.slot_of if len(self.slot_of) == n else np.zeros(n, np.int32)
 
     def _allocate(self, capacity: int) -> None:
         old, capacity = self.state, -(-capacity // 8) * 8      # rows of whole cache lines
@@ -180,8 +178,8 @@ class Engine:
         raise TypeError("an Engine holds compiled code and is made anew from its scene")
 
     # ---- lists --------------------------------------------------------------------------------------------------------------------------
-    def load(self) -> None:
-        """Positions and velocities of the system into slots, and a fresh list."""
+    def load(self, listed: bool = True) -> None:
+        """Positions and velocities of the system into slots, and a fresh list, unless one is made anyway before the next forces."""
         n = self.system.n
         if self.state is None or self.state.x.shape[1] < n + 8:
             self.ns = 0
@@ -194,7 +192,9 @@ class Engine:
         s.x[:, :n] = self.system.x.T
         s.v[:, :n] = self.system.v.T
         self._offset = None
-        self.rebuild()
+        self.slot_of[:], self.held[:, :n] = np.arange(n), s.x[:, :n]
+        if listed:
+            self.rebuild()
 
     def rebuild(self) -> None:
         """Wrap, sort, list: the slots keep their atoms' data but change order."""

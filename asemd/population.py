@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from asemd.system import System
 
 
-def remove(loop: Loop, rows, lost: bool = True) -> None:
+def remove(loop: Loop, rows, lost: bool = True, listed: bool = True) -> None:
     """Take atoms out of the system in the midst of a run: system, groups, exclusions, lists and the fixes' arrays by atom.
 
     Parameters
@@ -23,6 +23,8 @@ def remove(loop: Loop, rows, lost: bool = True) -> None:
     rows : array of int
     lost : bool
         They left through a face of the box, which ``thermo_modify lost`` tells; else a fix takes them out on purpose.
+    listed : bool
+        Whether a list is made at once; False before the step's own, in a hook `pre_exchange`.
 
     Raises
     ------
@@ -31,7 +33,7 @@ def remove(loop: Loop, rows, lost: bool = True) -> None:
     """
     loop.engine.store()
     gone = _take_out(loop, rows, lost)
-    _go_on(loop, lambda old, new: old[~gone] if len(old) == len(gone) else new)
+    _go_on(loop, lambda old, new: old[~gone] if len(old) == len(gone) else new, listed)
 
 
 def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:
@@ -56,11 +58,11 @@ def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.nd
 
 
 def exchange(loop: Loop, rows, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:
-    """Atoms go, as by `remove` on purpose, and others join, as by `insert`, with one new list."""
+    """Atoms go, as by `remove` on purpose, and others join, as by `insert`; in a hook `pre_exchange`, for a list follows."""
     loop.engine.store()
     gone = _take_out(loop, rows, False)
     _put_in(loop, atoms, groups)
-    _go_on(loop, _joined(gone))
+    _go_on(loop, _joined(gone), False)
 
 
 def _joined(gone: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
@@ -127,12 +129,12 @@ def retie(loop: Loop) -> None:
     _go_on(loop, lambda old, new: old if old.shape == new.shape else new)
 
 
-def _go_on(loop: Loop, keep: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
+def _go_on(loop: Loop, keep: Callable[[np.ndarray, np.ndarray], np.ndarray], listed: bool = True) -> None:
     """Lists and arrays of fixes for the system as it is now; `keep` says what becomes of the old numbers by atom."""
     e = loop.engine
     e.set_groups(loop.groups, e.bits)
     e.update(loop.system)
-    e.load()
+    e.load(listed)
     loop.fix_data = tuple(_resize(loop, fix, p, old, keep) for fix, (p, old) in zip(loop.fixes, loop.fix_data))
 
 

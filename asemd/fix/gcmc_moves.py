@@ -90,7 +90,7 @@ class Moves(Reservoir):
         before = self.atom_energy(i, a.x[i:i + 1])
         at = self.displaced(a.x[i], fix.other)
         if self.moved(before, self.atom_energy(i, at[None]), self.decides):
-            a.place([i], at, a.image[i])
+            a.place([i], at[None], a.image[i:i + 1])
             self.changed()
             self.count[TRANSLATION + 1] += 1
 

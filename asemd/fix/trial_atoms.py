@@ -129,7 +129,7 @@ class TrialAtoms:
     """
 
     def __init__(self, loop, storage: Storage, group: str):
-        self.loop, self.storage = loop, storage
+        self.loop, self.storage, self.box = loop, storage, loop.system.box
         system, rows = loop.system, storage.rows(loop.system)
         n = self.n = len(rows)
         cap = n + 64
@@ -170,8 +170,8 @@ class TrialAtoms:
 
     def place(self, i, x, image) -> None:
         """Atoms are elsewhere, maybe outside the box: they are wrapped."""
-        x, image = np.atleast_2d(x).copy(), np.atleast_2d(image).copy()
-        self.loop.system.box.wrap(x, image)
+        x, image = np.array(x, float), np.array(image)
+        self.box.wrap(x, image)
         self.x[i], self.image[i], self.moved[i] = x, image, True
 
     def centres(self, mass: float) -> np.ndarray:
@@ -208,4 +208,4 @@ class TrialAtoms:
             atoms = make(new)
             population.exchange(loop, gone, atoms, members(atoms))
         elif len(gone):
-            population.remove(loop, gone, lost=False)
+            population.remove(loop, gone, lost=False, listed=False)

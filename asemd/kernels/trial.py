@@ -7,8 +7,6 @@ from __future__ import annotations
 import math
 from functools import cache
 
-import numpy as np
-
 OVERLAP = 1e100        # energy of a trial position that is too near to an atom
 pair_energy = None
 
@@ -33,45 +31,47 @@ def trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, invers
     skip, without = int(numbers[0]), int(numbers[1])
     overlap2, qqr2e, limited = numbers[2], numbers[3], numbers[4] != 0.0
     total = 0.0
-    first, last = np.zeros(3, np.int64), np.zeros(3, np.int64)
-    f = np.zeros(3)
+    a0, a1, b0, b1, c0, c1 = 0, 0, 0, 0, 0, 0
     for t in range(at.shape[0]):
         ti = types[t]
         for j in range(n):
             if molecule[j] == without:
                 continue
             dx, dy, dz = at[t, 0] - x[j, 0], at[t, 1] - x[j, 1], at[t, 2] - x[j, 2]
-            near = True
-            for k in range(3):
-                f[k] = dx * inverse[0, k] + dy * inverse[1, k] + dz * inverse[2, k]
-                if reach[k] >= 0.0:
-                    first[k] = math.ceil(f[k] - reach[k])
-                    last[k] = math.floor(f[k] + reach[k])
-                    near &= first[k] <= last[k]
-            if not near:
+            if reach[0] >= 0.0:
+                f = dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]
+                a0, a1 = math.ceil(f - reach[0]), math.floor(f + reach[0])
+            if reach[1] >= 0.0:
+                f = dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]
+                b0, b1 = math.ceil(f - reach[1]), math.floor(f + reach[1])
+            if reach[2] >= 0.0:
+                f = dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]
+                c0, c1 = math.ceil(f - reach[2]), math.floor(f + reach[2])
+            if a0 > a1 or b0 > b1 or c0 > c1:
                 continue
             tj = type_of[j]
-            for a in range(first[0], last[0] + 1):
-                for b in range(first[1], last[1] + 1):
-                    for c in range(first[2], last[2] + 1):
-                        here = a == 0 and b == 0 and c == 0
-                        if here and j == skip:
-                            continue
-                        if limited and not here:
-                            seen = True
-                            for k in range(3):
-                                u = (x[j, 0] * inverse[0, k] + x[j, 1] * inverse[1, k] + x[j, 2] * inverse[2, k]
-                                     + (a if k == 0 else b if k == 1 else c))
-                                seen &= low[k] <= u <= high[k]
-                            if not seen:
-                                continue
+            limit = cut2[ti, tj]
+            for a in range(a0, a1 + 1):
+                for b in range(b0, b1 + 1):
+                    for c in range(c0, c1 + 1):
                         ex = dx - a * cell[0, 0] - b * cell[1, 0] - c * cell[2, 0]
                         ey = dy - a * cell[0, 1] - b * cell[1, 1] - c * cell[2, 1]
                         ez = dz - a * cell[0, 2] - b * cell[1, 2] - c * cell[2, 2]
                         r2 = ex * ex + ey * ey + ez * ez
+                        if r2 >= limit and r2 >= overlap2:
+                            continue
+                        if a != 0 or b != 0 or c != 0:
+                            if limited:
+                                u = x[j, 0] * inverse[0, 0] + x[j, 1] * inverse[1, 0] + x[j, 2] * inverse[2, 0] + a
+                                v = x[j, 0] * inverse[0, 1] + x[j, 1] * inverse[1, 1] + x[j, 2] * inverse[2, 1] + b
+                                w = x[j, 0] * inverse[0, 2] + x[j, 1] * inverse[1, 2] + x[j, 2] * inverse[2, 2] + c
+                                if not (low[0] <= u <= high[0] and low[1] <= v <= high[1] and low[2] <= w <= high[2]):
+                                    continue
+                        elif j == skip:
+                            continue
                         if r2 < overlap2:
                             return OVERLAP
-                        if r2 < cut2[ti, tj]:
+                        if r2 < limit:
                             total += pair_energy(r2, qqr2e * charges[t] * q[j], tables, ti, tj)
     return total
 

@@ -1,0 +1,292 @@
+"""Exchange with a reservoir and trial insertions: the same moves as LAMMPS accepts, and the density that theory demands."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from both import asemd, lines_of
+from wheel import ask
+
+import asemd.fix as fixes
+from asemd.errors import InputError
+from asemd.random import ParkMiller
+
+ATOMS = """
+units lj
+atom_style {style}
+{boundary}
+lattice fcc 0.3
+region box {box}
+create_box 2 box
+create_atoms 1 {fill}
+mass 1 1.0
+mass 2 1.5
+pair_style {pair}
+{more}
+group gas type {types}
+group a type 2
+fix g gas {fix}
+fix 2 all nve
+run {steps}
+"""
+MOLECULES = """
+units real
+atom_style full
+region box block 0 {width} 0 {width} 0 {width}
+create_box 2 box bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 2 extra/special/per/atom 4
+mass 1 15.9994
+mass 2 1.008
+bond_style harmonic
+bond_coeff 1 450 0.96
+angle_style harmonic
+angle_coeff 1 55 104.5
+pair_style lj/cut/coul/cut 7.0
+pair_coeff 1 1 0.155 3.166
+pair_coeff * 2 0.0 1.0
+molecule water water.mol
+create_atoms 0 random {n} 4711 NULL mol water 993 overlap 2.2 maxtry 400
+group gas type 1 2
+fix g gas {fix}
+{more}
+run {steps}
+"""
+WATER = """water
+
+3 atoms
+2 bonds
+1 angles
+
+Coords
+
+1 0.0 0.0 0.0
+2 0.7 0.6 0.0
+3 -0.7 0.6 0.1
+
+Types
+
+1 1
+2 2
+3 2
+
+Charges
+
+1 -0.8
+2 0.4
+3 0.4
+
+Bonds
+
+1 1 1 2
+2 1 1 3
+
+Angles
+
+1 1 2 1 3
+
+Special Bond Counts
+
+1 2 0 0
+2 1 1 0
+3 1 1 0
+
+Special Bonds
+
+1 2 3
+2 1 3
+3 1 2
+"""
+LJ, COUL = "lj/cut 2.5\npair_coeff * * 1 1", "lj/cut/coul/cut 2.5 3.0\npair_coeff * * 1 1"
+GCMC, WIDOM, MOVES = "gcmc 1 20 20 1 29494 2.0 -1.25 1.0 ", "widom 1 50 1 29494 2.0 ", "gcmc 2 30 30 0 29494 400.0 -7.0 0.8 mol water "
+
+
+def atoms(fix, **other):
+    return ATOMS.format(**{"style": "atomic", "boundary": "", "box": "block 0 3 0 3 0 3", "fill": "box", "pair": LJ, "more": "",
+                           "types": "1", "steps": 5, "fix": fix, **other})
+
+
+def molecules(fix, **other):
+    return MOLECULES.format(**{"width": 16, "n": 30, "steps": 5, "more": "", "fix": fix, **other})
+
+
+REGION, TILTED = "region s block 0.2 2 0.2 2 0.5 2.5", "prism 0 3 0 3 0 3 0.5 0.3 0.4"
+CASES = {
+    "atoms": atoms(GCMC, steps=12),
+    "from nothing, every 3": atoms("gcmc 3 20 20 1 29494 2.0 -1.25 1.0", fill="region none", pair="lj/cut 2.5\npair_coeff * * 1 1",
+                                   box="block 0 3 0 3 0 3\nregion none block 9 9.1 9 9.1 9 9.1", steps=13),
+    "sorted never": atoms("gcmc 2 20 20 1 29494 2.0 -1.25 1.0", boundary="atom_modify sort 0 0"),
+    "full energy": atoms(GCMC + "full_energy"),
+    "tail": atoms(GCMC, more="pair_modify tail yes", steps=8),
+    "hybrid": atoms(GCMC, pair="hybrid lj/cut 2.5 morse 2.5\npair_coeff 1 1 lj/cut 1 1\npair_coeff * 2 morse 1 2 1.2"),
+    "pressure": atoms(GCMC + "pressure 0.3 fugacity_coeff 0.9"),
+    "region": atoms(GCMC + "region s", more=REGION),
+    "region, full energy": atoms(GCMC + "region s full_energy", more=REGION),
+    "two types": atoms(GCMC, more="set type 1 type/fraction 2 0.3 777\npair_coeff 2 2 1.2 1.1 2.2", types="1 2"),
+    "overlap and limits": atoms(GCMC + "overlap_cutoff 0.8 min 100 max 106 tfac_insert 2.0"),
+    "overlap, full energy": atoms(GCMC + "overlap_cutoff 0.7 full_energy"),
+    "tilted": atoms(GCMC, box=TILTED),
+    "small": atoms(GCMC, box="block 0 2 0 2 0 1"),
+    "small, full energy": atoms(GCMC + "full_energy", box="block 0 2 0 2 0 1"),
+    "charges": atoms(GCMC + "charge -0.2", style="charge", pair=COUL, more="set type 1 charge 0.3"),
+    "charges, full energy": atoms(GCMC + "charge -0.2 full_energy", style="charge", pair=COUL, more="set type 1 charge 0.3"),
+    "groups": atoms(GCMC + "group a grouptype 1 a"),
+    "fixed faces": atoms("gcmc 1 20 20 1 29494 2.0 -1.25 0.05", boundary="boundary p p f", more="displace_atoms all move 0 0 0.3"),
+    "molecules": molecules(MOVES),
+    "molecules, turned far": molecules(MOVES + "tfac_insert 1.6667 maxangle 180 overlap_cutoff 1.5"),
+    "molecules, full energy": molecules(MOVES + "full_energy intra_energy 0.1", more="fix 2 all nve\ntimestep 0.2"),
+    "molecules, excluded": molecules(MOVES + "full_energy", more="neigh_modify exclude molecule/intra gas"),
+    "molecules, small": molecules(MOVES + "full_energy", width=9, n=6),
+    "widom": atoms(WIDOM),
+    "widom, tail": atoms("widom 2 50 1 29494 2.0", more="pair_modify tail yes"),
+    "widom, tilted": atoms(WIDOM + "full_energy", box=TILTED),
+    "widom, small": atoms(WIDOM + "full_energy", box="block 0 2 0 2 0 1"),
+    "widom, charges": atoms(WIDOM + "charge -0.2", style="charge", pair=COUL, more="set type 1 charge 0.3"),
+    "widom, region": atoms(WIDOM + "region s", more=REGION),
+    "widom, molecules": molecules("widom 1 50 0 29494 400.0 mol water"),
+    "widom, molecules, full energy": molecules("widom 1 50 0 29494 400.0 mol water full_energy intra_energy 0.1", width=9, n=6),
+}
+SCRIPT = """
+import numpy as np
+answer = {}
+for name, lines in given["cases"].items():
+    lmp = start()
+    for line in lines:
+        lmp.command(line)
+    n = lmp.extract_setting("nlocal")
+    ids = np.array(lmp.numpy.extract_atom("id"))[:n]
+    order = np.argsort(ids)
+    answer[name] = {key: np.array(lmp.numpy.extract_atom(key))[:n][order].tolist() for key in ("id", "type", "x", "v")}
+    answer[name]["vector"] = [lmp.extract_fix("g", 0, 1, i) for i in range(3 if "widom" in name else 8)]
+    answer[name]["pe"] = lmp.get_thermo("pe")
+    if "group a" in str(lines):
+        lmp.command("variable a equal count(a)")
+        answer[name]["a"] = lmp.extract_variable("a")
+    lmp.close()
+"""
+
+
+@pytest.fixture(scope="module")
+def theirs(tmp_path_factory):
+    mol = tmp_path_factory.mktemp("gcmc") / "water.mol"
+    mol.write_text(WATER)
+    return ask(SCRIPT, cases={name: lines_of(text.replace("water.mol", str(mol))) for name, text in CASES.items()})
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_like_lammps(name, theirs, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "water.mol").write_text(WATER)
+    session, expected = asemd(CASES[name]), theirs[name]
+    system, fix = session.scene.system, session.scene.fixes["g"]
+    order = np.argsort(system.id)
+    assert [fix.vector(i + 1) for i in range(fix.size)] == pytest.approx(expected["vector"], rel=1e-9)
+    assert system.id[order].tolist() == expected["id"]
+    assert system.type[order].tolist() == expected["type"]
+    assert system.x[order] == pytest.approx(np.array(expected["x"]).reshape(-1, 3), abs=1e-8)
+    assert system.v[order] == pytest.approx(np.array(expected["v"]).reshape(-1, 3), abs=1e-8)
+    if "tail" not in name:          # LAMMPS's tail correction is that of the last insertion it tried
+        assert session.moment.potential() == pytest.approx(expected["pe"] * (system.n if "units lj" in CASES[name] else 1), rel=1e-9)
+    if "a" in expected:
+        assert np.count_nonzero(session.scene.groups["a"]) == expected["a"]
+
+
+GAS = """
+units lj
+region box block 0 {width} 0 {width} 0 {width}
+create_box 1 box
+mass 1 1
+pair_style lj/cut {cut}
+pair_coeff * * {epsilon} 1.0
+group gas type 1
+fix g gas gcmc 1 100 0 1 4711 {t} {mu} 0.1
+"""
+
+
+def test_density_of_an_ideal_gas():
+    """Without interactions the mean number is activity times volume, its variance the mean."""
+    session = asemd(GAS.format(width=5, cut=1.2, epsilon=0, t=1.5, mu=1.5 * math.log(0.4)) + "run 20")
+    numbers = []
+    for _ in range(80):
+        session.commands("run 3\n")
+        numbers.append(session.scene.system.n)
+    assert np.mean(numbers) == pytest.approx(50.0, abs=5.0)
+    assert np.var(numbers) == pytest.approx(50.0, rel=0.7)
+
+
+def test_density_of_a_gas_that_attracts():
+    """At low density n = z V (1 - 2 B2 z), with the second virial coefficient B2 of Lennard-Jones at T = 2."""
+    r = np.linspace(1e-3, 2.5, 20001)
+    f = np.exp(-4.0 * (r**-12 - r**-6) / 2.0) - 1.0
+    b2 = -2.0 * math.pi * float(((f * r**2)[1:] + (f * r**2)[:-1]).sum() / 2.0 * (r[1] - r[0]))
+    z, volume = 0.05, 8.0**3
+    session = asemd(GAS.format(width=8, cut=2.5, epsilon=1, t=2.0, mu=2.0 * math.log(z)) + "run 20")
+    numbers = []
+    for _ in range(80):
+        session.commands("run 3\n")
+        numbers.append(session.scene.system.n)
+    assert b2 == pytest.approx(-1.0, abs=0.3)
+    assert np.mean(numbers) == pytest.approx(z * volume * (1.0 - 2.0 * b2 * z), rel=0.08)
+
+
+def test_excess_potential_of_a_gas():
+    """Widom's average is 1 - 2 B2 rho at low density; in an empty box the excess is nothing."""
+    session = asemd(ATOMS.format(style="atomic", boundary="", box="block 0 3 0 3 0 3\nregion none block 9 9.1 9 9.1 9 9.1",
+                                 fill="region none", pair=LJ, more="", types="1", steps=1, fix=WIDOM))
+    fix = session.scene.fixes["g"]
+    assert [fix.vector(i) for i in (1, 2)] == [0.0, 1.0]
+
+
+def test_goes_on_from_a_restart(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    start = CASES["atoms"].replace("run 12", "").replace("units lj", "units lj\natom_modify sort 0 0")
+    whole = asemd(start + "restart 6 r.*\nrun 12")
+    again = asemd("read_restart r.6\natom_modify sort 0 0\nfix g gas " + GCMC + "\nfix 2 all nve\nrun 6")
+    assert [again.scene.fixes["g"].vector(i) for i in range(1, 9)] == [whole.scene.fixes["g"].vector(i) for i in range(1, 9)]
+    assert sorted(again.scene.system.id) == sorted(whole.scene.system.id)
+
+
+def test_made_in_python():
+    """Without a script the peculiarities of LAMMPS are left out."""
+    fix = fixes.GCMC(exchanges=5, moves=5, kind=1, displace=0.1)
+    assert not fix.as_lammps
+    with pytest.raises(InputError, match="no script form"):
+        fix.to_lammps()
+    with pytest.raises(InputError, match="T must be positive"):
+        fixes.GCMC(temperature=-1.0)
+    with pytest.raises(InputError, match="N must be at least 1"):
+        fixes.Widom(every=0)
+    assert fixes.find("widom") is fixes.Widom
+
+
+@pytest.mark.parametrize(("line", "said"), [
+    ("gcmc 0 1 1 1 7 1.0 0 0.1", "N must be at least 1"),
+    ("gcmc 1 1 1 1 7 1.0 0", "needs 8 values, got 7"),
+    ("gcmc 1 1 1 3 7 1.0 0 0.1", "outside the valid range 1 to 2"),
+    ("gcmc 1 1 1 1 0 1.0 0 0.1", "seed must be a positive"),
+    ("gcmc 1 1 1 1 7 0.0 0 0.1", "T must be positive"),
+    ("gcmc 1 1 1 1 7 1.0 0 -0.1", "displace"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 presure 1.0", "did you mean pressure"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 pressure", "needs 1 value, got 0"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 region nowhere", "nowhere"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 region wide", "beyond the box"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 charge 1.0", "the atoms have no charges"),
+    ("gcmc 1 1 1 0 7 1.0 0 0.1 mol nothing", "there is no molecule nothing"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 shake s", "fix shake holds"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 rigid s", "fix rigid holds"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 group b", "group b"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 mcmoves 0 0 0", "mcmoves"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 full_energy\nfix w all wall/harmonic zlo EDGE 1 1 1\nfix_modify w energy yes",
+     "fix_modify w energy no"),
+    ("widom 1 10 1 7", "needs 5 values, got 4"),
+    ("widom 1 10 1 7 1.0 max 3", "unknown keyword 'max'"),
+    ("widom 1 10 1 7 0.0", "T must be positive"),
+])
+def test_mistakes(line, said):
+    with pytest.raises(InputError, match=said):
+        asemd(atoms(line, more="region wide block 0 9 0 1 0 1", boundary="boundary p p f" if "wall" in line else "", steps=0))
+
+
+def test_single_draws_are_those_of_a_series():
+    one, many = ParkMiller(4711), ParkMiller(4711)
+    assert [one.uniform() for _ in range(20)] == many.uniform(20).tolist()
+    assert one.state == many.state
