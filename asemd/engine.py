@@ -84,9 +84,7 @@ class Engine:
         marked = s.outdated or self.sparse
         self.list = ClusterList(self.threads, self.reach, width, marked) if self.mode == "cluster" else PlainList(self.reach)
         self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
-        self.state = None
-        self._offset = None
-        self.ns = 0
+        self.state, self._offset, self.ns = None, None, 0
 
     def _choose_list(self) -> None:
         """Which neighbour list the scene needs, and why."""

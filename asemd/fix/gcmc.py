@@ -29,7 +29,7 @@ from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.fix.gcmc_moves import Moves
 from asemd.fix.reservoir import check_scene, find_molecule, find_region, gas_type, read, region_volume
-from asemd.fix.trial_atoms import Storage, storage_of
+from asemd.fix.trial_atoms import AtomOrder, storage_of
 from asemd.random import ParkMiller
 from asemd.words import bounds, number, take, whole
 
@@ -125,7 +125,7 @@ class GCMC(Fix):
         self.random, self.other = ParkMiller(seed), ParkMiller(seed)      # of all processes together, and of one of them
         self.volume = region_volume(region, self.random, self.what) if region is not None else 0.0
         self.counts = np.zeros(8)
-        self.storage = Storage()
+        self.storage = AtomOrder()
         self.as_lammps = False      # to the last of its peculiarities, which are named above
         self.held_tail: float | None = None
         self.words: list[str] = []
@@ -152,7 +152,8 @@ class GCMC(Fix):
                   numbers.get("intra_energy", 0.0), numbers.get("tfac_insert", 1.0), numbers.get("overlap_cutoff", 0.0),
                   whole(given["min"][0], "fix gcmc min") if "min" in given else -1,
                   whole(given["max"][0], "fix gcmc max") if "max" in given else 2**31 - 1)
-        fix.words, fix.next_reneighbor, fix.storage, fix.as_lammps = list(words), scene.step + 1, Storage(*scene.sort), True
+        fix.words, fix.next_reneighbor, fix.as_lammps = list(words), scene.step + 1, True
+        fix.storage = AtomOrder(*scene.sort, scene.order)
         if group == "all":
             session.warn("fix gcmc is applied to group all: every atom may go or be moved")
         if charged and not fix.full_energy:

@@ -15,7 +15,7 @@ from asemd.kernels import trial
 NOBODY = -1
 
 
-class Storage:
+class AtomOrder:
     """The order in which LAMMPS stores the atoms: as they were made, sorted by place now and then, holes filled by the last one.
 
     Parameters
@@ -24,11 +24,13 @@ class Storage:
         Steps between two times of sorting; 0: never.
     width : float
         Of the bins that it sorts into; 0: half the reach of the neighbour list.
+    order : sequence of int, optional
+        Atom IDs as a data file has them.
     """
 
-    def __init__(self, every: int = 1000, width: float = 0.0):
+    def __init__(self, every: int = 1000, width: float = 0.0, order=None):
         self.every, self.width = every, width
-        self.ids = np.zeros(0, np.int64)
+        self.ids = np.zeros(0, np.int64) if order is None else np.array(order, np.int64)
         self.due = 0
 
     def rows(self, system) -> np.ndarray:
@@ -55,9 +57,9 @@ class Storage:
         self.ids = self.ids[np.argsort(number, kind="stable")]
 
 
-def storage_of(loop, own: Storage) -> Storage:
+def storage_of(loop, own: AtomOrder) -> AtomOrder:
     """The one that all fixes of a run share."""
-    return next((f.storage for f in loop.fixes if isinstance(getattr(f, "storage", None), Storage)), own)
+    return next((f.storage for f in loop.fixes if isinstance(getattr(f, "storage", None), AtomOrder)), own)
 
 
 class Energies:
@@ -116,7 +118,7 @@ class TrialAtoms:
     Parameters
     ----------
     loop : asemd.loop.Loop
-    storage : Storage
+    storage : AtomOrder
     group : str
         Whose atoms are the gas.
 
@@ -128,7 +130,7 @@ class TrialAtoms:
         Row in the system, -1 for those that are not in it yet.
     """
 
-    def __init__(self, loop, storage: Storage, group: str):
+    def __init__(self, loop, storage: AtomOrder, group: str):
         self.loop, self.storage, self.box = loop, storage, loop.system.box
         system, rows = loop.system, storage.rows(loop.system)
         n = self.n = len(rows)

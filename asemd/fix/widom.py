@@ -17,7 +17,7 @@ import math
 from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.fix.reservoir import Reservoir, check_scene, find_molecule, find_region, gas_type, read, region_volume
-from asemd.fix.trial_atoms import Storage
+from asemd.fix.trial_atoms import AtomOrder
 from asemd.random import ParkMiller
 from asemd.words import number, take, whole
 
@@ -79,7 +79,7 @@ class Widom(Fix):
         self.random = ParkMiller(seed)
         self.volume = region_volume(region, self.random, self.what) if region is not None else 0.0
         self.mean, self.seen, self.beta = 0.0, 0.0, math.nan
-        self.storage, self.as_lammps, self.held_tail = Storage(0), False, None
+        self.storage, self.as_lammps, self.held_tail = AtomOrder(0), False, None
         self.words: list[str] = []
 
     @classmethod
