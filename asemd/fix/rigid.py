@@ -32,6 +32,7 @@ from asemd.kernels.rigid import (
     gather_forces,
     langevin_bath,
     place_atoms,
+    place_moved,
     turn_axes,
     turn_richardson,
 )
@@ -41,7 +42,7 @@ from asemd.words import bounds, yes_no
 
 HEADER = 16     # numbers of every fix of this family before its own
 ORDER = "rigid bodies must be defined before the fix that changes the box"
-MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, gather_forces, place_atoms, langevin_bath]
+MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, gather_forces, place_atoms, place_moved, langevin_bath]
 
 
 class Rigid(Fix):
@@ -292,7 +293,7 @@ class Rigid(Fix):
     def initial_integrate(th, s, p, b):
         barrier(th)
         half, count = 0.5 * th.dt * p[10], b.mass.shape[0]
-        whole, middle, sums = np.empty(4), np.empty(4), np.empty(6)
+        whole, middle = np.empty(4), np.empty(4)
         for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
             if p[2] != 0.0:
                 follow_box(s, b, k)
@@ -302,9 +303,7 @@ class Rigid(Fix):
                 b.momentum[k, d] += half * b.torque[k, d] * b.moves[k, 3 + d]
             angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
             turn_richardson(b.q[k], b.momentum[k], b.omega[k], b.moments[k], b.axes[k], 0.5 * th.dt, whole, middle)
-            place_atoms(s, b, k, 0.5 * th.dt * p[1], True, sums)
-            for c in range(6):
-                b.half_virial[k, c] = sums[c]
+            place_moved(th, s, p, b, k)
         barrier(th)
 
     @hook(uses=MOVE)

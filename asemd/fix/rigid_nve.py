@@ -24,6 +24,7 @@ from asemd.kernels.rigid import (
     langevin_bath,
     momentum_of,
     place_atoms,
+    place_moved,
     turn_about,
     turn_axes,
     turn_symplectic,
@@ -31,7 +32,7 @@ from asemd.kernels.rigid import (
 from asemd.kernels.threads import barrier
 
 MOVE = [turn_axes, angular_velocity, turn_about, turn_symplectic, kick_conjugate, momentum_of, follow_box, gather_forces, place_atoms,
-        langevin_bath]
+        place_moved, langevin_bath]
 
 
 class RigidNVE(Rigid):
@@ -51,7 +52,7 @@ class RigidNVE(Rigid):
     @hook(uses=MOVE)
     def initial_integrate(th, s, p, b):
         barrier(th)
-        half, count, sums = 0.5 * th.dt * p[10], b.mass.shape[0], np.empty(6)
+        half, count = 0.5 * th.dt * p[10], b.mass.shape[0]
         for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
             if p[2] != 0.0:
                 follow_box(s, b, k)
@@ -64,9 +65,7 @@ class RigidNVE(Rigid):
             turn_axes(b.q[k], b.axes[k])
             momentum_of(b.p[k], b.q[k], b.axes[k], b.momentum[k])
             angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
-            place_atoms(s, b, k, 0.5 * th.dt * p[1], True, sums)
-            for c in range(6):
-                b.half_virial[k, c] = sums[c]
+            place_moved(th, s, p, b, k)
         barrier(th)
 
     @hook(uses=MOVE)

@@ -204,7 +204,7 @@ class RigidNVT(RigidNVE):
     @hook(uses=ALL)
     def initial_integrate(th, s, p, b):
         barrier(th)
-        half, quarter, count, sums = 0.5 * th.dt * p[10], 0.5 * th.dt, b.mass.shape[0], np.empty(6)
+        half, quarter, count = 0.5 * th.dt * p[10], 0.5 * th.dt, b.mass.shape[0]
         slow_t, slow_r, n = 1.0, 1.0, int(p[21])
         if p[16] != 0.0:
             slow_t, slow_r = math.exp(-quarter * p[80 + n]), math.exp(-quarter * p[80 + 5 * n])
@@ -250,9 +250,7 @@ class RigidNVT(RigidNVE):
         for k in range(lo, hi):
             if p[17] != 0.0:
                 follow_box(s, b, k)
-            place_atoms(s, b, k, 0.5 * th.dt * p[1], True, sums)
-            for c in range(6):
-                b.half_virial[k, c] = sums[c]
+            place_moved(th, s, p, b, k)
         barrier(th)
         if p[17] != 0.0:
             body_scale_box(th, s, p, quarter)

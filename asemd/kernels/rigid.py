@@ -239,6 +239,19 @@ def place_atoms(s, b, k, half, moving, sums):
             s.x[0, i], s.x[1, i], s.x[2, i] = dx + b.x[k, 0] - ox, dy + b.x[k, 1] - oy, dz + b.x[k, 2] - oz
 
 
+def place_moved(th, s, p, b, k):
+    """`place_atoms` of a body that has moved: barostats now see the virial of this half of the step in place of that of the last step."""
+    sums, seen = np.empty(6), p[1] != 0.0 and p[2] != 0.0
+    for j in range(b.first[k], b.first[k + 1] if seen else b.first[k]):
+        for c in range(6):
+            s.virial[th.tid, c] -= b.virial[j, c]
+    place_atoms(s, b, k, 0.5 * th.dt * p[1], True, sums)
+    for c in range(6):
+        b.half_virial[k, c] = sums[c]
+        if seen:
+            s.virial[th.tid, c] += sums[c]
+
+
 def langevin_bath(th, p, b, k):
     """Friction and noise on body k; ``p[5]`` is the seed (0: none), ``p[6]`` to ``p[9]`` temperatures, friction and noise."""
     if p[5] == 0.0:
