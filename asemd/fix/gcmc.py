@@ -187,8 +187,7 @@ class GCMC(Fix):
         if loop.step == self.next_reneighbor:
             loop.sync_out()
             moves = Moves(self, loop)
-            for _ in range(self.exchanges + self.moves):
-                moves.attempt()
+            moves.series()
             moves.carry_over()
             self.held_tail = moves.tail.held
             self.next_reneighbor += self.interval

@@ -7,8 +7,8 @@ import numpy as np
 
 from asemd.errors import SimulationError
 from asemd.fix.reservoir import Reservoir
+from asemd.kernels.trial import ACCEPTABLE
 
-ACCEPTABLE = 1e50       # energies beyond are refused without a random number
 TRANSLATION, INSERTION, DELETION, ROTATION = 0, 2, 4, 6     # where their attempts are counted; successes follow
 
 
@@ -52,6 +52,35 @@ class Moves(Reservoir):
     def changed(self) -> None:
         """Places or numbers of atoms are others."""
         self._gas = None
+
+    def series(self) -> None:
+        """All attempts of one time: compiled where single atoms move in a periodic box along the axes."""
+        fix = self.fix
+        plain = fix.molecule is None and not fix.by_molecule and fix.region is None and not self.tail.on and not self.closed
+        if plain and self.box.aligned and not (self.energies.exact and self.energies.narrow):
+            self.compiled()
+        else:
+            for _ in range(fix.exchanges + fix.moves):
+                self.attempt()
+
+    def compiled(self) -> None:
+        fix, a = self.fix, self.atoms
+        a.room(fix.exchanges + fix.moves)
+        streams = (fix.random, fix.other)
+        states = np.array([r.state for r in streams], np.int64)
+        saved = np.array([math.nan if r.saved is None else r.saved for r in streams])
+        limits = np.array([fix.moves, fix.exchanges, fix.kind, fix.least, fix.most, 0 if fix.full_energy else 1, self.one_type,
+                           fix.full_energy], np.int64)
+        p = np.array([fix.displace, fix.beta, fix.activity * self.volume, fix.speed, self.charges[0], self.kept_charge,
+                      self.system.mass[fix.kind]])
+        gone = np.zeros(1, np.int64)
+        self.energies.numbers[1] = -1.0
+        a.n = int(self.energies.module.atom_moves(states, saved, limits, p, self.count, a.n, gone, a.x, a.image, a.type, a.q, a.molecule,
+                                                  a.row, a.gas, a.moved, a.v, a.id, a.mass, self.low, np.diag(self.box.cell).copy(),
+                                                  self.energies.numbers, *self.energies.box))
+        a.removed |= bool(gone[0])
+        for r, state, value in zip(streams, states, saved):
+            r.state, r.saved = int(state), None if math.isnan(value) else float(value)
 
     def attempt(self) -> None:
         """One attempt."""

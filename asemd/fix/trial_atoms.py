@@ -83,7 +83,7 @@ class Energies:
             raise InputError(f"{what}: a pair style whose factor differs from atom to atom has no energy")
         if any(t.molecules == "same" for t in terms):
             raise InputError(f"{what}: pair_style hybrid/molecular is not supported")
-        self.kernel = trial.kernel(tuple(t.style for t in terms))
+        self.module = trial.kernel(tuple(t.style for t in terms))
         one = np.ones(5)
         self.tables = tuple((t.tables.rows, t.tables.constants, t.tables.arrays, np.array([w[0] for w in t.weights(one, one)]))
                             for t in terms)
@@ -108,8 +108,12 @@ class Energies:
     def of(self, atoms: TrialAtoms, at, types, charges, skip: int = -1, molecule: int = NOBODY) -> float:
         """Energy of atoms at `at` (m, 3) with the others: without atom `skip`, without `molecule`."""
         self.numbers[0], self.numbers[1] = skip, molecule
-        return self.kernel(at, types, charges, atoms.n, self.numbers, atoms.x, atoms.type, atoms.q, atoms.molecule, self.inverse,
-                           self.cell, self.reach, self.low, self.high, self.cut2, self.tables)
+        return self.module.trial_energy(at, types, charges, atoms.n, self.numbers, atoms.x, atoms.type, atoms.q, atoms.molecule, *self.box)
+
+    @property
+    def box(self) -> tuple:
+        """What compiled code needs of the box and of the pair styles."""
+        return self.inverse, self.cell, self.reach, self.low, self.high, self.cut2, self.tables
 
 
 class TrialAtoms:
@@ -157,14 +161,20 @@ class TrialAtoms:
 
     def add(self, **values) -> int:
         """One more atom, the last one."""
-        if self.n == len(self.x):
-            for name in self.names:
-                array = getattr(self, name)
-                setattr(self, name, np.concatenate([array, np.zeros_like(array)]))
+        self.room(1)
         i, self.n = self.n, self.n + 1
         for name, value in ({"image": 0, "row": -1, "gas": True, "moved": False, "molecule": 0, "q": 0.0} | values).items():
             getattr(self, name)[i] = value
         return i
+
+    def room(self, more: int) -> None:
+        """Make the arrays so long that some more atoms fit."""
+        if self.n + more > len(self.x):
+            for name in self.names:
+                array = getattr(self, name)
+                longer = np.zeros((max(self.n + more, 2 * len(array)), *array.shape[1:]), array.dtype)
+                longer[:len(array)] = array
+                setattr(self, name, longer)
 
     def members(self, molecule: int) -> np.ndarray:
         """The atoms of a molecule."""

@@ -7,7 +7,10 @@ from __future__ import annotations
 import math
 from functools import cache
 
+import numpy as np
+
 OVERLAP = 1e100        # energy of a trial position that is too near to an atom
+ACCEPTABLE = 1e50       # energies beyond are refused without a random number
 pair_energy = None
 
 
@@ -76,13 +79,147 @@ def trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, invers
     return total
 
 
+def park(states, k):
+    """The next number of stream k."""
+    states[k] = states[k] * 16807 % 2147483647
+    return states[k] * (1.0 / 2147483647)
+
+
+def gaussian(states, saved, k):
+    """The next gaussian number of stream k, whose other one is in `saved` (nan: none)."""
+    if saved[k] == saved[k]:
+        value = saved[k]
+        saved[k] = math.nan
+        return value
+    while True:
+        v1, v2 = 2.0 * park(states, k) - 1.0, 2.0 * park(states, k) - 1.0
+        r = v1 * v1 + v2 * v2
+        if 0.0 < r < 1.0:
+            factor = math.sqrt(-2.0 * math.log(r) / r)
+            saved[k] = v1 * factor
+            return v2 * factor
+
+
+def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, molecule, row, gas, moved, v, id_of, mass, origin, lengths,
+               numbers, inverse, cell, reach, low, high, cut2, tables):
+    """A series of attempts with single atoms in a periodic box along the axes, as `asemd.fix.gcmc_moves` has them one by one.
+
+    Parameters
+    ----------
+    states, saved : (2,)
+        Random streams: of all processes, of one of them; as LAMMPS draws from them.
+    limits : (8,) int
+        Moves, exchanges, type, least and most gas atoms, which stream decides, whether all gas atoms count as of that type, whether
+        velocities are drawn before the decision.
+    p : (7,) float
+        Longest move, 1 / kT, activity times volume, speed, charges of an atom that is tried and of one that is there, mass.
+    gone : (1,) int
+        Becomes 1 if an atom of the system went.
+
+    Returns
+    -------
+    int
+        How many atoms there are now.
+    """
+    tries, kind, decides = limits[0] + limits[1], limits[2], limits[5]
+    chosen, count = np.empty(len(gas), np.int64), 0
+    at, types, charges, new_v = np.zeros((1, 3)), np.zeros(1, np.int64), np.zeros(1), np.zeros(3)
+    changed = True
+    for _ in range(tries):
+        if changed:
+            count, changed = 0, False
+            for i in range(n):
+                if gas[i]:
+                    chosen[count] = i
+                    count += 1
+        if int(park(states, 0) * tries) + 1 <= limits[0]:
+            park(states, 0)
+            counts[0] += 1
+            if count == 0:
+                continue
+            i = chosen[int(count * park(states, 0))]
+            types[0], charges[0] = kind if limits[6] else type_of[i], q[i]
+            numbers[0] = i
+            at[0] = x[i]
+            before = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            r2 = 2.0
+            while r2 > 1.0:
+                r2 = 0.0
+                for d in range(3):
+                    r = 2.0 * park(states, 1) - 1.0
+                    at[0, d] = x[i, d] + p[0] * r
+                    r2 += r * r
+            after = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            if after < ACCEPTABLE and park(states, decides) < math.exp(min(p[1] * (before - after), 700.0)):
+                for d in range(3):
+                    x[i, d] = at[0, d]
+                    while x[i, d] < origin[d]:
+                        x[i, d] += lengths[d]
+                        image[i, d] -= 1
+                    while x[i, d] >= origin[d] + lengths[d]:
+                        x[i, d] = max(x[i, d] - lengths[d], origin[d])
+                        image[i, d] += 1
+                moved[i] = True
+                counts[1] += 1
+        elif park(states, 0) < 0.5:
+            counts[4] += 1
+            if count == 0 or count <= limits[3]:
+                continue
+            i = chosen[int(count * park(states, 0))]
+            types[0], charges[0] = kind if limits[6] else type_of[i], q[i]
+            numbers[0] = i
+            at[0] = x[i]
+            energy = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            if park(states, decides) < count * math.exp(min(p[1] * energy, 700.0)) / p[2]:
+                n -= 1
+                if row[i] >= 0:
+                    gone[0] = 1
+                x[i], image[i], v[i] = x[n], image[n], v[n]
+                type_of[i], q[i], molecule[i], row[i], gas[i], moved[i] = type_of[n], q[n], molecule[n], row[n], gas[n], moved[n]
+                id_of[i], mass[i] = id_of[n], mass[n]
+                changed = True
+                counts[5] += 1
+        else:
+            counts[2] += 1
+            if count >= limits[4]:
+                continue
+            for d in range(3):
+                at[0, d] = origin[d] + park(states, 0) * lengths[d]
+                if at[0, d] >= origin[d] + lengths[d]:
+                    at[0, d] = origin[d]
+            types[0], charges[0] = kind, p[4]
+            numbers[0] = -1.0
+            if limits[7]:
+                for d in range(3):
+                    new_v[d] = gaussian(states, saved, 1) * p[3]
+            energy = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            if energy < ACCEPTABLE and park(states, decides) < p[2] * math.exp(min(-p[1] * energy, 700.0)) / (count + 1):
+                if not limits[7]:
+                    for d in range(3):
+                        new_v[d] = gaussian(states, saved, 1) * p[3]
+                last = 0
+                for i in range(n):
+                    last = max(last, id_of[i])
+                x[n], v[n], image[n] = at[0], new_v, 0
+                type_of[n], q[n], molecule[n], row[n], gas[n], moved[n] = kind, p[5], 0, -1, True, False
+                id_of[n], mass[n] = last + 1, p[6]
+                n += 1
+                changed = True
+                counts[3] += 1
+    return n
+
+
 @cache
 def kernel(styles: tuple):
-    """`trial_energy` for the sum of some pair styles; `tables` has (rows, constants, arrays, factors (2,)) of each."""
+    """The module of `trial_energy` and `atom_moves` for the sum of some pair styles.
+
+    `tables` has (rows, constants, arrays, factors (2,)) of each.
+    """
     from asemd.kernels.generate import Builder
     from asemd.kernels.pair import list_kernel
     b = Builder(f"trial energies: {' '.join(style.name for style in styles)}")
     b.constant("OVERLAP", OVERLAP)
+    b.constant("ACCEPTABLE", ACCEPTABLE)
     lines = ["def pair_energy(r2, qq, tables, ti, tj):", "    total = 0.0"]
     for k, style in enumerate(styles):
         b.use(list_kernel(style, style.parts, energy=True, per_atom=False)[1], "pair_energy_one", f"pair{k}")
@@ -90,4 +227,6 @@ def kernel(styles: tuple):
                   f"    fp, ev, ec = pair{k}(r2, qq, w[0], w[1], rows, constants, arrays, ti, tj)", "    total += ev + ec"]
     b.text("\n".join([*lines, "    return total"]))
     b.function(trial_energy)
-    return b.build().trial_energy
+    for f in (park, gaussian, atom_moves):
+        b.function(f)
+    return b.build()
