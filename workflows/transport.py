@@ -84,7 +84,7 @@ def draw(path: Path, result: dict, published: dict, symbol: str, profiles: dict,
     for name, profile in profiles.items():
         b.plot((np.arange(len(profile)) + 0.5) / len(profile), profile, "o-", ms=3, label=name)
     b.set(xlabel="z / $L_z$", ylabel=quantity)
-    b.legend(fontsize=7)
+    b.legend(fontsize=7, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     if integral:
         t, value, error = integral
         c.plot(t, value)

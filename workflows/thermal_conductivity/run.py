@@ -16,7 +16,7 @@ import transport  # noqa: E402
 ROUTES = {"langevin": ("in.langevin", {}), "heat": ("in.heat", {}), "ehex": ("in.heat", {"how": "ehex"}), "exchange": ("in.exchange", {}),
           "green-kubo": ("in.green-kubo", {})}
 QUICK = {"cells": 4, "equil": 300, "block": 500, "steps": 2000, "repeat": 50}
-CUT = 2.0       # end of the integral of Green and Kubo, time units
+CUT = 1.5       # end of the integral of Green and Kubo, time units
 PUBLISHED = {"Lautenschlaeger and Hasse 2019": 3.50, "Evans 1986": 3.4}
 NAMES = {"langevin": "two Langevin layers", "heat": "fix heat", "ehex": "fix ehex", "exchange": "exchange of energy"}
 
