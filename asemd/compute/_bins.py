@@ -19,12 +19,19 @@ class Frame:
         self.system, self.periodic, self.reduced, self.cell = system, box.periodic, reduced, box.cell
         lo, hi = np.asarray(box.lo), np.asarray(box.hi)
         self.lo, self.hi = (np.zeros(3), np.ones(3)) if reduced else (lo, hi)
-        x = system.x.copy(order="F")        # columns in one piece
-        self.length, self.x = self.hi - self.lo, box.fractional(x) if reduced else x
+        self.length = self.hi - self.lo
+
+    @cached_property
+    def x(self) -> np.ndarray:
+        """(n, 3) of the atoms, within the periodic directions of the box."""
+        x = self.system.x.copy(order="F")        # columns in one piece
+        if self.reduced:
+            x = self.system.box.fractional(x)
         for k in np.flatnonzero(self.periodic):
-            c = self.x[:, k]
+            c = x[:, k]
             c += np.where(c < self.lo[k], self.length[k], 0.0)
             c -= np.where(c >= self.hi[k], self.length[k], 0.0)
+        return x
 
     @cached_property
     def real(self) -> Frame:

@@ -45,6 +45,7 @@ class ChunkAtom(Compute):
         self.ids: np.ndarray | None = None      # of compressed chunks
         self.fixed: tuple | None = None         # number of chunks and ids, with nchunk once
         self.assigned: Original | None = None   # chunks of atoms, with ids once
+        self._just: tuple | None = None         # a state and its `numbers`
         self.held = 0       # how many fixes want the number of chunks, and with ids nfreq the chunks of atoms, to stay
 
     @property
@@ -70,7 +71,9 @@ class ChunkAtom(Compute):
         """The number of chunks, and with ``ids nfreq`` the chunks of atoms, stay as now until `release`; for fixes that average."""
         if not self.held:
             self.fixed = self.assigned = None if not self.counts_once else self.fixed
+            just = self._just = state, self.numbers(state)
             self.assign(state)
+            self._just = just       # the first sample may be of the same step
         self.held += 1
 
     def release(self) -> None:
@@ -116,11 +119,11 @@ class ChunkAtom(Compute):
 
     def assign(self, state) -> tuple[np.ndarray, int]:
         """(n,) chunk of each atom from 1 on, 0 for none; and how many there are."""
-        s = self.settings
+        s, just, self._just = self.settings, self._just, None
         if self.assigned is not None and self.fixed is not None and (s.ids == "once" or s.ids == "nfreq" and self.held):
             self.ids = self.fixed[1]
             return self.assigned.of(state.system, np.zeros(state.system.n, int)), self.fixed[0]
-        at, known, total = self.numbers(state)
+        at, known, total = just[1] if just is not None and just[0] is state else self.numbers(state)
         stays = self.counts_once or self.held > 0
         if self.fixed is None or not stays:
             self.fixed = self._count(at, known, total)
@@ -144,9 +147,13 @@ class ChunkAtom(Compute):
         """How many chunks there are."""
         return float(self.assign(state)[1])
 
+    def _number(self, state) -> int:
+        """How many chunks there are; while they are held, no atom is assigned for it."""
+        return self.fixed[0] if self.held and self.fixed is not None else self.assign(state)[1]
+
     def numbers_of_chunks(self, state) -> np.ndarray:
         """(chunks,) what each was numbered before numbers without atoms were left out."""
-        count = self.assign(state)[1]
+        count = self._number(state)
         return np.arange(1, count + 1) if self.ids is None else np.pad(self.ids, (0, count - len(self.ids)))
 
     def coordinates(self, state) -> np.ndarray:
@@ -160,6 +167,6 @@ class ChunkAtom(Compute):
         s = self.settings
         if not s.bins:
             raise InputError(f"compute {self.id} (chunk/atom {s.style}) has no bins with coordinates")
-        count = self.assign(state)[1]
+        count = self._number(state)
         middles = s.bins.middles(Frame(state.system, s.units == "reduced"), s.bounds)
         return middles[self.ids - 1] if self.ids is not None else middles[:count]
