@@ -108,11 +108,12 @@ def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.n
     joins = {name: np.ones(n, bool) if name == "all" else np.asarray(chosen.get(name, np.zeros(n, bool)), bool) for name in loop.groups}
     system.__dict__.update(system.append(atoms, keep_ids=True).__dict__)
 
-    def longer(mask):       # exclusions hold masks, no names of groups
+    def longer(mask):       # exclusions hold masks, no names of groups: that of a group beside `all`, where one fits
         join = np.zeros(n, bool)
+        same = [name for name in joins if np.array_equal(loop.groups[name], mask)]
+        for name in [name for name in same if name != "all"] or same:
+            join |= joins[name]
         for name, which in joins.items():
-            if np.array_equal(loop.groups[name], mask):
-                join |= which
             if np.array_equal(loop.groups[name], ~mask):
                 join |= ~which
         return np.append(mask, join)

@@ -122,6 +122,7 @@ CASES = {
     "region": atoms(GCMC + "region s", more=REGION),
     "region, full energy": atoms(GCMC + "region s full_energy", more=REGION),
     "two types": atoms(GCMC, more="set type 1 type/fraction 2 0.3 777\npair_coeff 2 2 1.2 1.1 2.2", types="1 2"),
+    "a frame": atoms(GCMC + "full_energy", more="set group all type 2\ngroup frame type 2\nneigh_modify exclude group frame frame"),
     "overlap and limits": atoms(GCMC + "overlap_cutoff 0.8 min 100 max 106 tfac_insert 2.0"),
     "overlap, full energy": atoms(GCMC + "overlap_cutoff 0.7 full_energy"),
     "tilted": atoms(GCMC, box=TILTED),

@@ -118,7 +118,7 @@ def check_extent(session) -> None:
 def check_integration(session) -> None:
     """Warn when nothing moves the atoms, or two fixes move the same ones."""
     scene, movers = session.scene, []
-    filled = {*scene.dynamic_groups, *(f.group for f in scene.fixes.values() if f.style == "deposit")}
+    filled = {*scene.dynamic_groups, *(f.group for f in scene.fixes.values() if f.style in ("deposit", "gcmc"))}
     for id, fix in scene.fixes.items():
         if fix.group not in filled and not scene.groups.mask(fix.group).any() and scene.system.n:
             session.warn(f"fix {id} (style {fix.style}) acts on no atoms: group {fix.group} is empty", session.places.get(f"fix {id}"))
