@@ -9,6 +9,7 @@ from ase.constraints import FixAtoms, FixCartesian
 from ase.md.md import MolecularDynamics as ASEMolecularDynamics
 
 from asemd import units as unit_styles
+from asemd.atom_style import UNITS
 from asemd.calculator import ForceField
 from asemd.errors import InputError
 from asemd.fix import Fix
@@ -121,7 +122,7 @@ class MolecularDynamics(ASEMolecularDynamics):
 
     # ---- loop -> atoms ------------------------------------------------------------------------------------------------------------------
     def _move(self, atoms, system) -> None:
-        """Positions and momenta of a system to atoms."""
+        """Positions and momenta of a system to atoms, dipoles and rotation too."""
         u = {d: unit_styles.factor(d, self.atoms.calc.units) for d in ("distance", "velocity")}
         there, here, before = self._from
         now, box = system.box.unwrap(system.x, system.image), system.box
@@ -133,6 +134,8 @@ class MolecularDynamics(ASEMolecularDynamics):
         else:       # atoms that do not move keep their positions to the last bit
             atoms.arrays["positions"][:] = there + (now - here) * u["distance"]
         atoms.set_momenta(system.v * u["velocity"] * self.masses, apply_constraint=False)
+        for name in {"mu", "omega", "torque"} & set(system.extra) & set(atoms.arrays):
+            atoms.arrays[name][:] = system.extra[name] * unit_styles.factor(UNITS[name], self.atoms.calc.units)
 
     def _save(self, system, path: str) -> None:
         """Write the last good state of a run that failed."""

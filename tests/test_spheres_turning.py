@@ -205,3 +205,19 @@ def test_threads_and_restarts_change_nothing(name, tmp_path):
         one, two = (s.scene.system.select(np.argsort(s.scene.system.id)) for s in (whole, other))
         for a, b in ((one.v, two.v), (one.extra["omega"], two.extra["omega"]), (one.extra["mu"], two.extra["mu"])):
             assert a == pytest.approx(b, abs=1e-11)
+
+
+@pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
+def test_from_ase():
+    """Dipoles and angular velocities of ase.Atoms follow, as in a script."""
+    from asemd import MolecularDynamics
+    from asemd.fix import EField, NVTSphere
+    atoms = asemd("\n".join([*lines("nvt, field")[:-3], "run 0"])).scene.to_atoms()
+    bath = NVTSphere(temperature=(1.44, 2.0), damping=0.1, chain=4, dipole="dipole")
+    md = MolecularDynamics(atoms, 0.004, fixes=[EField(field=(0.7, -0.3, 0.5)), bath])
+    md.run(25)
+    md.run(15)
+    system = asemd("\n".join([*lines("nvt, field"), "run 25 start 0 stop 25", "run 15"])).scene.system
+    assert atoms.calc.units == system.units == "lj"
+    assert atoms.arrays["mu"] == pytest.approx(system.extra["mu"], abs=1e-10)
+    assert atoms.arrays["omega"] == pytest.approx(system.extra["omega"], abs=1e-10)
