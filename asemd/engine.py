@@ -235,7 +235,8 @@ class Engine:
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
         self.moved[:] = 0.0
-        self.state = self.state._replace(slot=self.slot_of, image=self.system.image, box=live_box.live(self))
+        new = self.state._replace(slot=self.slot_of, image=self.system.image, box=live_box.live(self))
+        self.state = new if any(a is not b for a, b in zip(new, self.state)) else self.state      # the same one is packed in memory
         for t in self.terms:
             t.rebuild(self)
         self.thread_arguments = None

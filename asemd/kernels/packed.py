@@ -7,6 +7,7 @@ only what it uses: the compiler drops the rest. Without compiler (``NUMBA_DISABL
 from __future__ import annotations
 
 import struct
+import weakref
 from itertools import count
 
 import numba
@@ -32,6 +33,19 @@ WITHOUT_COMPILER = bool(config.DISABLE_JIT)
 HANDLE = object if WITHOUT_COMPILER else np.int64
 
 
+def _members(array: np.ndarray) -> tuple[int, ...]:
+    """What numba's value of an array is made of; remembered as long as the array is there, for it takes some microseconds."""
+    if not array.flags.c_contiguous:
+        raise ValueError("arrays that are called by address are C-contiguous")
+    key = id(array)
+    members = (0, 0, array.size, array.itemsize, array.__array_interface__["data"][0], *array.shape, *array.strides)
+    _arrays[key] = weakref.ref(array, lambda gone: _arrays.pop(key, None)), members
+    return members
+
+
+_arrays: dict[int, tuple[weakref.ref, tuple[int, ...]]] = {}
+
+
 def pack(value, into: list[int]) -> None:
     """Append what numba's value of a tuple is made of: of an array no owner, then size, address, shape and strides.
 
@@ -44,9 +58,8 @@ def pack(value, into: list[int]) -> None:
         for member in value:
             pack(member, into)
     elif isinstance(value, np.ndarray):
-        if not value.flags.c_contiguous:
-            raise ValueError("arrays that are called by address are C-contiguous")
-        into += (0, 0, value.size, value.itemsize, value.__array_interface__["data"][0], *value.shape, *value.strides)
+        known = _arrays.get(id(value))
+        into += known[1] if known is not None and known[0]() is value else _members(value)
     elif isinstance(value, np.float32):
         into.append(_BITS.unpack(_SINGLE.pack(value, 0.0))[0])
     else:
