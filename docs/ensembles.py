@@ -73,7 +73,7 @@ Temperatures of positions and of velocities in units of the bath's. Oscillators:
 $k \\langle x^2 \\rangle$. Liquid: 256 repulsive spheres at density 0.8 with $\\Delta t = 0.005$, positions by the configurational
 temperature $\\langle (\\nabla U)^2 \\rangle / \\langle \\nabla^2 U \\rangle$. Wanted of `fix baoab` and `fix gjf` (half-step velocities),
 up to $\\gamma \\Delta t = 2$: positions within 2 %, velocities within 1 %. Plain `fix langevin` is there for comparison; it is not stable
-at 2. The band of the picture is 2 %.
+at 2. The band of the picture is 2 %. Standard errors are 0.4 % for the oscillators, about 1 % for positions in the liquid.
 
 | system | fix | gamma dt | positions | velocities | |
 |---|---|---|---|---|---|

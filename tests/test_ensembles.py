@@ -69,9 +69,11 @@ def test_large_friction_keeps_both_temperatures(module, scheme, friction):
 
 
 @compiled
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["baoab", "gjf"])
 def test_large_friction_in_a_liquid(module, scheme):
-    positions, velocities = module("splitting").liquid(scheme, 2.0, frames=150)
+    """Means of 100 frames of the configurational temperature scatter by more than 1 %."""
+    positions, velocities = module("splitting").liquid(scheme, 2.0, frames=1500)
     assert positions == pytest.approx(1.0, abs=0.02) and velocities == pytest.approx(1.0, abs=0.01)
 
 
