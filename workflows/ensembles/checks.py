@@ -50,15 +50,15 @@ def kinetic(run: Run, table: np.ndarray) -> dict:
 
 
 def ratio(first: Run, second: Run, tables) -> list[dict]:
-    """The logarithm of the ratio of two distributions against its slope in energy, enthalpy, volume, or energy and volume."""
+    """The logarithm of the ratio of two distributions against its slope in energy, enthalpy or volume."""
     import physical_validation as pv
     npt = "npt" in first.dynamics
     columns = (0, 2) if npt else (0,)
     rows = [t[::max(inefficiency(t[:, c]) for c in columns)] for t in tables]
-    text, heat, load = io.StringIO(), first.hot != second.hot, first.dense != second.dense
+    text, load = io.StringIO(), first.dense != second.dense
     with contextlib.redirect_stdout(text):
         off = pv.ensemble.check(simulation(first, rows[0]), simulation(second, rows[1]), verbosity=1, data_is_uncorrelated=True)
-    what = (["energy, jointly", "volume, jointly"] if heat and load else ["volume"] if load else ["enthalpy"] if npt else ["energy"])
+    what = ["volume" if load else "enthalpy" if npt else "energy"]
     found = [[float(v) for v in m] for m in SLOPE.findall(text.getvalue())][:len(what)]
     return [{"liquid": first.liquid, "dynamics": first.dynamics, "quantity": q, "samples": min(map(len, rows)), "slope": slope / true,
              "error": error / abs(true), "off": float(o), "control": DYNAMICS[first.dynamics].control, "ok": bool(o < LIMIT)}

@@ -45,8 +45,7 @@ def kinetic(runs, path: Path) -> None:
 
 
 def ratios(pairs, path: Path, bins: int = 16) -> None:
-    """Logarithms of ratios of histograms in energy or enthalpy, or volume; not of pairs that differ in both."""
-    pairs = [(pair, tables) for pair, tables in pairs if pair[0].hot == pair[1].hot or pair[0].dense == pair[1].dense]
+    """Logarithms of ratios of histograms in energy, enthalpy or volume."""
     figure, axes = panels(len(pairs))
     for ((one, two), tables), a in zip(pairs, axes):
         u, pressed = units.get(LIQUIDS[one.liquid].units), one.dense != two.dense

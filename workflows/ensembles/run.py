@@ -73,7 +73,7 @@ def main() -> None:
     with get_context("spawn").Pool(o.processes) as pool:
         found = dict(pool.map(simulate, [(run, folder) for g in groups for run in g], chunksize=1))
     kinetic = [checks.kinetic(run, found[run]) for g in groups for run in g if run.dense == 0]
-    pairs = [pair for g in groups for pair in ([(g[0], g[1])] if len(g) == 2 else [(g[0], g[1]), (g[0], g[2]), (g[1], g[2])])]
+    pairs = [(g[0], other) for g in groups for other in g[1:]]
     ratios = [row for pair in pairs for row in checks.ratio(*pair, [found[run] for run in pair])]
     about = {"machine": checks.machine(), "date": datetime.date.today().isoformat(), "limit": checks.LIMIT,
              "missing": [f"{g[0].liquid} {g[0].dynamics}" for g in wanted if g not in groups]}
