@@ -305,6 +305,7 @@ class Deform(Fix):
             if change is not None and change.how == "variable":
                 p[34 + 13 * d + 11:34 + 13 * d + 13] = [_single(f(loop), name) for f in change.values]
         new_box(loop.step, loop.begin, loop.end, loop.dt, p, box.vectors, box.origin)
+        self.adjust(loop)
         remember(p, box.vectors, box.origin)
         if self.remap == "x":
             move(loop.state, p, loop.nslots)
@@ -312,6 +313,9 @@ class Deform(Fix):
         follow(box)
         if self.flips and (np.abs(self._ratios(box)) > 0.5).any():
             self.next_reneighbor = loop.step + 1
+
+    def adjust(self, loop) -> None:
+        """Change the faces that were found, ``p[12:18]``; for fixes built on this one."""
 
     @staticmethod
     def _ratios(box) -> np.ndarray:

@@ -22,6 +22,7 @@ PARTIAL = {
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
     ("compute", "group/group"): "no kspace",
+    ("fix", "deform/pressure"): "no vol/balance/p yes",
     ("fix", "msst"): "no dftb",
     ("compute", "ti"): "pair styles and the whole tail correction",
     ("compute", "voronoi/atom"): "no radius",
