@@ -33,10 +33,8 @@ class DataFile:
         As the file has it, or together with the one it extends, before shrink-wrapped faces move to the atoms.
     coeffs : dict
         Section -> list of (place, words); types as numbers, without comments.
-    styles_hint, headings
-        Section -> style named after ``#`` in its heading, and its place.
-    title, fix_lines, fix_headers, order
-        First line; ID of a fix -> (place, words) of the lines of its sections, of its header lines; atom IDs in the order of the file.
+    styles_hint, headings, title, fix_lines, fix_headers, order
+        Section -> style after ``#`` in its heading, its place; first line; ID of a fix -> (place, words) of lines; atom IDs as in the file.
     """
 
     system: System
@@ -48,6 +46,7 @@ class DataFile:
     fix_lines: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
     fix_headers: dict[str, list[tuple[Where, list[str]]]] = field(default_factory=dict)
     order: np.ndarray | None = None
+
 
 def read_data(path: str | os.PathLike, units: str = "lj", atom_style: str = "full", boundary: Sequence[str] = ("pp", "pp", "pp"),
               dimension: int = 3, extra: dict[str, int] | None = None, onto: System | None = None,
