@@ -309,7 +309,7 @@ class Loop:
         if self._kinds[n][name] and name in tl.COMPILED:
             if self.fixes[n].follows == name:
                 self.fixes[n].follow(self)
-            self._calls.call(n, name, self._thread(), self.engine.state if state is None else state, self.fix_data)
+            self._calls.call(n, name, self._thread(), self.engine.state if state is None else state, self.fix_data, state is None)
         else:
             getattr(self.fixes[n], name)(self)
 

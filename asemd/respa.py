@@ -291,7 +291,7 @@ class RespaLoop(Loop):
         state = self.state._replace(f=forces[:3], torque=forces[3:])
         for n, fix in enumerate(self.fixes):
             if fix.integrates:
-                self._calls.call(n, name, th, state, self.fix_data)
+                self._calls.call(n, name, th, state, self.fix_data, keep=False)
         self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _look_at_list(self) -> None:

@@ -159,9 +159,10 @@ class Calls:
             self._table = calls, np.array(starts)
         return self._table
 
-    def call(self, n: int, kind: str, th, state, data) -> None:
-        """One hook of one fix, on any state."""
-        if state is self._state and data is self._data:
+    def call(self, n: int, kind: str, th, state, data, keep: bool = True) -> None:
+        """One hook of one fix; its arguments stay in memory for the next call if `keep`, which is for the state of the loop itself."""
+        if keep:
+            self._follow(state, data)
             arguments = self._arguments[n]
         else:
             block = packed.block(state)
