@@ -84,3 +84,6 @@ def changed(state, vectors: np.ndarray, origin: np.ndarray) -> None:
     """Another box for a `State`, from Python: positions stay where they are."""
     state.box.vectors[:], state.box.origin[:] = vectors, origin
     follow(state.box)
+
+
+follow.strict = corner_moves.strict = True       # the last bit decides when a list is built
