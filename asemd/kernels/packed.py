@@ -109,7 +109,9 @@ def text_of_type(kind) -> str:
 
 
 def text_of_arguments(value) -> str:
-    """`text_of_type` of a value's type."""
+    """`text_of_type` of a value's type; nothing where nothing is compiled."""
+    if WITHOUT_COMPILER:
+        return ""
     key = compute_fingerprint(value)
     if key not in _texts:
         _texts[key] = text_of_type(numba.typeof(value))
