@@ -289,10 +289,11 @@ class Loop:
     def _terms(self, tid: int) -> np.ndarray:
         """For the loop: kernels, arguments and clock of each term."""
         arguments = self.engine.arguments(tid)
-        if self._packed[tid] is None or self._packed[tid][0] is not arguments:
+        known = self._packed[tid]
+        if known is None or (known.arguments is not arguments and not known.take(arguments)):
             alone = bool(self._virial_every) and not any(f.with_energies for f in self.fixes)
-            self._packed[tid] = (arguments, *tl.terms_of(self.engine.terms, arguments, alone))
-        return self._packed[tid][1]
+            known = self._packed[tid] = tl.Terms(self.engine.terms, arguments, alone)
+        return known.rows
 
     def _take_timings(self) -> None:
         t, x = self.engine.timings, self._numbers

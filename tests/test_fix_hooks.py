@@ -91,4 +91,4 @@ def test_state_and_numbers_are_as_packed():
     with pytest.raises(TypeError, match="C-contiguous arrays"):
         packed.text_of_type(numba.typeof("x"))
     with pytest.raises(ValueError, match="contiguous"):
-        packed.pack(np.zeros((3, 3))[:, :2], [])
+        packed.pack((np.zeros((3, 3))[:, :2],), [])

@@ -46,7 +46,7 @@ def _members(array: np.ndarray) -> tuple[int, ...]:
 _arrays: dict[int, tuple[weakref.ref, tuple[int, ...]]] = {}
 
 
-def pack(value, into: list[int]) -> None:
+def pack(values: tuple, into: list[int]) -> None:
     """Append what numba's value of a tuple is made of: of an array no owner, then size, address, shape and strides.
 
     Raises
@@ -54,16 +54,16 @@ def pack(value, into: list[int]) -> None:
     ValueError
         An array is not C-contiguous.
     """
-    if isinstance(value, tuple):
-        for member in value:
-            pack(member, into)
-    elif isinstance(value, np.ndarray):
-        known = _arrays.get(id(value))
-        into += known[1] if known is not None and known[0]() is value else _members(value)
-    elif isinstance(value, np.float32):
-        into.append(_BITS.unpack(_SINGLE.pack(value, 0.0))[0])
-    else:
-        into.append(int(value) if isinstance(value, (int, np.integer)) else _BITS.unpack(_DOUBLE.pack(value))[0])
+    for value in values:
+        if isinstance(value, np.ndarray):
+            known = _arrays.get(id(value))
+            into += known[1] if known is not None and known[0]() is value else _members(value)
+        elif isinstance(value, tuple):
+            pack(value, into)
+        elif isinstance(value, np.float32):
+            into.append(_BITS.unpack(_SINGLE.pack(value, 0.0))[0])
+        else:
+            into.append(int(value) if isinstance(value, (int, np.integer)) else _BITS.unpack(_DOUBLE.pack(value))[0])
 
 
 def block(value):

@@ -52,8 +52,9 @@ def hooks_of(fixes: Sequence, kinds: Sequence[dict[str, bool]]) -> Calls:
     return Calls(hooks, [f.every for f in fixes], HALVES)
 
 
-def terms_of(terms: Sequence, arguments: Sequence[tuple], virial: bool) -> tuple[np.ndarray, list]:
-    """A row for each term: its kernels without and with energy and with the virial only, its arguments, where its time is counted.
+class Terms:
+    """What the loop knows of the terms: a row for each with its kernels (without energy, with energy, with the virial only), its
+    arguments, and where its time is counted.
 
     Parameters
     ----------
@@ -62,18 +63,25 @@ def terms_of(terms: Sequence, arguments: Sequence[tuple], virial: bool) -> tuple
         Of each term, for one thread.
     virial : bool
         Fixes want the virial now and then, without energies.
-
-    Returns
-    -------
-    rows, and the memory that must live as long as they are used
     """
-    rows, memory = np.empty((len(terms), 5), packed.HANDLE), [packed.block(a) for a in arguments]
-    for row, t, a, m in zip(rows, terms, arguments, memory, strict=True):
-        kind = packed.text_of_arguments(a)
-        kernels = t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if virial else t.kernel(True, False)
-        row[:3] = [kernel_address(k, kind) for k in kernels]
-        row[ARGUMENTS], row[TIME] = packed.handle(m), PAIR_TIME if t.category == "pair" else BOND_TIME
-    return rows, memory
+
+    def __init__(self, terms: Sequence, arguments: Sequence[tuple], virial: bool):
+        self.arguments, self.memory = arguments, [packed.block(a) for a in arguments]
+        self.kinds = [packed.text_of_arguments(a) for a in arguments]
+        self.rows = np.empty((len(terms), 5), packed.HANDLE)
+        for row, t, kind, m in zip(self.rows, terms, self.kinds, self.memory, strict=True):
+            kernels = t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if virial else t.kernel(True, False)
+            row[:3] = [kernel_address(k, kind) for k in kernels]
+            row[ARGUMENTS], row[TIME] = packed.handle(m), PAIR_TIME if t.category == "pair" else BOND_TIME
+
+    def take(self, arguments: Sequence[tuple]) -> bool:
+        """Other arguments of the same terms; False if they are of other types, and kernels are to be looked up again."""
+        if packed.WITHOUT_COMPILER or [packed.text_of_arguments(a) for a in arguments] != self.kinds:
+            return False
+        for memory, values in zip(self.memory, arguments):
+            memory[:] = packed.block(values)
+        self.arguments = arguments
+        return True
 
 
 @cache
