@@ -36,7 +36,7 @@ def remove(loop: Loop, rows, lost: bool = True, listed: bool = True) -> None:
     _go_on(loop, lambda old, new: old[~gone] if len(old) == len(gone) else new, listed)
 
 
-def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:
+def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = (), listed: bool = True) -> None:
     """Let atoms join in the midst of a run, behind those that are there, with the ids they have.
 
     Parameters
@@ -45,6 +45,8 @@ def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.nd
         In the same units; topology items among themselves.
     groups : iterable of str, or mapping of str to (n,) bool
         The groups they belong to besides ``all``; the mapping says which of them.
+    listed : bool
+        As for `remove`.
 
     Raises
     ------
@@ -54,7 +56,7 @@ def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.nd
     loop.engine.store()
     before = loop.system.n
     _put_in(loop, atoms, groups)
-    _go_on(loop, _joined(np.zeros(before, bool)))
+    _go_on(loop, _joined(np.zeros(before, bool)), listed)
 
 
 def exchange(loop: Loop, rows, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:

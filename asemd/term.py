@@ -149,6 +149,7 @@ class PairTerm(FactorTerm):
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
         self.row = 0
         self.tables4 = np.zeros((1, 2, 0, 4))
+        self._views: dict[int, tuple] = {}
 
     def kernel(self, energy, per_atom, virial=False):
         return self._scaled(pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude,
@@ -183,11 +184,19 @@ class PairTerm(FactorTerm):
     def arguments(self, engine, tid):
         s, c = engine.state, self.clusters(engine)
         f, acc = self._sums(engine, tid)
+        first, entries, excluded_first, excluded, buffer, types, saved, hide = self._mine(
+            tid, c.first, c.entries, c.excluded_first, c.excluded, self.buffer, self.types, self.saved, c.hide)
         return self._with_factor(engine, tid, (
-            s.x, f, s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, c.excluded_first[tid],
-            c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, self.buffer[tid],
-            self.types[tid], self.saved[tid], *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved,
-            engine.farthest[tid:tid + 1]))
+            s.x, f, s.q, s.type, first, entries, c.own, c.span, c.unshifted, c.shifts4, excluded_first, excluded, int(c.bounds[tid]),
+            int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, buffer, types, saved, *self.tables4[tid], acc, hide,
+            engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1]))
+
+    def _mine(self, tid: int, *arrays: np.ndarray) -> tuple[np.ndarray, ...]:
+        """A thread's rows of arrays; the same views as long as the arrays are the same, for new ones take time to be packed."""
+        known = self._views.get(tid)
+        if known is None or any(a is not b for a, b in zip(known[0], arrays)):
+            known = self._views[tid] = arrays, tuple(a[tid] for a in arrays)
+        return known[1]
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")

@@ -179,7 +179,7 @@ class Deposit(Fix):
         for _ in range(self.attempts):
             found = self._try(loop)
             if found is not None:
-                population.insert(loop, found, [self.group])
+                population.insert(loop, found, [self.group], listed=False)
                 self.inserted += 1
                 break
         else:

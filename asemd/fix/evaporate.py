@@ -105,7 +105,7 @@ class Evaporate(Fix):
                 gone.update(map(int, whole_one))
                 candidates = [c for c in candidates if c not in gone]
         if gone:
-            population.remove(loop, sorted(gone), lost=False)
+            population.remove(loop, sorted(gone), lost=False, listed=False)
             self.taken += len(gone)
 
     def scalar(self) -> float:

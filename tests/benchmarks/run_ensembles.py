@@ -65,9 +65,9 @@ fix 1 all nve
 fix walls all wall/reflect zlo EDGE zhi EDGE
 thermo 1000
 """
-COMING_AND_GOING = """region gas block INF INF INF INF 13 18
-fix come all deposit 100000 1 10 7331 region gas near 1.0 vz -1.0 -1.0
-fix go all evaporate 10 1 gas 4711
+COMING_AND_GOING = """region gas block 0 10 0 10 13 18
+fix come all deposit 100000 1 {every} 7331 region gas near 1.0 vz -1.0 -1.0
+fix go all evaporate {every} 1 gas 4711
 """
 
 
@@ -76,21 +76,22 @@ def measure(samples: int = 5, steps: int = 100, names=SCENES) -> dict:
     return {name: compare.rates(compare.alternate(compare.contenders(), script(name), steps, samples), steps) for name in names}
 
 
-def coming_and_going(samples: int = 5, steps: int = 200) -> dict:
-    """Time of a step with an atom that leaves and one that comes every 10 steps, in terms of a step of as many atoms that stay."""
+def coming_and_going(samples: int = 5, steps: int = 400) -> dict:
+    """Time of a step with an atom that leaves and one that comes every 10 or 100 steps, in terms of a step of 4000 atoms that stay."""
     from asemd.lammps import Lammps
     sessions = []
-    for more in ("", COMING_AND_GOING):
+    for more in ("", COMING_AND_GOING.format(every=10), COMING_AND_GOING.format(every=100)):
         lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
         lmp.commands_string(SLAB + more + "run 50\n")
         sessions.append(lmp)
-    seen: list[list[float]] = [[], []]
+    seen: list[list[float]] = [[], [], []]
     for _ in range(samples):
         for lmp, times in zip(sessions, seen):
             began = time.process_time()
             lmp.commands_string(f"run {steps} pre no post no\n")
             times.append(time.process_time() - began)
-    return {"time with atoms that come and go / without": compare.spread([b / a for a, b in zip(*seen)])}
+    return {f"time with atoms that come and go every {every} steps / without": compare.spread([b / a for a, b in zip(seen[0], times)])
+            for every, times in ((10, seen[1]), (100, seen[2]))}
 
 
 if __name__ == "__main__":
