@@ -243,7 +243,7 @@ lmp.commands_string(sys.argv[1])
 
 
 def start(text: str, **more) -> subprocess.Popen:
-    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    env = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}     # bytecode would be cut off where the disk is full
     return subprocess.Popen([sys.executable, "-c", PROGRAM, text], env=env, stderr=subprocess.PIPE, text=True, **more)
 
 
@@ -284,7 +284,8 @@ def test_full_disk(here):
     assert os.listdir() == []
 
 
-def test_old_file_survives_a_full_disk(here):
+def test_old_file_survives_a_full_disk(here, monkeypatch):
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
     session(f"{MELT}{FIXES['nve']}\nrun 0\nwrite_restart r").close()
     before = Path("r").read_bytes()
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
