@@ -4,13 +4,16 @@ from __future__ import annotations
 import gzip
 import lzma
 import re
+import sys
 
 import numpy as np
 import pytest
 from both import asemd, lines_of
+from lj_cell import BASE
 from wheel import ask
 
 from asemd.errors import InputError
+from asemd.lammps import Lammps
 
 SCENE = """
 units real
@@ -340,3 +343,21 @@ def test_mistakes(line, message, tmp_path):
 def test_names_are_needed_for_extxyz(tmp_path):
     with pytest.raises(InputError, match="atoms need names"):
         asemd(BONDED + f"dump d all extxyz 1 {tmp_path}/f\nrun 0")
+
+
+def test_dcd_on_a_full_disk(tmp_path, monkeypatch):
+    """The library that writes the format says nothing of it; asemd counts what arrived."""
+    pytest.importorskip("MDAnalysis")
+    resource = pytest.importorskip("resource")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(BASE + "run 5\ndump d all dcd 5 x.dcd\n")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (3000, hard))
+    try:
+        with pytest.raises(InputError, match=r"dump d: cannot write x.dcd: \d of \d+ snapshots arrived"):
+            lmp.commands_string("run 50\nundump d\n")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    lmp.close()

@@ -11,16 +11,33 @@ class DCD(Trajectory):
     """Positions in single precision with the cell; ``dump_modify unwrap yes`` undoes the wrapping into the box."""
 
     style = "dcd"
+    _frames = 0
 
     def start(self, path, n, step, dt):
         self._file = library()[0].DCDFile(path, "w")
         self._file.write_header(remarks="Written by asemd", natoms=n, istart=step, nsavc=self.every, delta=dt, is_periodic=1)
+
+        self._frames = 0
 
     def frame(self, positions, cell, step, dt):
         lengths = np.linalg.norm(cell, axis=1)
         a, b, c = cell / lengths[:, None]
         box = [lengths[0], a @ b, lengths[1], a @ c, b @ c, lengths[2]]     # the order of the file, cosines for angles
         self._file.write(positions.astype(np.float32), np.asarray(box))
+        self._frames += 1
+
+    def close(self):
+        """Close the file, and see whether everything arrived: its writer says nothing of a full disk."""
+        written, was_open = self._frames, self._file is not None
+        super().close()
+        if was_open:
+            try:
+                with library()[0].DCDFile(self.path) as found:
+                    arrived = len(found)
+            except OSError:
+                arrived = 0
+            if arrived != written:
+                raise InputError(f"dump {self.id}: cannot write {self.path}: {arrived} of {written} snapshots arrived; is there room?")
 
     def _modify_every(self, values, what, session):
         if values[0].startswith("v_"):
