@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 
-class Storage:
-    """Where LAMMPS would keep each atom, and in which order its half neighbour list names pairs.
+class AtomOrder:
+    """The order in which LAMMPS stores atoms: as they were made, sorted by place now and then.
 
     Parameters
     ----------
@@ -13,12 +13,70 @@ class Storage:
         Steps between two sorts of the atoms (``atom_modify sort``), 0: they are not sorted.
     width : float
         Of the bins of that sort, distance units; 0: half the reach of the list.
+    order : sequence of int, optional
+        Atom IDs as a data file has them; atoms of other systems begin in the order of their rows.
+
+    Attributes
+    ----------
+    ids : (n,) int array
+        Atom IDs in this order.
+    due : int
+        The step from which on a list build sorts.
+    """
+
+    def __init__(self, every: int = 1000, width: float = 0.0, order=None):
+        self.every, self.width, self.due = every, width, 0
+        self.ids = np.zeros(0, np.int64) if order is None else np.array(order, np.int64)
+
+    def rows(self, system) -> np.ndarray:
+        """Rows of the atoms in this order; atoms that came otherwise are the last ones."""
+        ids = self.ids[np.isin(self.ids, system.id)]
+        self.ids = np.concatenate([ids, system.id[~np.isin(system.id, ids)]])
+        return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
+
+    def sort(self, loop, x: np.ndarray | None = None) -> None:
+        """Sort by bins of the box, those of x first; within a bin the order stays.
+
+        Parameters
+        ----------
+        loop : asemd.loop.Loop
+        x : (n, 3) float array, optional
+            Positions within the box, by row; those of the system if not given.
+        """
+        system, e = loop.system, loop.engine
+        # also of pair style zero, which needs no list
+        cutoff = max(loop.interactions.cutoff(system.counts["ntypes"], e.units), e.reach - e.settings.skin)
+        if not self.every or not cutoff > 0.0:
+            return
+        self.due = (loop.step // self.every + 1) * self.every
+        if x is None:
+            x = system.x.copy()
+            system.box.wrap(x, system.image.copy())
+        rows, (low, high) = self.rows(system), bounds(system.box)
+        count = bin_counts(high - low, self.width or 0.5 * (cutoff + e.settings.skin), system.dimension)
+        bins = np.clip(((x[rows] - low) * (count / (high - low))).astype(np.int64), 0, count - 1)
+        self.ids = self.ids[np.argsort((bins[:, 2] * count[1] + bins[:, 1]) * count[0] + bins[:, 0], kind="stable")]
+
+
+def bin_counts(length: np.ndarray, width: float, dimension: int) -> np.ndarray:
+    """How many bins at least that wide fit along each direction."""
+    count = np.maximum((length * (1.0 / width)).astype(np.int64), 1)
+    if dimension == 2:
+        count[2] = 1
+    return count
+
+
+class Storage(AtomOrder):
+    """Where LAMMPS would keep each atom, and in which order its half neighbour list names pairs.
+
+    Parameters
+    ----------
+    every, width, order
+        As those of `AtomOrder`.
     bins : bool
         Whether lists come from bins (``neighbor ... bin``).
     newton : bool
         As ``newton``, for pairs.
-    order : sequence of int, optional
-        Atom IDs as a data file has them; atoms of other systems begin in the order of their IDs.
 
     Attributes
     ----------
@@ -27,17 +85,12 @@ class Storage:
     """
 
     def __init__(self, every: int = 1000, width: float = 0.0, bins: bool = True, newton: bool = True, order=None):
-        self.every, self.width, self.bins, self.newton, self.order = every, width, bins, newton, order
+        super().__init__(every, width, order)
+        self.bins, self.newton = bins, newton
         self.place = np.zeros(0, np.int64)
-        self.due = 0
 
     def begin(self, loop) -> None:
         """A run begins, or atoms left or joined."""
-        if len(self.place) != loop.system.n:
-            ids = loop.system.id
-            self.place = np.arange(len(ids))
-            if self.order is not None and np.array_equal(np.sort(self.order), np.sort(ids)):
-                self.place[np.argsort(ids)] = np.argsort(self.order)
         self.due = loop.step
         self.listed(loop)
 
@@ -45,25 +98,16 @@ class Storage:
         """A list was built: it is of these positions; sort the atoms if it is time to."""
         e = loop.engine
         self.x = np.ascontiguousarray(e.held[:, e.slot_of].T)
-        self.low, self.high = _bounds(loop.system.box)
+        self.low, self.high = bounds(loop.system.box)
         self.made = None
-        # also of pair style zero, which needs no list
-        cutoff = max(loop.interactions.cutoff(loop.system.counts["ntypes"], e.units), e.reach - e.settings.skin)
-        if self.every and loop.step >= self.due and cutoff > 0.0:
-            self.due = loop.step // self.every * self.every + self.every
-            at = self._bin(loop, self.width or 0.5 * (cutoff + e.settings.skin))
-            width = at.max(axis=0) + 1
-            key = (at[:, 2] * width[1] + at[:, 1]) * width[0] + at[:, 0]
-            order = np.lexsort((self.place, key))
-            self.place = np.empty(len(order), np.int64)
-            self.place[order] = np.arange(len(order))
+        if loop.step >= self.due:
+            self.sort(loop, self.x)
+        self.place = np.argsort(self.rows(loop.system))
 
     def _bin(self, loop, width: float, x: np.ndarray | None = None) -> np.ndarray:
         """(n, 3) bin of each atom, or of other places, also beyond the box."""
         length = self.high - self.low
-        count = np.maximum((length * (1.0 / width)).astype(np.int64), 1)
-        if loop.system.dimension == 2:
-            count[2] = 1
+        count = bin_counts(length, width, loop.system.dimension)
         if x is None:
             return np.clip(((self.x - self.low) * (count / length)).astype(np.int64), 0, count - 1)
         at = np.floor((x - self.low) * (count / length)).astype(np.int64)
@@ -154,10 +198,10 @@ def _above(d: np.ndarray) -> np.ndarray:
     return (z > 0) | ((z == 0) & ((y > 0) | ((y == 0) & (x > 0))))
 
 
-def _bounds(box) -> tuple[np.ndarray, np.ndarray]:
+def bounds(box) -> tuple[np.ndarray, np.ndarray]:
     """The corners of the smallest box along the axes that holds a box."""
     corners = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell + box.origin
     return corners.min(axis=0), corners.max(axis=0)
 
 
-__all__ = ["Storage"]
+__all__ = ["AtomOrder", "Storage"]

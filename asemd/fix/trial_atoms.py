@@ -10,56 +10,15 @@ import numpy as np
 
 from asemd import population
 from asemd.errors import InputError
+from asemd.fix.storage import AtomOrder
 from asemd.kernels import trial
 
 NOBODY = -1
 
 
-class AtomOrder:
-    """The order in which LAMMPS stores the atoms: as they were made, sorted by place now and then, holes filled by the last one.
-
-    Parameters
-    ----------
-    every : int
-        Steps between two times of sorting; 0: never.
-    width : float
-        Of the bins that it sorts into; 0: half the reach of the neighbour list.
-    order : sequence of int, optional
-        Atom IDs as a data file has them.
-    """
-
-    def __init__(self, every: int = 1000, width: float = 0.0, order=None):
-        self.every, self.width = every, width
-        self.ids = np.zeros(0, np.int64) if order is None else np.array(order, np.int64)
-        self.due = 0
-
-    def rows(self, system) -> np.ndarray:
-        """Rows of the atoms in this order; atoms that came otherwise are the last ones."""
-        ids = self.ids[np.isin(self.ids, system.id)]
-        self.ids = np.concatenate([ids, system.id[~np.isin(system.id, ids)]])
-        return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
-
-    def sort(self, loop) -> None:
-        """Sort by bins of the box, those of x first; within a bin the order stays."""
-        width = self.width or 0.5 * loop.engine.reach
-        system, box = loop.system, loop.system.box
-        if not self.every or not width:
-            return
-        self.due = (loop.step // self.every + 1) * self.every
-        rows = self.rows(system)
-        x, image = system.x[rows].copy(), system.image[rows].copy()
-        box.wrap(x, image)
-        corners = np.array([(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]) @ box.cell
-        low, high = box.origin + corners.min(axis=0), box.origin + corners.max(axis=0)
-        count = np.maximum(((high - low) * (1.0 / width)).astype(int), 1)
-        bins = np.clip(((x - low) * (count / (high - low))).astype(int), 0, count - 1)
-        number = (bins[:, 2] * count[1] + bins[:, 1]) * count[0] + bins[:, 0]
-        self.ids = self.ids[np.argsort(number, kind="stable")]
-
-
 def storage_of(loop, own: AtomOrder) -> AtomOrder:
     """The one that all fixes of a run share."""
-    return next((f.storage for f in loop.fixes if isinstance(getattr(f, "storage", None), AtomOrder)), own)
+    return next((f.storage for f in loop.fixes if type(getattr(f, "storage", None)) is AtomOrder), own)
 
 
 class Energies:
