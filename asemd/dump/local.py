@@ -64,11 +64,11 @@ class Local(Dump):
         if self.variables is None:
             raise InputError(f"dump local: column {name} needs a session")
         kind, id, column = found.groups()
-        width = self.variables.provider.local_columns(kind, id)
+        width, what = self.variables.provider.local_columns(kind, id), "compute" if kind == "c" else "fix"
         if column is None and width:
-            raise InputError(f"dump local: compute {id} gives {width} columns, say which one: {kind}_{id}[1]")
+            raise InputError(f"dump local: {what} {id} gives {width} columns, say which one: {kind}_{id}[1]")
         if column is not None and not 1 <= int(column) <= width:
-            raise InputError(f"dump local: {name}: compute {id} gives {width or 'no'} columns")
+            raise InputError(f"dump local: {name}: {what} {id} gives {width or 'no'} columns")
 
     def view(self, snapshot) -> Entries:
         provider = self.variables.provider

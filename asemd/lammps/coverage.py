@@ -39,7 +39,6 @@ PARTIAL = {
     ("atom", "dipole"): "only fixes nve/sphere, nvt/sphere, npt/sphere and nph/sphere turn dipoles, of atom_style hybrid sphere dipole",
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
-    ("dump", "local"): "no local values of fixes",
     ("fix", "adapt"): "no kspace, no scale of Coulomb styles, no cutoffs",
     ("fix", "ehex"): "no constrain, com (clusters of fix shake)",
     ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
