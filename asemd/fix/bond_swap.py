@@ -27,7 +27,7 @@ from asemd.compute.pressure import find_temperature
 from asemd.compute.temp import Temp
 from asemd.errors import InputError
 from asemd.fix import Fix
-from asemd.fix.storage import Storage
+from asemd.fix.atom_order import ListOrder
 from asemd.marsaglia import Marsaglia
 from asemd.words import exactly, number, whole
 
@@ -67,7 +67,7 @@ class BondSwap(Fix):
         if not 0.0 <= fraction <= 1.0 or cutoff < 0.0:
             raise InputError(f"fix bond/swap: fraction must be from 0 to 1 and the cutoff not negative, got {fraction:g} and {cutoff:g}")
         self.interval, self.fraction, self.cutoff, self.seed = every, fraction, cutoff, seed
-        self.random, self.temp, self.storage, self.newton_bond = Marsaglia(seed), Temp("all"), Storage(), True
+        self.random, self.temp, self.storage, self.newton_bond = Marsaglia(seed), Temp("all"), ListOrder(), True
         self.accepted = self.tried = 0
 
     @classmethod
@@ -79,7 +79,7 @@ class BondSwap(Fix):
         if not scene.need_system("fix bond/swap").molecular:
             raise InputError("fix bond/swap: Cannot use fix bond/swap with non-molecular systems: use an atom_style with bonds")
         pairs, fix.newton_bond = scene.newton
-        fix.storage = Storage(*scene.sort, scene.list_style != "nsq", pairs, scene.order)
+        fix.storage = ListOrder(*scene.sort, scene.list_style != "nsq", pairs, scene.order)
         return fix
 
     def to_lammps(self) -> list[str]:

@@ -27,9 +27,9 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.fix import Fix
+from asemd.fix.atom_order import AtomOrder
 from asemd.fix.gcmc_moves import Moves
 from asemd.fix.reservoir import check_scene, find_molecule, find_region, gas_type, read, region_volume
-from asemd.fix.storage import AtomOrder
 from asemd.fix.trial_atoms import storage_of
 from asemd.random import ParkMiller
 from asemd.words import bounds, number, take, whole

@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.fix.atom_order import ListOrder
 from asemd.fix.formula import write
-from asemd.fix.storage import Storage
 from asemd.fix.thermostat import Thermostat
 from asemd.marsaglia import Marsaglia
 from asemd.words import number, whole
@@ -48,7 +48,7 @@ class TempCSLD(Thermostat):
         super().__init__(group, temperature, damping)
         if not 0 < seed <= 900_000_000:
             raise InputError(f"fix {self.style}: seed must be a whole number from 1 to 900000000, got {seed}")
-        self.seed, self.energy, self.random, self.storage = seed, 0.0, Marsaglia(seed), Storage()
+        self.seed, self.energy, self.random, self.storage = seed, 0.0, Marsaglia(seed), ListOrder()
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -56,7 +56,7 @@ class TempCSLD(Thermostat):
             raise InputError(f"fix {cls.style} needs Tstart Tstop Tdamp seed, got {len(words)} values")
         damping, seed = number(words[2], f"fix {cls.style} Tdamp"), whole(words[3], f"fix {cls.style} seed")
         fix = cls(group, cls.read_ramp(words, session), damping, seed)
-        fix.storage = Storage(*session.scene.sort, order=session.scene.order)
+        fix.storage = ListOrder(*session.scene.sort, order=session.scene.order)
         return fix
 
     def to_lammps(self) -> list[str]:

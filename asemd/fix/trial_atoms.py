@@ -10,7 +10,7 @@ import numpy as np
 
 from asemd import population
 from asemd.errors import InputError
-from asemd.fix.storage import AtomOrder
+from asemd.fix.atom_order import AtomOrder
 from asemd.kernels import trial
 
 NOBODY = -1

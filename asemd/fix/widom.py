@@ -16,8 +16,8 @@ import math
 
 from asemd.errors import InputError
 from asemd.fix import Fix
+from asemd.fix.atom_order import AtomOrder
 from asemd.fix.reservoir import Reservoir, check_scene, find_molecule, find_region, gas_type, read, region_volume
-from asemd.fix.storage import AtomOrder
 from asemd.random import ParkMiller
 from asemd.words import number, take, whole
 

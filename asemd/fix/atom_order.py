@@ -66,7 +66,7 @@ def bin_counts(length: np.ndarray, width: float, dimension: int) -> np.ndarray:
     return count
 
 
-class Storage(AtomOrder):
+class ListOrder(AtomOrder):
     """Where LAMMPS would keep each atom, and in which order its half neighbour list names pairs.
 
     Parameters
@@ -204,4 +204,4 @@ def bounds(box) -> tuple[np.ndarray, np.ndarray]:
     return corners.min(axis=0), corners.max(axis=0)
 
 
-__all__ = ["AtomOrder", "Storage"]
+__all__ = ["AtomOrder", "ListOrder"]
