@@ -11,7 +11,7 @@ from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
 from asemd.errors import LostAtoms, SimulationError
 from asemd.exclusions import Exclusions
-from asemd.kernels.state import aligned, cell_arrays, empty_state
+from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
@@ -48,6 +48,7 @@ class Engine:
         self.slot_of, self.sparse = np.zeros(0, np.int32), False
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
         self.parallel = Team(self.threads)
+        self.meeting = Meeting(self.threads, np.zeros(8, np.int64))      # for terms whose threads wait for each other
         self.groups: dict[str, np.ndarray] = {}
         self.bits: dict[str, int] = {"all": 1}
         self.result: Result | None = None

@@ -87,6 +87,13 @@ class Thread(NamedTuple):
     scratch: np.ndarray       # (nth, 8) float64
 
 
+class Meeting(NamedTuple):
+    """Where the threads that compute one term meet: what `asemd.kernels.threads.barrier` takes inside a term's kernel."""
+
+    nth: int
+    sync: np.ndarray          # (8,) int64 barrier counter, of the terms alone
+
+
 def cell_arrays(vectors: np.ndarray, periodic: np.ndarray) -> Cell:
     """`Cell` of three edge vectors (rows) and three flags; vectors of non-periodic directions may be anything non-degenerate."""
     vectors = np.ascontiguousarray(vectors, dtype=float)
