@@ -33,8 +33,8 @@ def add(engine: Engine, result: Result) -> Result:
         engine.atom_energy[:] = 0.0
         engine.atom_virial[:] = 0.0
         f = t.kernel(True, True)
-        for tid in range(engine.threads):
-            f(*t.arguments(engine, tid))
+        given = [t.arguments(engine, tid) for tid in range(engine.threads)]
+        engine.parallel(lambda tid, f=f, given=given: f(*given[tid]))
         e, v = np.zeros(n), np.zeros((n, 6))
         e[rows[slots]] = engine.atom_energy.sum(0)[slots]
         v[rows[slots]] = engine.atom_virial.sum(0)[:, slots].T

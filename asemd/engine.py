@@ -9,11 +9,12 @@ from numba import config
 from asemd import atom_shares, faults, live_box
 from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
-from asemd.errors import LostAtoms, SimulationError
+from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
 from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
+from asemd.kspace import solve
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
 from asemd.result import Result, Settings, Snapshot
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
@@ -60,8 +61,9 @@ class Engine:
     def update(self, system) -> None:
         """Take over types, charges, topology, box and groups after they changed; coefficients too."""
         self.system = system
-        self._set_box()
+        self.set_box()
         s, inter = self.settings, self.interactions
+        self.solver = solve(system, inter, self.units) if inter.kspace != "none" or inter.needs_solver else None
         self.pair_terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts]
         for kind, *pair in s.exclude:
             if kind == "type":
@@ -122,9 +124,11 @@ class Engine:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special", owner=t))
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t))
+        if self.solver is not None and self.solver.modify["compute"]:
+            terms.append(self.solver.term(self))
         return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]
 
-    def _set_box(self) -> None:
+    def set_box(self) -> None:
         box = self.system.box
         self.vectors = np.ascontiguousarray(box.cell, float)
         self.origin = np.asarray(box.origin, float).copy()
@@ -201,13 +205,13 @@ class Engine:
         self.bonds.release()
         if self.box_moves:
             live_box.take(self)
-            self._set_box()
+            self.set_box()
         k, s = self.k, self.state
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
             raise SimulationError(f"atom {self.system.id[s.row[bad]]}: position is not finite")
         if not self.periodic.all():
-            self._faces()
+            live_box.faces(self)
         if self.mode == "cluster":
             if self._bins is None or not self.periodic.all():
                 self._bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
@@ -249,28 +253,6 @@ class Engine:
         if self.exclusions.partners is None:
             return np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32)
         return self.exclusions.partners[:2]
-
-    def _faces(self) -> None:
-        """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost."""
-        box = self.system.box
-        if not box.is_lammps_frame:
-            return
-        rows = self.state.row[:self.ns]
-        inside = rows >= 0
-        x, rows = self.state.x[:, :self.ns].T[inside], rows[inside]
-        new = box.shrink_wrapped(x)
-        if new is not box:
-            self.system.box = box = new
-            self._set_box()
-        out = box.beyond(x)[:, :self.system.dimension]
-        lost = np.flatnonzero(out.any(axis=1))
-        if len(lost):
-            ids = self.system.id[rows[lost]]
-            first = lost[np.argmin(ids)]
-            a = int(np.flatnonzero(out[first])[0])
-            raise LostAtoms(f"{len(lost)} atom{'s' * (len(lost) > 1)} lost: atom {ids.min()} at {'xyz'[a]} = {x[first, a]:g} left the box "
-                            f"[{box.lo[a]:g}, {box.hi[a]:g}] through a fixed boundary; use a shrink-wrapped boundary, a wall, "
-                            "or a shorter time step", np.sort(rows[lost]))
 
     def mark(self, i, j, code, shifts) -> None:
         """Keep a plain list, special pairs and exclusions marked."""
@@ -317,7 +299,7 @@ class Engine:
         if self.threads > 1:
             self.k.add_buffers(self.buffers, self.ns)
         for t, dt in zip(self.terms, spent):
-            self.timings["Pair" if t.category == "pair" else "Bond"] += dt
+            self.timings[{"pair": "Pair", "kspace": "Kspace"}.get(t.category, "Bond")] += dt
         self.check()
 
     def check(self) -> None:
@@ -340,6 +322,8 @@ class Engine:
             if t.category == "pair":
                 energy["evdwl"] += float(a[0])
                 energy["ecoul"] += float(a[1])
+            elif t.category == "kspace":
+                energy["elong"] += float(a[0])
             else:
                 energy[BONDED_KEY[t.category]] += float(a[0] + a[1])
             virial_of[t.category] = virial_of.get(t.category, 0.0) + a[2:8]

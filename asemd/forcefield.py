@@ -55,6 +55,8 @@ class Interactions:
         Words of ``kspace_style``.
     kspace_modify : dict
         Keyword -> value of `asemd.kspace_settings`, those that were given since the style was chosen.
+    long_range : dict
+        What pair styles must know of the solver, such as ``g_ewald``; `asemd.kspace.solve` sets it before forces are computed.
     """
 
     uses: dict[str, list[Use]] = field(default_factory=lambda: {c: [] for c in CATEGORIES})
@@ -73,8 +75,14 @@ class Interactions:
     dielectric: float = 1.0
     kspace: str = "none"
     kspace_modify: dict[str, Any] = field(default_factory=dict)
+    long_range: dict[str, float] = field(default_factory=dict, compare=False)
 
     bond, angle, dihedral, improper, pair = map(_property, CATEGORIES)
+
+    @property
+    def needs_solver(self) -> bool:
+        """Whether a pair style leaves a part to a long-range solver."""
+        return any(use.style.solvers for use in self.uses["pair"])
 
     def style_name(self, category: str) -> str:
         """The name after ``*_style``: ``none``, a style or a hybrid."""

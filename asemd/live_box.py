@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from asemd.errors import LostAtoms
 from asemd.kernels.state import BoxState
 from asemd.neighbor import IMAGES
 
@@ -31,3 +32,26 @@ def take(engine) -> None:
     box = engine.system.box
     if engine.state is not None and not (np.array_equal(box.cell, engine.vectors) and np.array_equal(box.origin, engine.origin)):
         engine.system.box = replace(box, origin=engine.origin, cell=engine.vectors)
+
+
+def faces(engine) -> None:
+    """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost."""
+    box = engine.system.box
+    if not box.is_lammps_frame:
+        return
+    rows = engine.state.row[:engine.ns]
+    inside = rows >= 0
+    x, rows = engine.state.x[:, :engine.ns].T[inside], rows[inside]
+    new = box.shrink_wrapped(x)
+    if new is not box:
+        engine.system.box = box = new
+        engine.set_box()
+    out = box.beyond(x)[:, :engine.system.dimension]
+    lost = np.flatnonzero(out.any(axis=1))
+    if len(lost):
+        ids = engine.system.id[rows[lost]]
+        first = lost[np.argmin(ids)]
+        a = int(np.flatnonzero(out[first])[0])
+        raise LostAtoms(f"{len(lost)} atom{'s' * (len(lost) > 1)} lost: atom {ids.min()} at {'xyz'[a]} = {x[first, a]:g} left the box "
+                        f"[{box.lo[a]:g}, {box.hi[a]:g}] through a fixed boundary; use a shrink-wrapped boundary, a wall, "
+                        "or a shorter time step", np.sort(rows[lost]))

@@ -297,7 +297,8 @@ class Loop:
 
     def _take_timings(self) -> None:
         t, x = self.engine.timings, self._numbers
-        for name, at in (("Pair", tl.PAIR_TIME), ("Bond", tl.BOND_TIME), ("Modify", tl.MODIFY_TIME), ("Comm", tl.COMM_TIME)):
+        for name, at in (("Pair", tl.PAIR_TIME), ("Bond", tl.BOND_TIME), ("Kspace", tl.KSPACE_TIME),
+                         ("Modify", tl.MODIFY_TIME), ("Comm", tl.COMM_TIME)):
             t[name] += float(x[at])
             x[at] = 0.0
 

@@ -126,7 +126,8 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
             shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
             style = use.style.variant(use.settings, interactions.compat).bind(use.settings, filled)
             molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else ""
-            tables = style.pack_pairs(use.settings, filled, ntypes, units, shift)
+            settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
+            tables = style.pack_pairs(settings, filled, ntypes, units, shift)
             out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))
     return out
 

@@ -22,6 +22,7 @@ from asemd.pairstyle import mix_distance, mix_energy
 
 STYLES = [n for n in style.names("pair") if style.find("pair", n).parts and n != "table"]
 QQ = -302.0
+LONG_RANGE = {"g_ewald": 0.29}
 
 
 def setup(name: str, settings: str, coeffs: dict, rule=None, shift=False, ntypes=2, twin=False):
@@ -30,7 +31,7 @@ def setup(name: str, settings: str, coeffs: dict, rule=None, shift=False, ntypes
     values = s.parse_settings(settings.split())
     filled = s.filled({pair: s.parse_coeff(text.split(), values) for pair, text in coeffs.items()}, values, ntypes, rule)
     s = s.variant(values, "lammps" if twin else "")
-    return s, s.pack_pairs(values, filled, ntypes, None, shift), filled
+    return s, s.pack_pairs({**values, **LONG_RANGE}, filled, ntypes, None, shift), filled
 
 
 def energy_force(s, tables, r, pair=(1, 1), qq=QQ):

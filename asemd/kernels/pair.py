@@ -190,10 +190,17 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         args += [f"arrays[{array + i}]" for i in range(len(part.arrays))]
         w = "coul" if part.charged else "lj"
         slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
-        lines += [f"    if r2 < rows[{row}, ti, tj]:",
-                  f"        e{k}, d{k} = {name}({', '.join(args)})",
-                  f"        fp += {w} * {slope}",
-                  f"        {'ec' if part.charged else 'ev'} += {w} * (e{k} - rows[{row + 1}, ti, tj])"]
+        if part.long:
+            lines += [f"    if r2 < rows[{row}, ti, tj]:",
+                      f"        e{k}, d{k} = {name}({', '.join(args)})",
+                      "        bare = (1.0 - coul) * qq / math.sqrt(r2) if coul < 1.0 else 0.0",
+                      f"        fp += {slope} - (bare / r2 if bare != 0.0 else 0.0)",
+                      f"        ec += e{k} - bare"]
+        else:
+            lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
+                      f"        e{k}, d{k} = {name}({', '.join(args)})",
+                      f"        fp += {w} * {slope}",
+                      f"        {'ec' if part.charged else 'ev'} += {w} * (e{k} - rows[{row + 1}, ti, tj])"]
         row += 2 + len(part.rows)
         constant += len(part.constants)
         array += len(part.arrays)

@@ -29,7 +29,7 @@ HALVES = ("initial_integrate", "final_integrate", "final_initial")      # strict
 KINDS = (*COMPILED, "final_initial")
 # places in `control` (int64) and `numbers` (float64)
 STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL, OUTDATED, BOX_MOVES = range(14)
-DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME = range(6)
+DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME, KSPACE_TIME = range(7)
 # places in a row of `terms`: addresses of the kernels, of their arguments, and the place of the time spent
 PLAIN, WITH_ENERGY, WITH_VIRIAL, ARGUMENTS, TIME = range(5)
 
@@ -72,7 +72,7 @@ class Terms:
         for row, t, kind, m in zip(self.rows, terms, self.kinds, self.memory, strict=True):
             kernels = t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if virial else t.kernel(True, False)
             row[:3] = [kernel_address(k, kind) for k in kernels]
-            row[ARGUMENTS], row[TIME] = packed.handle(m), PAIR_TIME if t.category == "pair" else BOND_TIME
+            row[ARGUMENTS], row[TIME] = packed.handle(m), {"pair": PAIR_TIME, "kspace": KSPACE_TIME}.get(t.category, BOND_TIME)
 
     def take(self, arguments: Sequence[tuple]) -> bool:
         """Other arguments of the same terms; False if they are of other types, and kernels are to be looked up again."""

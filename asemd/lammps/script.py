@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 from asemd.errors import InputError, Where
 from asemd.lammps import catalog, lex
-from asemd.lammps.command.kspace_style import refusal
 from asemd.lammps.data_lines import similar_file
 
 # command -> category of style, position of the style's name
@@ -96,11 +95,8 @@ def check(commands: list[Command]) -> tuple[list[InputError], list[InputError]]:
     loop = range(marks[0], marks[-1] + 1) if jumps else range(0)
     errors: list[InputError] = []
     warnings: list[InputError] = []
-    boundary: list[str] = []
     for i, command in enumerate(commands):
-        problem = _problem(command, boundary)
-        if names[i] == "boundary":
-            boundary = command.words[1:]
+        problem = _problem(command)
         if problem:
             (warnings if i in loop else errors).append(problem.at(command.where))
         if names[i] == "quit" and i not in loop:
@@ -125,7 +121,7 @@ def before(commands: Iterable[Command], names: Sequence[str]) -> Iterator[Comman
         yield command
 
 
-def _problem(command: Command, boundary: list[str]) -> InputError | None:
+def _problem(command: Command) -> InputError | None:
     try:
         words = command.words
     except InputError as e:
@@ -139,7 +135,7 @@ def _problem(command: Command, boundary: list[str]) -> InputError | None:
         if len(words) > position and "$" not in words[position]:
             name = words[position]
             if not (category == "region" and name in REGION_ACTIONS) and not catalog.exists(category, name):
-                return refusal(name, boundary) if category == "kspace" else catalog.unknown(category, name)
+                return catalog.unknown(category, name)
     return None
 
 

@@ -1,0 +1,237 @@
+"""The sum over waves of charges: structure factors, then forces, shared between threads by atoms.
+
+A wave is three whole numbers n; its vector is 2 pi (inverse box) n. Waves come sorted by their first two numbers, so that the product of
+the first two phases is made once for many of them. Phases of each direction are found by multiplication, as powers of the first.
+
+Columns of `waves (m, 10)`: the weight 4 pi / V exp(-k^2 / 4 g^2) / k^2, k (3), and what the virial of a wave is of its energy (6).
+"""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd.kernels.target import njit
+from asemd.kernels.threads import barrier
+
+BLOCK = 128
+FAST = {"contract", "reassoc", "nsz", "arcp"}
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def weigh(numbers, vectors, g, waves):
+    """Weights, vectors and virials of the waves `numbers (m, 3)` in a box; returns its volume."""
+    a, b, c = vectors[0], vectors[1], vectors[2]
+    bc = (b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0])
+    ca = (c[1] * a[2] - c[2] * a[1], c[2] * a[0] - c[0] * a[2], c[0] * a[1] - c[1] * a[0])
+    ab = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    det = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]
+    front = 2.0 * math.pi / det
+    for m in range(numbers.shape[0]):
+        k0 = front * (numbers[m, 0] * bc[0] + numbers[m, 1] * ca[0] + numbers[m, 2] * ab[0])
+        k1 = front * (numbers[m, 0] * bc[1] + numbers[m, 1] * ca[1] + numbers[m, 2] * ab[1])
+        k2 = front * (numbers[m, 0] * bc[2] + numbers[m, 1] * ca[2] + numbers[m, 2] * ab[2])
+        kk = k0 * k0 + k1 * k1 + k2 * k2
+        w = waves[m]
+        w[0] = 4.0 * math.pi / abs(det) * math.exp(-0.25 * kk / (g * g)) / kk
+        w[1], w[2], w[3] = k0, k1, k2
+        v = -2.0 * (1.0 / kk + 0.25 / (g * g))
+        w[4], w[5], w[6] = 1.0 + v * k0 * k0, 1.0 + v * k1 * k1, 1.0 + v * k2 * k2
+        w[7], w[8], w[9] = v * k0 * k1, v * k0 * k2, v * k1 * k2
+    return abs(det)
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def phases(x, inverse, lo, hi, most, table):
+    """``table[d, n, 0 or 1, i]``: cosine and sine of n times the phase of slot i along direction d."""
+    for d in range(3):
+        for i in range(lo, hi):
+            s = x[0, i] * inverse[0, d] + x[1, i] * inverse[1, d] + x[2, i] * inverse[2, d]
+            angle = 2.0 * math.pi * (s - math.floor(s))
+            table[d, 0, 0, i] = 1.0
+            table[d, 0, 1, i] = 0.0
+            table[d, 1, 0, i] = math.cos(angle)
+            table[d, 1, 1, i] = math.sin(angle)
+        for n in range(2, most[d] + 1):
+            for i in range(lo, hi):
+                c, s = table[d, 1, 0, i], table[d, 1, 1, i]
+                table[d, n, 0, i] = table[d, n - 1, 0, i] * c - table[d, n - 1, 1, i] * s
+                table[d, n, 1, i] = table[d, n - 1, 1, i] * c + table[d, n - 1, 0, i] * s
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def first_two(table, n0, n1, lo, hi, re, im):
+    """Cosine and sine of the phase of the first two numbers, for slots lo..hi-1; the first one is not negative."""
+    sign = 1.0 if n1 >= 0 else -1.0
+    m = abs(n1)
+    for i in range(hi - lo):
+        c0, s0 = table[0, n0, 0, lo + i], table[0, n0, 1, lo + i]
+        c1, s1 = table[1, m, 0, lo + i], sign * table[1, m, 1, lo + i]
+        re[i] = c0 * c1 - s0 * s1
+        im[i] = s0 * c1 + c0 * s1
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def structure(q, numbers, table, lo, hi, out):
+    """Sums of charge times cosine and sine over slots lo..hi-1, ``out (m, 2)``."""
+    re, im = np.empty(BLOCK), np.empty(BLOCK)
+    out[:] = 0.0
+    for b in range(lo, hi, BLOCK):
+        e = min(hi, b + BLOCK)
+        n0, n1 = -1, 0
+        for m in range(numbers.shape[0]):
+            if numbers[m, 0] != n0 or numbers[m, 1] != n1:
+                n0, n1 = numbers[m, 0], numbers[m, 1]
+                first_two(table, n0, n1, b, e, re, im)
+            sign = 1.0 if numbers[m, 2] >= 0 else -1.0
+            c, s, charge = table[2, abs(numbers[m, 2]), 0, b:e], table[2, abs(numbers[m, 2]), 1, b:e], q[b:e]
+            sum_c, sum_s = 0.0, 0.0
+            for i in range(e - b):
+                sum_c += charge[i] * (re[i] * c[i] - sign * im[i] * s[i])
+                sum_s += charge[i] * (im[i] * c[i] + sign * re[i] * s[i])
+            out[m, 0] += sum_c
+            out[m, 1] += sum_s
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def fields(f, q, scale, numbers, waves, total, table, lo, hi, flat):
+    """Forces on slots lo..hi-1; `flat` leaves out the third component."""
+    re, im = np.empty(BLOCK), np.empty(BLOCK)
+    field = np.empty((3, BLOCK))
+    for b in range(lo, hi, BLOCK):
+        e = min(hi, b + BLOCK)
+        n0, n1 = -1, 0
+        field[:] = 0.0
+        fx, fy, fz = field[0], field[1], field[2]
+        for m in range(numbers.shape[0]):
+            if numbers[m, 0] != n0 or numbers[m, 1] != n1:
+                n0, n1 = numbers[m, 0], numbers[m, 1]
+                first_two(table, n0, n1, b, e, re, im)
+            sign = 1.0 if numbers[m, 2] >= 0 else -1.0
+            c, s = table[2, abs(numbers[m, 2]), 0, b:e], table[2, abs(numbers[m, 2]), 1, b:e]
+            weight = 2.0 * waves[m, 0]
+            sum_c, sum_s = weight * total[m, 0], weight * total[m, 1]
+            k0, k1, k2 = waves[m, 1], waves[m, 2], waves[m, 3]
+            for i in range(e - b):
+                u = sum_c * (im[i] * c[i] + sign * re[i] * s[i]) - sum_s * (re[i] * c[i] - sign * im[i] * s[i])
+                fx[i] += k0 * u
+                fy[i] += k1 * u
+                fz[i] += k2 * u
+        for i in range(e - b):
+            w = scale * q[b + i]
+            f[0, b + i] += w * fx[i]
+            f[1, b + i] += w * fy[i]
+            if not flat:
+                f[2, b + i] += w * fz[i]
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, energy, virial):
+    """Energies and virials of slots lo..hi-1."""
+    re, im = np.empty(1), np.empty(1)
+    for i in range(lo, hi):
+        n0, n1 = -1, 0
+        for m in range(numbers.shape[0]):
+            if numbers[m, 0] != n0 or numbers[m, 1] != n1:
+                n0, n1 = numbers[m, 0], numbers[m, 1]
+                first_two(table, n0, n1, i, i + 1, re, im)
+            sign = 1.0 if numbers[m, 2] >= 0 else -1.0
+            c, s = table[2, abs(numbers[m, 2]), 0, i], sign * table[2, abs(numbers[m, 2]), 1, i]
+            e = scale * q[i] * waves[m, 0] * (total[m, 0] * (re[0] * c - im[0] * s) + total[m, 1] * (im[0] * c + re[0] * s))
+            energy[i] += e
+            for k in range(6):
+                virial[k, i] += e * waves[m, 4 + k]
+        energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy, virial_too, per_atom):
+    """Take the interaction of the periodic images of a charged or polar slab off (Yeh, Berkowitz, J. Chem. Phys. 111, 3155 (1999);
+    Ballenegger, Arnold, Cerda, J. Chem. Phys. 131, 094107 (2009)); `sums (nth, 2)` is room for all threads."""
+    dipole, second = 0.0, 0.0
+    for i in range(lo, hi):
+        dipole += q[i] * x[2, i]
+        second += q[i] * x[2, i] * x[2, i]
+    sums[tid, 0], sums[tid, 1] = dipole, second
+    barrier(meeting)
+    dipole, second = 0.0, 0.0
+    for t in range(sums.shape[0]):
+        dipole += sums[t, 0]
+        second += sums[t, 1]
+    front = scale * 2.0 * math.pi / volume
+    if virial_too and tid == 0:
+        acc[0] += front * (dipole * dipole - qsum * second - qsum * qsum * height * height / 12.0)
+    for i in range(lo, hi):
+        f[2, i] -= 2.0 * front * q[i] * (dipole - qsum * x[2, i])
+    if per_atom:
+        for i in range(lo, hi):
+            energy[i] += front * q[i] * (x[2, i] * dipole - 0.5 * (second + qsum * x[2, i] * x[2, i]) - qsum * height * height / 12.0)
+
+
+@njit(cache=True, nogil=True)
+def stretched(vectors, stretch, out, inverse):
+    """The box with its third vector times `stretch`, and its inverse."""
+    for a in range(3):
+        for d in range(3):
+            out[a, d] = vectors[a, d] * (stretch if a == 2 else 1.0)
+    inverse[:] = np.linalg.inv(out)
+
+
+@njit(cache=True, nogil=True)
+def ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial,
+          level):
+    """All of it for one thread: `level` 0 forces, 1 energies and virial too, 2 shares of the atoms too.
+
+    `constants`: g_ewald, energy scale, sum of charges, sum of their squares, stretch of the third vector, 1 for a slab's correction or 2
+    for no force along z; `held (4, 3)`: the box that `waves` are for, and its volume.
+    """
+    g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
+    if tid == 0:
+        same = True
+        for a in range(3):
+            for d in range(3):
+                if held[a, d] != box[a, d] * (stretch if a == 2 else 1.0):
+                    same = False
+        if not same:
+            stretched(box, stretch, held[:3], inverse)
+            held[3, 0] = weigh(numbers, held[:3], g, waves)
+    barrier(meeting)
+    volume = held[3, 0]
+    phases(x, inverse, lo, hi, most, table)
+    structure(q, numbers, table, lo, hi, sfac[tid])
+    barrier(meeting)
+    total = sfac[0].copy()
+    for t in range(1, sfac.shape[0]):
+        total += sfac[t]
+    fields(f, q, scale, numbers, waves, total, table, lo, hi, slabs == 2.0)
+    if level > 0 and tid == 0:
+        for m in range(numbers.shape[0]):
+            e = scale * waves[m, 0] * (total[m, 0] ** 2 + total[m, 1] ** 2)
+            acc[0] += e
+            for k in range(6):
+                acc[2 + k] += e * waves[m, 4 + k]
+        acc[0] -= scale * (g * qsqsum / math.sqrt(math.pi) + 0.5 * math.pi * qsum * qsum / (g * g * volume))
+    if level == 2:
+        shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, energy, virial)
+    if slabs == 1.0:
+        height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
+        slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy, level > 0, level == 2)
+    barrier(meeting)
+
+
+@njit(cache=True, nogil=True)
+def forces(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial):
+    """`ewald` without energies."""
+    ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial, 0)
+
+
+@njit(cache=True, nogil=True)
+def energies(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial):
+    """`ewald` with energy and virial."""
+    ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial, 1)
+
+
+@njit(cache=True, nogil=True)
+def of_atoms(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial):
+    """`ewald` with the shares of each atom."""
+    ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial, 2)

@@ -1,0 +1,204 @@
+"""Long-range solvers: what a cutoff leaves out of an interaction that falls off slowly, one file for each ``kspace_style``.
+
+A solver is made from the words of ``kspace_style`` and the keywords of ``kspace_modify`` (`asemd.kspace_settings`). Before a run, `solve`
+gives it the charges and the box; it chooses its splitting parameter and mesh, and says them to the pair styles (`KSpace.constants`) whose
+parts take ``g_ewald``. During the run it is a term like others (`KSpace.term`).
+
+Whatever decides about digits is LAMMPS's: choice of the parameters, estimates of errors, constants.
+"""
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from asemd import words as read
+from asemd.errors import InputError
+from asemd.kspace_settings import DEFAULTS
+from asemd.registry import class_of
+
+__all__ = ["KSpace", "solve"]
+
+
+class KSpace:
+    """A long-range solver.
+
+    Parameters
+    ----------
+    accuracy : float
+        Wanted root mean square error of forces, relative to the force between two unit charges one Angstrom apart.
+    modify : mapping, optional
+        Keywords of ``kspace_modify`` with their values; those left out have their defaults.
+
+    Attributes
+    ----------
+    g_ewald : float
+        Splitting parameter, 1/distance, after `prepare`.
+    n, qsum, qsqsum, q2, prd, volume
+        After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths and volume of the
+        box, its third vector stretched for slabs.
+    """
+
+    style = ""
+    flag = ""                   # what a pair style must have in `solvers` to work with this one
+    takes_slab = True
+    g_ewald = 0.0
+
+    def __init__(self, accuracy: float, modify: Mapping[str, Any] | None = None):
+        self.accuracy_relative = float(accuracy)
+        self.given = dict(modify or {})
+        self.modify = {**DEFAULTS, **self.given}
+
+    @classmethod
+    def from_words(cls, words: Sequence[str], modify: Mapping[str, Any] | None = None) -> KSpace:
+        """The solver that ``kspace_style NAME WORDS`` asks for.
+
+        Raises
+        ------
+        InputError
+            A wrong number of words, an accuracy that is not a positive number.
+        """
+        if len(words) != 1:
+            raise InputError(f"kspace_style {cls.style} needs one number, the accuracy, got {len(words)} words")
+        return cls(cls.read_accuracy(words[0]), modify)
+
+    @classmethod
+    def read_accuracy(cls, word: str) -> float:
+        """A positive number."""
+        value = abs(read.number(word, f"kspace_style {cls.style}: accuracy"))
+        if value == 0.0:
+            raise InputError(f"kspace_style {cls.style}: the accuracy must not be 0")
+        return value
+
+    # ------------------------------------------------------------------------------------------------------ what a scene needs
+    def check(self, system) -> None:
+        """Whether this solver can work in that box.
+
+        Raises
+        ------
+        InputError
+            Two dimensions, no charges, a box that is not periodic as it must be.
+        """
+        name, periodic = f"kspace_style {self.style}", np.array(system.box.periodic, bool)
+        if system.dimension == 2:
+            raise InputError(f"{name} needs three dimensions, this scene has two")
+        if system.q is None:
+            raise InputError(f"{name} needs atom attribute q: use atom_style charge or full")
+        if self.slab is not None:
+            if not self.takes_slab:
+                raise InputError(f"{name} does not take kspace_modify slab")
+            if not periodic[:2].all() or tuple(system.box.boundary[2]) != ("f", "f"):
+                raise InputError(f"{name} with kspace_modify slab needs boundary p p f, here it is {' '.join(system.box.boundary)}")
+            if self._tilted(system):
+                raise InputError(f"{name}: kspace_modify slab needs a box that is not triclinic")
+        elif not periodic.all():
+            raise InputError(f"{name} needs a box that is periodic in all directions, here is boundary {' '.join(system.box.boundary)}; "
+                             "for slabs use boundary p p f and kspace_modify slab 3.0, or msm for any boundary")
+
+    @staticmethod
+    def _tilted(system) -> bool:
+        return bool(system.box.triclinic) or bool(np.count_nonzero(system.box.cell - np.diag(np.diag(system.box.cell))))
+
+    @property
+    def slab(self) -> float | str | None:
+        """Extended volume of a slab, ``nozforce``, or None."""
+        value = self.modify["slab"]
+        return value if "slab" in self.given and value != 1.0 else None
+
+    @property
+    def stretch(self) -> float:
+        """By what the third vector is longer for the solver."""
+        return float(self.slab) if isinstance(self.slab, float) else 1.0
+
+    def prepare(self, system, interactions, units, cutoff: float) -> None:
+        """Take charges and box, choose parameters.
+
+        Parameters
+        ----------
+        cutoff : float
+            Of the pair style's Coulomb part.
+        """
+        self.check(system)
+        q = np.asarray(system.q, float)
+        self.n, self.cutoff = max(system.n, 1), float(cutoff)
+        self.qsum, self.qsqsum = float(q.sum()), float(q @ q)
+        self.scale = units.qqr2e / interactions.dielectric
+        self.q2 = self.qsqsum * self.scale
+        a, b, c = system.box.cell
+        lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
+        lengths[2] = abs(np.linalg.det(system.box.cell)) / (lengths[0] * lengths[1])
+        self.inner = lengths.copy()                   # without the slab's empty volume
+        self.prd = lengths * [1.0, 1.0, self.stretch]
+        self.volume = float(self.prd.prod())
+        two_charges = units.qqr2e * units.qelectron**2 / units.angstrom**2
+        self.two_charges = two_charges
+        self.accuracy = self.modify["force"] if self.modify["force"] >= 0.0 else self.accuracy_relative * two_charges
+        self.g_ewald = self.modify["gewald"] or self.first_guess()
+        self.choose(system)
+
+    def first_guess(self) -> float:
+        """The splitting parameter that makes the error of the pair part the one asked for.
+
+        Raises
+        ------
+        InputError
+            There is no charge, or no accuracy.
+        """
+        if self.accuracy <= 0.0:
+            raise InputError(f"kspace_style {self.style}: the accuracy must be positive")
+        if self.q2 == 0.0:
+            raise InputError(f"kspace_style {self.style}: all charges are 0; give kspace_modify gewald, or use no kspace_style")
+        g = self.accuracy * math.sqrt(self.n * self.cutoff * self.inner.prod()) / (2.0 * self.q2)
+        return (1.35 - 0.15 * math.log(self.accuracy)) / self.cutoff if g >= 1.0 else math.sqrt(-math.log(g)) / self.cutoff
+
+    def choose(self, system) -> None:
+        """Vectors or mesh for the accuracy."""
+        raise NotImplementedError
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """What pair styles take besides their own settings."""
+        return {"g_ewald": self.g_ewald}
+
+    @property
+    def real_error(self) -> float:
+        """Estimated error of forces that the pair part makes."""
+        return 2.0 * self.q2 * math.exp(-(self.g_ewald * self.cutoff) ** 2) / math.sqrt(self.n * self.cutoff * self.volume)
+
+    def lines(self) -> list[str]:
+        """What LAMMPS's log says of the solver."""
+        return []
+
+    def term(self, engine):
+        """The `asemd.term.Term` of this solver."""
+        raise NotImplementedError
+
+
+def solve(system, interactions, units) -> KSpace | None:
+    """The solver of a scene, ready; None without ``kspace_style``. `interactions.long_range` gets what pair styles must know.
+
+    Raises
+    ------
+    InputError
+        Solver and pair styles do not belong together, cutoffs of several pair styles differ, the box does not fit.
+    """
+    interactions.long_range = {}
+    uses = [use for use in interactions.uses["pair"] if use.style.solvers]
+    if interactions.kspace == "none":
+        if uses:
+            raise InputError(f"pair style {uses[0].style.name} needs a kspace_style, such as {next(iter(uses[0].style.solvers))} 1.0e-4")
+        return None
+    name, *words = interactions.kspace.split()
+    solver = class_of("kspace", name, KSpace).from_words(words, interactions.kspace_modify)
+    mine = [use for use in uses if solver.flag in use.style.solvers]
+    if not mine:
+        raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as lj/cut/coul/long")
+    cutoffs = {float(use.settings[part.cut]) for use in mine for part in use.style.parts if part.long}
+    if len(cutoffs) > 1:
+        raise InputError(f"Coulomb cutoffs of the sub-styles differ ({', '.join(f'{c:g}' for c in sorted(cutoffs))}): "
+                         f"kspace_style {name} needs one")
+    solver.prepare(system, interactions, units, cutoffs.pop())
+    interactions.long_range = solver.constants
+    return solver

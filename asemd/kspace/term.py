@@ -1,0 +1,50 @@
+"""A long-range solver as a term of the engine."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import SimulationError
+from asemd.term import Term
+
+
+class KSpaceTerm(Term):
+    """What the terms of all solvers have in common.
+
+    `kernels`: without energies, with energies and virial, with the shares of each atom; all take the same arguments: meeting, thread, x,
+    f, q, the slots of the thread, the box, what `of_solver` gives, sums of energies and virial, shares of energy and of virial.
+    """
+
+    category = "kspace"
+    kernels: tuple = ()
+
+    def __init__(self, solver):
+        self.solver, self.ready = solver, False
+        slab = 0.0 if solver.slab is None else 2.0 if solver.slab == "nozforce" else 1.0
+        self.constants = np.array([solver.g_ewald, solver.scale, solver.qsum, solver.qsqsum, solver.stretch, slab])
+
+    def kernel(self, energy, per_atom):
+        return self.kernels[2 if per_atom else 1 if energy else 0]
+
+    def prepare(self, engine) -> None:
+        """Make the arrays, once."""
+
+    def make_room(self, slots: int) -> None:
+        """Arrays by slot, for as many of them."""
+
+    def rebuild(self, engine):
+        if not self.ready:
+            self.prepare(engine)
+            self.ready = True
+        self.make_room(engine.state.x.shape[1])
+
+    def arguments(self, engine, tid):
+        s, ns, nth = engine.state, engine.ns, engine.threads
+        return (engine.meeting, tid, s.x, engine.buffers[tid], s.q, ns * tid // nth, ns * (tid + 1) // nth, s.box.vectors,
+                *self.of_solver(engine, tid), engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid])
+
+    def of_solver(self, engine, tid: int) -> tuple:
+        """Arguments of this solver's kernels."""
+        raise NotImplementedError
+
+    def describe(self, engine, item, value):
+        return SimulationError(f"kspace_style {self.solver.style}: the energy is not finite")

@@ -1,0 +1,43 @@
+r"""The part of q_i q_j / r within the cutoff that a long-range solver leaves: C q_i q_j erfc(g r) / (dielectric r).
+
+g is the solver's. The complementary error function is LAMMPS's approximation (M. Abramowitz, I. Stegun, Handbook of Mathematical Functions,
+7.1.26, errors below 1.5e-7), and its derivative that of the exact function, as in LAMMPS without tables. Special pairs lose the part of
+their bare energy that special_bonds takes off, for the solver knows nothing of bonds.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.pairstyle import pair
+
+
+def coul_long_d2(r2, qq, g_ewald):
+    r = math.sqrt(r2)
+    x = g_ewald * r
+    tail, bell = math.erfc(x), 1.12837917 * x * math.exp(-x * x)
+    return qq / (4.0 * r2 * r2 * r) * (3.0 * (tail + bell) + 2.0 * x * x * bell)
+
+
+def long_range(*solvers: str):
+    """Mark a Coulomb function as the part that these kinds of ``kspace_style`` leave to the pair style."""
+    def mark(function):
+        function.long, function.solvers = True, solvers
+        return function
+    return mark
+
+
+EWALD = ("pppm", "ewald")
+
+
+@pair("coul/long", settings="cut", coeff="", settings_example="10.0", example="", see="LAMMPS manual, pair_style coul/long",
+      d2=coul_long_d2, units={"g_ewald": "1/distance"})
+@long_range(*EWALD)
+def coul_long(r2, qq, g_ewald):
+    r2inv = 1.0 / r2
+    rinv = math.sqrt(r2inv)
+    x = g_ewald * (r2 * rinv)
+    gauss = math.exp(-x * x)
+    t = 1.0 / (1.0 + 0.3275911 * x)
+    tail = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * gauss
+    e = qq * rinv
+    return e * tail, -0.5 * e * (tail + 1.12837917 * x * gauss) * r2inv
