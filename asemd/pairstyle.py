@@ -108,6 +108,7 @@ class PairStyle(Style):
 
     solvers: frozenset[str] = frozenset()      # kinds of kspace_style that complete the parts; empty: none is needed
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
+    unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
                  mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, derived=None,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_pair_styles import ask_lammps, energy_force, lammps_commands, setup
+from test_pair_styles import ask_lammps, energy_force, setup
 
 from asemd import style, units
 from asemd.errors import InputError
@@ -22,8 +22,28 @@ CASES = [
     ("nm/cut", "10.0", "0.1 3.0 9.5 5.5 9.0", None, FAR), ("born", "10.0", "6.08 0.317 2.34 24.18 11.51 9.0", None, FAR),
     ("yukawa", "0.3 10.0", "10.0", "30.0 8.0", FAR), ("lj/cut/soft", "2.0 0.5 10.0", "0.1 3.0 0.6", "0.25 2.1 0.6 8.0", FAR),
     ("lj/class2/soft", "2.0 0.5 10.0", "0.1 3.0 0.6", "0.25 2.1 0.6 8.0", FAR),
+    ("gauss", "10.0", "1.0 0.09", "2.5 0.04 8.0", FAR), ("gauss", "10.0", "1.0 0.09", "-2.5 0.04 8.0", FAR),
+    ("gauss/cut", "10.0", "2.0 3.0 0.9", "1.5 3.5 1.1 8.0", FAR), ("gauss/cut", "10.0", "-2.0 3.0 0.9", "1.5 3.5 1.1 8.0", FAR),
+    ("gauss/cut", "10.0", "-2.0 3.0 0.9", "-1.5 3.5 1.1 8.0", FAR), ("beck", "10.0", "399.6 8.6 0.675 2.39 0.00037 8.0", None, FAR),
+    ("ufm", "10.0", "1.0 3.0", "2.5 2.1 8.0", FAR), ("born/gauss", "10.0", "8.2464e4 4.48 0.42644277 0.44 3.56 9.0", None, FAR),
+    ("zbl", "6.0 8.0", "6 6", "14 14", FAR), ("lj/mdf", "8.0 10.0", "0.1 3.0", "0.25 2.1 6.0 9.5", FAR),
+    ("lennard/mdf", "8.0 10.0", "2e5 30.0 7.5 9.5", None, FAR), ("buck/mdf", "8.0 10.0", "1e3 0.3 30.0 7.5 9.5", None, FAR),
+    ("lj/cubic", "", "0.1 3.0", "0.25 2.1", FAR), ("harmonic/cut", "", "1.5 6.0", "2.0 8.0", FAR),
+    ("wf/cut", "10.0", "0.1 3.0 1 1", None, FAR), ("wf/cut", "10.0", "0.1 3.0 2 3 9.0", None, FAR),
+    ("pedone", "10.0", "0.3 1.2 3.0 300.0 9.0", None, FAR), ("momb", "10.0 0.75 20.0", "0.1 1.2 3.5 40.0 3.2 9.0", None, FAR),
+    ("morse/smooth/linear", "10.0", "1.0 0.9 3.2 9.0", None, FAR), ("lj/pirani", "10.0", "4.0 7.0 6.0 3.5 0.045 9.0", None, FAR),
+    ("cosine/squared", "10.0", "1.0 3.5", None, FAR), ("cosine/squared", "10.0", "1.0 3.5 9.0 wca", None, FAR),
+    ("cosine/squared", "10.0", "1.0 3.5 wca", None, FAR), ("cosine/squared", "10.0", "1.0 3.5 3.5 wca", None, FAR),
+    ("lj/relres", "4.0 5.0 8.0 10.0", "0.1 3.0 0.05 3.5", "0.25 2.1 0.2 2.5 4.2 5.5 7.0 9.5", FAR),
+    ("lj/relres", "4.0 5.0 8.0 10.0", "0.1 3.0 0.0 3.5", "0.25 2.1 0.0 2.5 4.2 5.5 7.0 9.5", FAR),
+    ("lj/relres", "4.0 4.0 9.5 9.5", "0.1 3.0 0.1 3.5", "0.25 2.1 0.1 2.5", FAR),
 ]
 RULES = ("geometric", "arithmetic", "sixthpower")
+
+
+def lammps_commands(name, settings, a, b, rule, shift):
+    coeffs = [f"pair_coeff * * {a}"] if b is None else [f"pair_modify mix {rule}", f"pair_coeff 1 1 {a}", f"pair_coeff 2 2 {b}"]
+    return [f"pair_style {name} {settings}", f"pair_modify shift {shift}", *coeffs]
 
 
 def test_against_lammps(tmp_path):
@@ -33,7 +53,8 @@ def test_against_lammps(tmp_path):
     for v, got in zip(variants, ask_lammps(jobs, tmp_path), strict=True):
         name, settings, a, b, _, rule, shift = v
         coeffs = {(1, 1): a, (2, 2): b} if b is not None else {(1, 1): a, (1, 2): a, (2, 2): a}
-        s, tables, _ = setup(name, settings, coeffs, rule, shift == "yes", twin=True)
+        s, _, filled = setup(name, settings, coeffs, rule, twin=True)
+        tables = s.pack_pairs(s.parse_settings(settings.split()), filled, 2, units.get("real"), shift == "yes")
         mine = np.array([energy_force(s, tables, r, (1, 2)) for r in got["r"]])
         for k, what in enumerate("ef"):
             want = np.array(got[what])
@@ -41,7 +62,7 @@ def test_against_lammps(tmp_path):
             error = (np.abs(mine[:, k] - want) - near_zero) / np.maximum(np.abs(want), 1e-300)
             if not error.max() <= 1e-12:
                 wrong.append((name, a, rule, shift, what, float(error.max()), float(got["r"][int(error.argmax())])))
-    assert not wrong, wrong
+    assert not wrong, "\n".join(map(str, wrong))
 
 
 def tails_of_wheel(jobs):

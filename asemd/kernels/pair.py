@@ -200,7 +200,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
             lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
                       f"        fp += {w} * {slope}",
-                      f"        {'ec' if part.charged else 'ev'} += {w} * (e{k} - rows[{row + 1}, ti, tj])"]
+                      f"        {'ec' if part.charged else 'ev'} += {1.0 if style.unweighted else w} * (e{k} - rows[{row + 1}, ti, tj])"]
         row += 2 + len(part.rows)
         constant += len(part.constants)
         array += len(part.arrays)

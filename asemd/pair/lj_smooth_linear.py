@@ -1,10 +1,15 @@
 r"""$$E = \phi(r) - \phi(r_c) - (r - r_c) \phi'(r_c), \qquad \phi = 4\epsilon \left[ (\sigma/r)^{12} - (\sigma/r)^6 \right] \qquad r < r_c$$
 
 Lennard-Jones with shifted force: energy and force end at zero. With x = rc/r each power x^n - 1 - n (1 - 1/x) is (x - 1)^2 times a
-polynomial, so that no digits cancel near the cutoff.  Toxvaerd and Dyre, J. Chem. Phys. 134, 081102 (2011).
+polynomial, so that no digits cancel near the cutoff.
+
+The energy that LAMMPS adds up for special pairs lacks their weights (special_bonds), which its forces have; ``compat="lammps"`` does
+the same.
+Source: Toxvaerd and Dyre, J. Chem. Phys. 134, 081102 (2011).
 """
 from __future__ import annotations
 
+import copy
 import math
 
 from asemd.pairstyle import PairStyle
@@ -50,6 +55,8 @@ class LinearPair(PairStyle):
                          mix={"epsilon": "sigma", "sigma": "distance"}, rows="repulsion attraction", units={"epsilon": "energy",
                          "sigma": "distance"}, shifts=False, settings_example="2.5", example="1.0 1.1 2.4", doc=doc,
                          see="LAMMPS manual, pair_style lj/smooth/linear")
+        self.twin = copy.copy(self)
+        self.twin.unweighted = True
 
 
 register(LinearPair("lj/smooth/linear"))
