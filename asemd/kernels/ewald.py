@@ -8,17 +8,17 @@ Columns of `waves (m, 10)`: the weight 4 pi / V exp(-k^2 / 4 g^2) / k^2, k (3), 
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
-from asemd.kernels.target import njit
+from asemd.kernels.generate import Builder
 from asemd.kernels.threads import barrier
 
-BLOCK = 128
-FAST = {"contract", "reassoc", "nsz", "arcp"}
+ENERGY = PER_ATOM = False
+BLOCK = 128      # slots whose phases are at hand at once
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
 def weigh(numbers, vectors, g, waves):
     """Weights, vectors and virials of the waves `numbers (m, 3)` in a box; returns its volume."""
     a, b, c = vectors[0], vectors[1], vectors[2]
@@ -41,7 +41,6 @@ def weigh(numbers, vectors, g, waves):
     return abs(det)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
 def phases(x, inverse, lo, hi, most, table):
     """``table[d, n, 0 or 1, i]``: cosine and sine of n times the phase of slot i along direction d."""
     for d in range(3):
@@ -59,7 +58,6 @@ def phases(x, inverse, lo, hi, most, table):
                 table[d, n, 1, i] = table[d, n - 1, 1, i] * c + table[d, n - 1, 0, i] * s
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
 def first_two(table, n0, n1, lo, hi, re, im):
     """Cosine and sine of the phase of the first two numbers, for slots lo..hi-1; the first one is not negative."""
     sign = 1.0 if n1 >= 0 else -1.0
@@ -71,7 +69,6 @@ def first_two(table, n0, n1, lo, hi, re, im):
         im[i] = s0 * c1 + c0 * s1
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
 def structure(q, numbers, table, lo, hi, out):
     """Sums of charge times cosine and sine over slots lo..hi-1, ``out (m, 2)``."""
     re, im = np.empty(BLOCK), np.empty(BLOCK)
@@ -93,7 +90,6 @@ def structure(q, numbers, table, lo, hi, out):
             out[m, 1] += sum_s
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
 def fields(f, q, scale, numbers, waves, total, table, lo, hi, flat):
     """Forces on slots lo..hi-1; `flat` leaves out the third component."""
     re, im = np.empty(BLOCK), np.empty(BLOCK)
@@ -125,7 +121,6 @@ def fields(f, q, scale, numbers, waves, total, table, lo, hi, flat):
                 f[2, b + i] += w * fz[i]
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
 def shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, energy, virial):
     """Energies and virials of slots lo..hi-1."""
     re, im = np.empty(1), np.empty(1)
@@ -144,8 +139,7 @@ def shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, ener
         energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
-def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy, virial_too, per_atom):
+def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy):
     """Take the interaction of the periodic images of a charged or polar slab off (Yeh, Berkowitz, J. Chem. Phys. 111, 3155 (1999);
     Ballenegger, Arnold, Cerda, J. Chem. Phys. 131, 094107 (2009)); `sums (nth, 2)` is room for all threads."""
     dipole, second = 0.0, 0.0
@@ -159,16 +153,15 @@ def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, 
         dipole += sums[t, 0]
         second += sums[t, 1]
     front = scale * 2.0 * math.pi / volume
-    if virial_too and tid == 0:
+    if ENERGY and tid == 0:
         acc[0] += front * (dipole * dipole - qsum * second - qsum * qsum * height * height / 12.0)
     for i in range(lo, hi):
         f[2, i] -= 2.0 * front * q[i] * (dipole - qsum * x[2, i])
-    if per_atom:
+    if PER_ATOM:
         for i in range(lo, hi):
             energy[i] += front * q[i] * (x[2, i] * dipole - 0.5 * (second + qsum * x[2, i] * x[2, i]) - qsum * height * height / 12.0)
 
 
-@njit(cache=True, nogil=True)
 def stretched(vectors, stretch, out, inverse):
     """The box with its third vector times `stretch`, and its inverse."""
     for a in range(3):
@@ -177,10 +170,9 @@ def stretched(vectors, stretch, out, inverse):
     inverse[:] = np.linalg.inv(out)
 
 
-@njit(cache=True, nogil=True)
-def ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial,
-          level):
-    """All of it for one thread: `level` 0 forces, 1 energies and virial too, 2 shares of the atoms too.
+def ewald(meeting, tid, x, f, q, lo, hi, box, origin, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy,
+          virial):
+    """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
     `constants`: g_ewald, energy scale, sum of charges, sum of their squares, stretch of the third vector, 1 for a slab's correction or 2
     for no force along z; `held (4, 3)`: the box that `waves` are for, and its volume.
@@ -204,34 +196,31 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, invers
     for t in range(1, sfac.shape[0]):
         total += sfac[t]
     fields(f, q, scale, numbers, waves, total, table, lo, hi, slabs == 2.0)
-    if level > 0 and tid == 0:
+    if ENERGY and tid == 0:
         for m in range(numbers.shape[0]):
             e = scale * waves[m, 0] * (total[m, 0] ** 2 + total[m, 1] ** 2)
             acc[0] += e
             for k in range(6):
                 acc[2 + k] += e * waves[m, 4 + k]
         acc[0] -= scale * (g * qsqsum / math.sqrt(math.pi) + 0.5 * math.pi * qsum * qsum / (g * g * volume))
-    if level == 2:
+    if PER_ATOM:
         shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, energy, virial)
     if slabs == 1.0:
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
-        slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy, level > 0, level == 2)
+        slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy)
     barrier(meeting)
 
 
-@njit(cache=True, nogil=True)
-def forces(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial):
-    """`ewald` without energies."""
-    ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial, 0)
-
-
-@njit(cache=True, nogil=True)
-def energies(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial):
-    """`ewald` with energy and virial."""
-    ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial, 1)
-
-
-@njit(cache=True, nogil=True)
-def of_atoms(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial):
-    """`ewald` with the shares of each atom."""
-    ewald(meeting, tid, x, f, q, lo, hi, box, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy, virial, 2)
+@cache
+def kernel(level: int):
+    """`ewald` with that level."""
+    b = Builder("Ewald summation")
+    b.line("from asemd.kernels.threads import barrier")
+    b.constant("BLOCK", BLOCK)
+    b.constant("ENERGY", level > 0)
+    b.constant("PER_ATOM", level > 1)
+    for f in (weigh, phases, first_two, structure, fields, shares, slab):
+        b.function(f, fast=True)
+    b.function(stretched)
+    b.function(ewald)
+    return b.build().ewald

@@ -39,7 +39,7 @@ class Ewald(KSpace):
         reach = 1.00001 * max((2.0 * math.pi * m / length) ** 2 for m, length in zip(most, self.prd))
         if not any(self.modify["kmax/ewald"]) and self._tilted(system):
             upright = system.box.to_lammps()[0].cell if not system.box.is_lammps_frame else system.box.cell
-            most = [max(1, int(m)) for m in upright @ (np.array(most) / self.prd)]
+            most = [max(1, int(m)) for m in np.abs(upright) @ (np.array(most) / self.prd)]
         self.most = tuple(most)
         axes = [np.arange(-m, m + 1) for m in self.most]
         n = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -64,7 +64,7 @@ class Ewald(KSpace):
 class EwaldTerm(KSpaceTerm):
     """The sum over waves."""
 
-    kernels = (ewald.forces, ewald.energies, ewald.of_atoms)
+    make_kernel = staticmethod(ewald.kernel)
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads

@@ -1,6 +1,8 @@
 """A long-range solver as a term of the engine."""
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from asemd.errors import SimulationError
@@ -10,12 +12,13 @@ from asemd.term import Term
 class KSpaceTerm(Term):
     """What the terms of all solvers have in common.
 
-    `kernels`: without energies, with energies and virial, with the shares of each atom; all take the same arguments: meeting, thread, x,
-    f, q, the slots of the thread, the box, what `of_solver` gives, sums of energies and virial, shares of energy and of virial.
+    ``make_kernel(level)`` gives the kernel without energies (0), with energies and virial (1), with the shares of each atom (2). All take
+    the same arguments: meeting, thread, x, f, q, the slots of the thread, the box and its origin, what `of_solver` gives, sums of energies
+    and virial, shares of energy and of virial.
     """
 
     category = "kspace"
-    kernels: tuple = ()
+    make_kernel: Callable[[int], Callable]
 
     def __init__(self, solver):
         self.solver, self.ready = solver, False
@@ -23,7 +26,7 @@ class KSpaceTerm(Term):
         self.constants = np.array([solver.g_ewald, solver.scale, solver.qsum, solver.qsqsum, solver.stretch, slab])
 
     def kernel(self, energy, per_atom):
-        return self.kernels[2 if per_atom else 1 if energy else 0]
+        return self.make_kernel(2 if per_atom else 1 if energy else 0)
 
     def prepare(self, engine) -> None:
         """Make the arrays, once."""
@@ -40,7 +43,7 @@ class KSpaceTerm(Term):
     def arguments(self, engine, tid):
         s, ns, nth = engine.state, engine.ns, engine.threads
         return (engine.meeting, tid, s.x, engine.buffers[tid], s.q, ns * tid // nth, ns * (tid + 1) // nth, s.box.vectors,
-                *self.of_solver(engine, tid), engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid])
+                s.box.origin, *self.of_solver(engine, tid), engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid])
 
     def of_solver(self, engine, tid: int) -> tuple:
         """Arguments of this solver's kernels."""

@@ -1,0 +1,381 @@
+"""Charges to a mesh, the field of the mesh back to the charges; what happens in between on the mesh of waves.
+
+The Fourier transforms themselves are a library's, which thread 0 calls back between two meetings. Every thread spreads its charges on a
+mesh of its own. Rows along the third direction are longer than the mesh by ORDER, so that the weights of a charge fall on neighbouring
+places; what is beyond the end is folded back when the meshes of the threads are added.
+
+Arrays: `numbers (3,)` mesh points; `green (nx, ny, nz/2 + 1, 4)` the influence function and its products with the wave vector;
+`brick (nth, nx, ny, nz + ORDER)`; `density (nx, ny, nz)`; `wave (nx, ny, nz/2 + 1)`, `waves (m, nx, ny, nz/2 + 1)` complex;
+`field (m, nx, ny, nz)`; `packed (nx, ny, (nz + ORDER) * m)`; `weight (cap, 3 * ORDER)`, `base (cap, 3)`.
+"""
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+
+from asemd.kernels.callback import call_back
+from asemd.kernels.ewald import slab, stretched
+from asemd.kernels.generate import Builder
+from asemd.kernels.threads import barrier
+
+ORDER = 5
+ENERGY = PER_ATOM = False
+FIELDS = 3       # meshes that are interpolated
+
+
+def denominator(b, x, y, z):
+    """The square of the sum of the squared transforms of the weights, from the sines squared of half the wave."""
+    sx = sy = sz = 0.0
+    for m in range(ORDER - 1, -1, -1):
+        sx = b[m] + sx * x
+        sy = b[m] + sy * y
+        sz = b[m] + sz * z
+    s = sx * sy * sz
+    return s * s
+
+
+def sinc_power(u):
+    """(sin u / u)^(2 ORDER)."""
+    if u == 0.0:
+        return 1.0
+    s = math.sin(u) / u
+    s *= s
+    p = 1.0
+    for _ in range(ORDER):
+        p *= s
+    return p
+
+
+def influence(n, numbers, turn, g, most, b):
+    """The optimal influence function of the waves n (3 whole numbers), for differentiation by multiplication with the wave vector.
+
+    `turn (3, 3)`: 2 pi times the inverse box; `most (3,)`: images along each direction.
+    """
+    k0 = turn[0, 0] * n[0] + turn[0, 1] * n[1] + turn[0, 2] * n[2]
+    k1 = turn[1, 0] * n[0] + turn[1, 1] * n[1] + turn[1, 2] * n[2]
+    k2 = turn[2, 0] * n[0] + turn[2, 1] * n[1] + turn[2, 2] * n[2]
+    kk = k0 * k0 + k1 * k1 + k2 * k2
+    if kk == 0.0:
+        return 0.0
+    a0, a1, a2 = math.pi * n[0] / numbers[0], math.pi * n[1] / numbers[1], math.pi * n[2] / numbers[2]
+    total = 0.0
+    for m0 in range(-most[0], most[0] + 1):
+        w0 = sinc_power(a0 + math.pi * m0)
+        for m1 in range(-most[1], most[1] + 1):
+            w1 = w0 * sinc_power(a1 + math.pi * m1)
+            for m2 in range(-most[2], most[2] + 1):
+                w2 = w1 * sinc_power(a2 + math.pi * m2)
+                u0, u1, u2 = n[0] + m0 * numbers[0], n[1] + m1 * numbers[1], n[2] + m2 * numbers[2]
+                q0 = turn[0, 0] * u0 + turn[0, 1] * u1 + turn[0, 2] * u2
+                q1 = turn[1, 0] * u0 + turn[1, 1] * u1 + turn[1, 2] * u2
+                q2 = turn[2, 0] * u0 + turn[2, 1] * u1 + turn[2, 2] * u2
+                qq = q0 * q0 + q1 * q1 + q2 * q2
+                total += (k0 * q0 + k1 * q1 + k2 * q2) / qq * math.exp(-0.25 * qq / (g * g)) * w2
+    # LAMMPS's 4 pi, to its digits
+    return 12.5663706 / kk * total / denominator(b, math.sin(a0) ** 2, math.sin(a1) ** 2, math.sin(a2) ** 2)
+
+
+def folded(i, n):
+    """The whole number of the wave at place i of n: -n/2 ... (n-1)/2."""
+    return i - n * (2 * i // n)
+
+
+def make_green(first, last, numbers, turn, g, most, b, green):
+    """`green` of the planes first..last-1.
+
+    Where a number is half of an even mesh, the wave and its opposite have the same place: of the products with the wave vector only the odd
+    part counts, and the function is the mean of the two.
+    """
+    n, o = np.empty(3, np.int64), np.empty(3, np.int64)
+    for i in range(first, last):
+        n[0] = folded(i, numbers[0])
+        o[0] = folded((numbers[0] - i) % numbers[0], numbers[0])
+        for j in range(numbers[1]):
+            n[1] = folded(j, numbers[1])
+            o[1] = folded((numbers[1] - j) % numbers[1], numbers[1])
+            for k in range(numbers[2] // 2 + 1):
+                n[2] = folded(k, numbers[2])
+                o[2] = folded((numbers[2] - k) % numbers[2], numbers[2])
+                one = influence(n, numbers, turn, g, most, b)
+                other = one
+                if n[0] != -o[0] or n[1] != -o[1] or n[2] != -o[2]:
+                    other = influence(o, numbers, turn, g, most, b)
+                green[i, j, k, 0] = 0.5 * (one + other)
+                for d in range(3):
+                    kn = turn[d, 0] * n[0] + turn[d, 1] * n[1] + turn[d, 2] * n[2]
+                    ko = turn[d, 0] * o[0] + turn[d, 1] * o[1] + turn[d, 2] * o[2]
+                    green[i, j, k, 1 + d] = 0.5 * (kn * one - ko * other)
+
+
+def spread(x, q, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, base, weight, brick):
+    """Charges of slots lo..hi-1 on the mesh; where they are and their weights stay for `gather`."""
+    brick[:] = 0.0
+    half = (ORDER - 1) // 2
+    for i in range(lo, hi):
+        if q[i] == 0.0:
+            continue
+        for d in range(3):
+            dx, dy, dz = x[0, i] - origin[0], x[1, i] - origin[1], x[2, i] - origin[2]
+            s = dx * inverse[0, d] + dy * inverse[1, d] + dz * inverse[2, d]
+            u = (s - math.floor(s)) * numbers[d]
+            if ORDER % 2 == 1:
+                k = int(u + 0.5)
+                t = k - u
+            else:
+                k = int(u)
+                t = k + 0.5 - u
+            base[i, d] = wrap[d, k + numbers[d] - half]
+            for m in range(ORDER):
+                p = pieces[m, ORDER - 1]
+                for c in range(ORDER - 2, -1, -1):
+                    p = p * t + pieces[m, c]
+                weight[i, d * ORDER + m] = p
+        w = weight[i]
+        charge = q[i] * density_of
+        b2 = base[i, 2]
+        for l in range(ORDER):
+            w0 = charge * w[l]
+            b0 = wrap[0, base[i, 0] + l]
+            for m in range(ORDER):
+                w1 = w0 * w[ORDER + m]
+                row = brick[b0, wrap[1, base[i, 1] + m], b2:b2 + ORDER]
+                for n in range(ORDER):
+                    row[n] += w1 * w[2 * ORDER + n]
+
+
+def add_bricks(first, last, brick, density):
+    """The density of the planes first..last-1: the meshes of all threads, folded."""
+    nz = density.shape[2]
+    for i in range(first, last):
+        for j in range(density.shape[1]):
+            out = density[i, j]
+            for k in range(nz):
+                out[k] = brick[0, i, j, k]
+            for t in range(1, brick.shape[0]):
+                for k in range(nz):
+                    out[k] += brick[t, i, j, k]
+            for t in range(brick.shape[0]):
+                for k in range(nz, nz + ORDER):
+                    out[k % nz] += brick[t, i, j, k]
+
+
+def multiply(first, last, nz, green, scale, wave, waves):
+    """Waves of the gradient of the potential from those of the density."""
+    for i in range(first, last):
+        for j in range(wave.shape[1]):
+            for k in range(wave.shape[2]):
+                re, im = scale * wave[i, j, k].real, scale * wave[i, j, k].imag
+                for d in range(3):
+                    gd = green[i, j, k, 1 + d]
+                    waves[d, i, j, k] = complex(-gd * im, gd * re)
+
+
+def shape(n, turn, g, v):
+    """What the virial of the wave n is of its energy: xx yy zz xy xz yz."""
+    k0 = turn[0, 0] * n[0] + turn[0, 1] * n[1] + turn[0, 2] * n[2]
+    k1 = turn[1, 0] * n[0] + turn[1, 1] * n[1] + turn[1, 2] * n[2]
+    k2 = turn[2, 0] * n[0] + turn[2, 1] * n[1] + turn[2, 2] * n[2]
+    kk = k0 * k0 + k1 * k1 + k2 * k2
+    if kk == 0.0:
+        v[:] = 0.0
+        return
+    w = -2.0 * (1.0 / kk + 0.25 / (g * g))
+    v[0], v[1], v[2] = 1.0 + w * k0 * k0, 1.0 + w * k1 * k1, 1.0 + w * k2 * k2
+    v[3], v[4], v[5] = w * k0 * k1, w * k0 * k2, w * k1 * k2
+
+
+def mean_shape(n, o, numbers, turn, g, most, b, v, u):
+    """`shape` of a place of the mesh in `v`: of two waves that have it the mean, weighed with their influence."""
+    shape(n, turn, g, v)
+    if n[0] != -o[0] or n[1] != -o[1] or n[2] != -o[2]:
+        shape(o, turn, g, u)
+        one, other = influence(n, numbers, turn, g, most, b), influence(o, numbers, turn, g, most, b)
+        for m in range(6):
+            v[m] = (one * v[m] + other * u[m]) / (one + other)
+
+
+def energies(first, last, numbers, turn, g, most, b, green, scale, wave, out):
+    """``out (7,)`` gains energy and virial of the waves of the planes first..last-1, without the factors of charge and volume."""
+    n, o = np.empty(3, np.int64), np.empty(3, np.int64)
+    v, u = np.empty(6), np.empty(6)
+    nz = numbers[2]
+    for i in range(first, last):
+        n[0] = folded(i, numbers[0])
+        o[0] = folded((numbers[0] - i) % numbers[0], numbers[0])
+        for j in range(numbers[1]):
+            n[1] = folded(j, numbers[1])
+            o[1] = folded((numbers[1] - j) % numbers[1], numbers[1])
+            for k in range(nz // 2 + 1):
+                n[2] = folded(k, nz)
+                o[2] = folded((nz - k) % nz, nz)
+                times = 1.0 if k == 0 or 2 * k == nz else 2.0
+                c = wave[i, j, k]
+                e = times * scale * scale * green[i, j, k, 0] * (c.real * c.real + c.imag * c.imag)
+                mean_shape(n, o, numbers, turn, g, most, b, v, u)
+                out[0] += e
+                for m in range(6):
+                    out[1 + m] += e * v[m]
+
+
+def multiply_shares(first, last, numbers, turn, g, most, b, green, scale, wave, waves):
+    """Waves of the potential and of its six parts of the virial."""
+    n, o = np.empty(3, np.int64), np.empty(3, np.int64)
+    v, u = np.empty(6), np.empty(6)
+    for i in range(first, last):
+        n[0] = folded(i, numbers[0])
+        o[0] = folded((numbers[0] - i) % numbers[0], numbers[0])
+        for j in range(numbers[1]):
+            n[1] = folded(j, numbers[1])
+            o[1] = folded((numbers[1] - j) % numbers[1], numbers[1])
+            for k in range(numbers[2] // 2 + 1):
+                n[2] = folded(k, numbers[2])
+                o[2] = folded((numbers[2] - k) % numbers[2], numbers[2])
+                mean_shape(n, o, numbers, turn, g, most, b, v, u)
+                c = scale * green[i, j, k, 0] * wave[i, j, k]
+                waves[0, i, j, k] = c
+                for m in range(6):
+                    waves[1 + m, i, j, k] = v[m] * c
+
+
+def interleave(first, last, field, packed):
+    """The meshes of the planes first..last-1 side by side, their rows continued beyond the end."""
+    m, nz = field.shape[0], field.shape[3]
+    for i in range(first, last):
+        for j in range(field.shape[2]):
+            for c in range(m):
+                row, out = field[c, i, j], packed[i, j]
+                for k in range(nz):
+                    out[k * m + c] = row[k]
+                for k in range(nz, nz + ORDER):
+                    out[k * m + c] = row[k % nz]
+
+
+def gather(f, q, lo, hi, scale, wrap, base, weight, packed, flat):
+    """Forces on slots lo..hi-1 from the gradient of the potential; `flat` leaves out the third component."""
+    sums = np.empty(3 * ORDER)
+    for i in range(lo, hi):
+        if q[i] == 0.0:
+            continue
+        w = weight[i]
+        sums[:] = 0.0
+        b2 = 3 * base[i, 2]
+        for l in range(ORDER):
+            b0 = wrap[0, base[i, 0] + l]
+            for m in range(ORDER):
+                w1 = w[l] * w[ORDER + m]
+                row = packed[b0, wrap[1, base[i, 1] + m], b2:b2 + 3 * ORDER]
+                for n in range(3 * ORDER):
+                    sums[n] += w1 * row[n]
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for n in range(ORDER):
+            w2 = w[2 * ORDER + n]
+            fx += w2 * sums[3 * n]
+            fy += w2 * sums[3 * n + 1]
+            fz += w2 * sums[3 * n + 2]
+        c = -scale * q[i]
+        f[0, i] += c * fx
+        f[1, i] += c * fy
+        if not flat:
+            f[2, i] += c * fz
+
+
+def gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, field, energy, virial):
+    """Energies and virials of slots lo..hi-1 from seven meshes."""
+    nz = field.shape[3]
+    for i in range(lo, hi):
+        if q[i] == 0.0:
+            continue
+        w = weight[i]
+        for c in range(7):
+            total = 0.0
+            for l in range(ORDER):
+                for m in range(ORDER):
+                    for n in range(ORDER):
+                        total += (w[l] * w[ORDER + m] * w[2 * ORDER + n]
+                                  * field[c, wrap[0, base[i, 0] + l], wrap[1, base[i, 1] + m], (base[i, 2] + n) % nz])
+            if c == 0:
+                energy[i] += 0.5 * scale * q[i] * total
+                energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
+            else:
+                virial[c - 1, i] += 0.5 * scale * q[i] * total
+
+
+def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap, images, held, inverse, green, brick, density, wave, waves,
+         field, packed, shares, share_field, base, weight, sums, constants, forward, backward, backward_shares, acc, energy, virial):
+    """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
+
+    `constants` as in `asemd.kernels.ewald.ewald`; `held (4, 3)`: the box that `green` is for, and its volume; `forward`, `backward`,
+    `backward_shares`: addresses of the transforms.
+    """
+    g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
+    nth, nx = meeting.nth, numbers[0]
+    first, last = nx * tid // nth, nx * (tid + 1) // nth
+    same = True
+    for a in range(3):
+        for d in range(3):
+            if held[a, d] != box[a, d] * (stretch if a == 2 else 1.0):
+                same = False
+    barrier(meeting)
+    if not same:
+        if tid == 0:
+            stretched(box, stretch, held[:3], inverse)
+            held[3, 0] = abs(np.linalg.det(held[:3]))
+        barrier(meeting)
+        make_green(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green)
+    volume = held[3, 0]
+    points = numbers[0] * numbers[1] * numbers[2]
+    spread(x, q, lo, hi, origin, inverse, numbers, points / volume, pieces, wrap, base, weight, brick[tid])
+    barrier(meeting)
+    add_bricks(first, last, brick, density)
+    barrier(meeting)
+    if tid == 0:
+        call_back(forward)
+    barrier(meeting)
+    if ENERGY:
+        turn = 2.0 * math.pi * inverse
+        sums[tid, :7] = 0.0
+        energies(first, last, numbers, turn, g, images, gfb, green, 1.0 / points, wave, sums[tid, :7])
+    if PER_ATOM:
+        multiply_shares(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green, 1.0, wave, shares)
+    multiply(first, last, numbers[2], green, 1.0, wave, waves)
+    barrier(meeting)
+    if tid == 0:
+        call_back(backward)
+        if PER_ATOM:
+            call_back(backward_shares)
+    barrier(meeting)
+    interleave(first, last, field, packed)
+    barrier(meeting)
+    gather(f, q, lo, hi, scale, wrap, base, weight, packed, slabs == 2.0)
+    if ENERGY and tid == 0:
+        for t in range(nth):
+            acc[0] += 0.5 * scale * volume * sums[t, 0]
+            for m in range(6):
+                acc[2 + m] += 0.5 * scale * volume * sums[t, 1 + m]
+        acc[0] -= scale * (g * qsqsum / math.sqrt(math.pi) + 0.5 * math.pi * qsum * qsum / (g * g * volume))
+    if PER_ATOM:
+        gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, share_field, energy, virial)
+    if slabs == 1.0:
+        height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
+        barrier(meeting)
+        slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy)
+    barrier(meeting)
+
+
+@cache
+def kernel(level: int, order: int):
+    """`pppm` for weights of that order; `level`: see `asemd.kspace.term.KSpaceTerm`."""
+    b = Builder(f"particle-particle particle-mesh, order {order}")
+    b.line("from asemd.kernels.threads import barrier")
+    b.line("from asemd.kernels.callback import call_back")
+    b.constant("ORDER", order)
+    b.constant("ENERGY", level > 0)
+    b.constant("PER_ATOM", level > 1)
+    for f in (denominator, sinc_power, influence, folded, make_green, spread, add_bricks, multiply, shape, mean_shape, energies, multiply_shares,
+              interleave, gather, gather_shares, slab):
+        b.function(f, fast=True)
+    b.function(stretched)
+    b.function(pppm)
+    return b.build().pppm

@@ -1,0 +1,197 @@
+r"""Particle-particle particle-mesh: the smooth part of the Coulomb energy on a mesh, by Fourier transforms; for ordinary and large systems.
+
+Charges are spread on the mesh by B-splines of `order` points, multiplied with the influence function that makes the error of forces least,
+and differentiated by multiplication with the wave vector (``diff ik``, R. W. Hockney, J. W. Eastwood, Computer Simulation Using Particles,
+1989; M. Deserno, C. Holm, J. Chem. Phys. 109, 7678 (1998)). Mesh, splitting parameter and influence function are those that LAMMPS chooses
+for the same accuracy: errors are estimated by equation 38 of M. Deserno, C. Holm, J. Chem. Phys. 109, 7694 (1998).
+"""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from asemd.errors import InputError
+from asemd.kernels import pppm
+from asemd.kernels.callback import Callback
+from asemd.kspace import KSpace
+from asemd.kspace.term import KSpaceTerm
+
+# Deserno and Holm 1998, table I: coefficients of the error of order 1 to 7
+ERRORS = ((2 / 3,), (1 / 50, 5 / 294), (1 / 588, 7 / 1440, 21 / 3872), (1 / 4320, 3 / 1936, 7601 / 2271360, 143 / 28800),
+          (1 / 23232, 7601 / 13628160, 143 / 69120, 517231 / 106536960, 106640677 / 11737571328),
+          (691 / 68140800, 13 / 57600, 47021 / 35512320, 9694607 / 2095994880, 733191589 / 59609088000, 326190917 / 11700633600),
+          (1 / 345600, 3617 / 35512320, 745739 / 838397952, 56399353 / 12773376000, 25091609 / 1560084480,
+           1755948832039 / 36229939200000, 4887769399 / 37838389248))
+SMALL = 1e-5         # LAMMPS stops its search for the splitting parameter there
+
+
+def pieces(order: int) -> np.ndarray:
+    """Weights of the points of the mesh around a charge, as polynomials of its distance from the middle one (order, order)."""
+    of = {0: Polynomial([1.0])}
+    zero, t = Polynomial([0.0]), Polynomial([0.0, 1.0])
+    for p in range(2, order + 1):
+        start, step = (0.0, 0) if p % 2 else (0.5, -1)
+        x = {m: start - t - m for m in range(-p, p + 1)}
+        of = {m: ((0.5 * p + x[m]) * of.get(m + step, zero) + (0.5 * p - x[m]) * of.get(m + 1 + step, zero)) / (p - 1.0)
+              for m in range(-((p - 1) // 2), p // 2 + 1)}
+    out = np.zeros((order, order))
+    for row, m in zip(out, sorted(of)):
+        row[:len(of[m].coef)] = of[m].coef
+    return out
+
+
+def aliases(order: int) -> np.ndarray:
+    """Coefficients of the sum over images of the squared transform of the weights, in powers of the squared sine."""
+    b = np.zeros(order)
+    b[0] = 1.0
+    for m in range(1, order):
+        for k in range(m, 0, -1):
+            b[k] = 4.0 * (b[k] * (k - m) * (k - m - 0.5) - b[k - 1] * (k - m - 1) ** 2)
+        b[0] = 4.0 * b[0] * m * (m + 0.5)
+    return b / math.factorial(2 * order - 1)
+
+
+class PPPM(KSpace):
+    """``kspace_style pppm accuracy``."""
+
+    style = flag = "pppm"
+
+    def choose(self, system):
+        self.order = self.modify["order"] or 5
+        if not 2 <= self.order <= 7:
+            raise InputError(f"kspace_style {self.style}: order must be 2 to 7, not {self.order}")
+        if self.modify["diff"] == "ad":
+            raise InputError(f"kspace_modify diff ad is not supported for kspace_style {self.style}: leave it out (diff ik)")
+        upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell
+        mesh = list(self.modify["mesh"])
+        if not any(mesh):
+            mesh = self.fine_enough()
+            if self._tilted(system):
+                mesh = [int(m) + 1 for m in np.abs(upright) @ (np.array(mesh) / self.prd)]
+            mesh = [with_small_factors(m) for m in mesh]
+        self.mesh = tuple(mesh)
+        self.spacing = self.prd / self.mesh
+        if self._tilted(system):
+            self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
+        if not self.modify["gewald"]:
+            self.balance()
+        self.upright = upright
+
+    def fine_enough(self) -> list[int]:
+        """Mesh points along each edge so that the error of that direction is below the accuracy; one more than that, as in LAMMPS."""
+        mesh = []
+        for length in self.prd:
+            n, spacing = int(length * self.g_ewald) + 1, 1.0 / self.g_ewald
+            while self.error(spacing, length) > self.accuracy:
+                n += 1
+                spacing = length / n
+            mesh.append(n + (spacing != 1.0 / self.g_ewald))
+        return mesh
+
+    def error(self, spacing: float, length: float) -> float:
+        """Estimated error of forces along one direction."""
+        h = spacing * self.g_ewald
+        total = sum(c * h ** (2.0 * m) for m, c in enumerate(ERRORS[self.order - 1]))
+        return (self.q2 * h**self.order * math.sqrt(self.g_ewald * length * math.sqrt(2.0 * math.pi) * total / self.n) / (length * length))
+
+    @property
+    def mesh_error(self) -> float:
+        """Estimated error of forces that the mesh makes."""
+        return math.sqrt(sum(self.error(h, length) ** 2 for h, length in zip(self.spacing, self.prd)) / 3.0)
+
+    def balance(self) -> None:
+        """The splitting parameter for which pair part and mesh make the same error.
+
+        Raises
+        ------
+        InputError
+            There is none for this mesh.
+        """
+        def difference(g: float) -> float:
+            self.g_ewald = g
+            pair = 2.0 * self.q2 * math.exp(-(g * self.cutoff) ** 2) / math.sqrt(self.n * self.cutoff * self.inner.prod())
+            return pair - self.mesh_error
+
+        g, h = self.g_ewald, 1e-6
+        for _ in range(10000):
+            here = difference(g)
+            g -= here / ((difference(g + h) - here) / h)
+            if abs(difference(g)) < SMALL:
+                return
+        raise InputError(f"kspace_style {self.style}: no splitting parameter makes the error of the mesh that of the cutoff; "
+                         "give kspace_modify gewald, or another mesh")
+
+    def lines(self):
+        total = math.hypot(self.mesh_error, self.real_error)
+        return ["PPPM initialization ...", f"  G vector (1/distance) = {self.g_ewald:.8g}", f"  grid = {' '.join(map(str, self.mesh))}",
+                f"  stencil order = {self.order}", f"  estimated absolute RMS force accuracy = {total:.8g}",
+                f"  estimated relative force accuracy = {total / self.two_charges:.8g}"]
+
+    def term(self, engine):
+        return PPPMTerm(self)
+
+
+def with_small_factors(n: int) -> int:
+    """The next number that has no prime factors but 2, 3 and 5."""
+    while True:
+        rest = n
+        for p in (2, 3, 5):
+            while rest % p == 0:
+                rest //= p
+        if rest == 1:
+            return n
+        n += 1
+
+
+class PPPMTerm(KSpaceTerm):
+    """Mesh, weights and transforms."""
+
+    def make_kernel(self, level):
+        if level == 2 and not self.shares.size:
+            self._make_shares()
+        return pppm.kernel(level, self.solver.order)
+
+    def prepare(self, engine):
+        s, nth = self.solver, engine.threads
+        nx, ny, nz = s.mesh
+        nh = nz // 2 + 1
+        self.numbers, self.pieces, self.aliases = np.array(s.mesh, np.int64), pieces(s.order), aliases(s.order)
+        # a sum over images that LAMMPS's estimate finds large enough
+        self.images = (np.abs(s.upright) @ (s.g_ewald / (math.pi * self.numbers)) * (-math.log(1e-7)) ** 0.25).astype(np.int64)
+        self.wrap = np.arange(3 * max(s.mesh) + 8)[None] % self.numbers[:, None]
+        self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
+        self.brick, self.density = np.zeros((nth, nx, ny, nz + s.order)), np.zeros((nx, ny, nz))
+        self.wave, self.waves = np.zeros((nx, ny, nh), complex), np.zeros((3, nx, ny, nh), complex)
+        self.field, self.packed = np.zeros((3, nx, ny, nz)), np.zeros((nx, ny, (nz + s.order) * 3))
+        self.shares, self.share_field = np.zeros((0, nx, ny, nh), complex), np.zeros((0, nx, ny, nz))
+        self.sums = np.zeros((nth, 8))
+        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, 3 * s.order))
+        self.forward, self.backward, self.backward_shares = map(Callback, self._transforms(nth))
+
+    def _make_shares(self) -> None:
+        nx, ny, nh = self.wave.shape
+        self.shares, self.share_field = np.zeros((7, nx, ny, nh), complex), np.zeros((7, *self.density.shape))
+
+    def _transforms(self, threads: int):
+        from scipy import fft
+
+        def forward():
+            self.wave[:] = fft.rfftn(self.density, workers=threads)
+
+        def backward():
+            self.field[:] = fft.irfftn(self.waves, s=self.density.shape, axes=(1, 2, 3), workers=threads)
+
+        def backward_shares():
+            self.share_field[:] = fft.irfftn(self.shares, s=self.density.shape, axes=(1, 2, 3), workers=threads)
+        return forward, backward, backward_shares
+
+    def make_room(self, slots):
+        if len(self.base) < slots:
+            self.base, self.weight = np.zeros((slots, 3), np.int64), np.zeros((slots, self.weight.shape[1]))
+
+    def of_solver(self, engine, tid):
+        return (self.numbers, self.pieces, self.aliases, self.wrap, self.images, self.held, self.inverse, self.green, self.brick,
+                self.density, self.wave, self.waves, self.field, self.packed, self.shares, self.share_field, self.base, self.weight,
+                self.sums, self.constants, self.forward.address, self.backward.address, self.backward_shares.address)
