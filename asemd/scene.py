@@ -204,6 +204,36 @@ class Scene:
             raise InputError(f"{what}: unknown region {id!r}{nearest(id, self.regions)}")
         return self.regions[id]
 
+    def add_fix(self, fix: Fix) -> None:
+        """Take up a fix, which has its ID, with the computes that it brings, in the place of one that had the ID before.
+
+        Raises
+        ------
+        InputError
+            There are computes with such IDs.
+        """
+        brought = fix.own_computes()
+        for id in brought:
+            if id in self.computes and self.computes[id].maker != fix.id:
+                raise InputError(f"fix {fix.id} (style {fix.style}) brings a compute {id}, but there is one already: uncompute "
+                                 "it, or choose another ID for the fix")
+        self._drop_computes(fix.id)
+        for id, compute in brought.items():
+            compute.id, compute.maker = id, fix.id
+            self.computes[id] = compute
+        self.fixes[fix.id] = fix
+
+    def remove_fix(self, id: str) -> None:
+        """Take a fix away, and what it brought and changed."""
+        fix = self.fixes.pop(id)
+        self._drop_computes(id)
+        if self.system is not None:
+            fix.detach(self.system)
+
+    def _drop_computes(self, maker: str) -> None:
+        for id in [id for id, compute in self.computes.items() if compute.maker == maker]:
+            del self.computes[id]
+
     def sync_groups(self) -> None:
         """Fit the group masks to the number of atoms."""
         if self.system is not None and self.groups["all"].size != self.system.n:

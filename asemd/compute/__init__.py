@@ -28,6 +28,8 @@ class Compute:
     ----------
     bias : bool
         A temperature that takes a part of the velocities away first, see `asemd.compute.temp.Temp.remove_bias`.
+    maker : str
+        ID of the fix that brought it; empty for those that a script defined.
     extra_dof, dynamic : float or None, bool
         ``compute_modify ID extra/dof N`` and ``dynamic/dof yes``, which every compute takes; temperatures use them.
     """
@@ -36,6 +38,7 @@ class Compute:
     needs: frozenset[str] = frozenset()
     bias: bool = False
     id: str = ""
+    maker: str = ""
     extra_dof: float | None = None
     dynamic: bool = False
 

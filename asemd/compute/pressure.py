@@ -42,6 +42,16 @@ def find_temperature(name: str, session, what: str) -> Compute:
     return computes[name]
 
 
+def find_pressure(name: str, session, what: str) -> Pressure:
+    """The pressure compute of that id."""
+    computes = session.scene.computes
+    if name not in computes:
+        raise InputError(f"{what}: there is no compute {name}{nearest(name, computes)}")
+    if not isinstance(computes[name], Pressure):
+        raise InputError(f"{what}: compute {name} (style {computes[name].style}) does not compute a pressure")
+    return computes[name]
+
+
 class Pressure(Compute):
     """Pressure.
 

@@ -106,6 +106,8 @@ class Fix:
         How the log names what a restart file holds of it: ``global``, ``peratom``, which is also said of a fix without `state`.
     minimizing : bool
         Set while a minimisation goes on.
+    brings : tuple of str
+        Its attributes that are computes, which a script reaches as ``ID_name`` (see `own_computes`) while the fix is there.
     id : str
         Set by the session.
     """
@@ -117,6 +119,7 @@ class Fix:
     ecouple: ClassVar[bool] = False
     restarts: ClassVar[tuple[str, ...]] = ("global",)
     levels: ClassVar[str] = ""
+    brings: ClassVar[tuple[str, ...]] = ()
     box_moves: str = ""
     virial_every: int = 0
     with_energies: bool = False
@@ -153,6 +156,10 @@ class Fix:
         """Hooks this instance has now -> whether each is compiled. Override where it depends on the arguments."""
         return {name: bool(getattr(getattr(self, name), "compiled", False)) for name in HOOKS if getattr(self, name, None)}
 
+    def own_computes(self) -> dict[str, Any]:
+        """The computes that it brings, by their IDs."""
+        return {f"{self.id}_{name}": getattr(self, name) for name in self.brings}
+
     def prepare(self, loop: Loop) -> None:
         """Called at the start of every run, before its first list."""
 
@@ -185,7 +192,8 @@ class Fix:
         """Called at the start of every run, after the first forces; compiled post_force hooks are applied to those forces by the loop."""
 
     def resize(self, loop: Loop) -> None:
-        """Called when atoms have left the system during a run, after `atom_arrays`; numbers in ``p`` that depend on them are set here."""
+        """Called when atoms have left or joined the system during a run, after `atom_arrays`, or a dynamic group has other members; numbers
+        in ``p`` that depend on them are set here."""
 
     def broken_constraint(self, loop: Loop) -> str:
         """What a constraint of this fix does not keep any more, with atom ids and numbers: a run stops with it. Empty: all is well."""

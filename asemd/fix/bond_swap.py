@@ -28,6 +28,7 @@ from asemd.compute.temp import Temp
 from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.fix.atom_order import ListOrder
+from asemd.fix.measured import take_temperature
 from asemd.marsaglia import Marsaglia
 from asemd.words import exactly, number, whole
 
@@ -55,6 +56,7 @@ class BondSwap(Fix):
     """
 
     style = "bond/swap"
+    brings = ("temp",)
     size = 2
     extensive = False
 
@@ -87,7 +89,7 @@ class BondSwap(Fix):
 
     def modify_option(self, keyword, value, session):
         if keyword == "temp":
-            self.temp = find_temperature(value, session, "fix_modify temp")
+            take_temperature(self, find_temperature(value, session, "fix_modify temp"), session)
             return True
         return super().modify_option(keyword, value, session)
 

@@ -15,9 +15,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.compute.pressure import Pressure
+from asemd.compute.pressure import Pressure, find_temperature
+from asemd.compute.temp import Temp
 from asemd.errors import InputError, SimulationError, nearest
 from asemd.fix import Fix
+from asemd.fix.measured import take_pressure, take_temperature
 from asemd.words import choice, number, take, whole, yes_no
 
 DIMENSIONS = ("x", "y", "z", "yz", "xz", "xy")
@@ -59,6 +61,7 @@ class BoxRelax(Fix):
     """
 
     style = "box/relax"
+    brings = ("temp", "press")
     minimizes = True
     extensive = False
 
@@ -77,7 +80,8 @@ class BoxRelax(Fix):
             raise InputError(f"fix box/relax: couple {couple} needs a target pressure for each of these lengths")
         if len(shared) > 1:
             raise InputError(f"fix box/relax: lengths coupled by {couple} need the same target pressure")
-        self.pressure = Pressure(temperature=None, terms=("virial",))
+        self.temp = Temp("all")
+        self.press = Pressure("all", self.temp, ("virial",))
         self.box_moves = "shape" if any(len(name) == 2 for name in self.targets) else "size"
         self.energy = 0.0
 
@@ -155,14 +159,11 @@ class BoxRelax(Fix):
 
     def modify_option(self, keyword, value, session):
         if keyword in ("temp", "press"):
-            computes = session.scene.computes
-            if value not in computes:
-                raise InputError(f"fix_modify {keyword}: there is no compute {value}{nearest(value, computes)}")
             if keyword == "press":
-                if not isinstance(computes[value], Pressure):
-                    raise InputError(f"fix_modify press: compute {value} (style {computes[value].style}) does not compute a pressure")
-                self.pressure = computes[value]
-            return True         # the temperature has no part in the virial
+                take_pressure(self, value, session)
+            else:
+                take_temperature(self, find_temperature(value, session, "fix_modify temp"), session)
+            return True
         return super().modify_option(keyword, value, session)
 
     # ---- what the minimiser sees --------------------------------------------------------------------------------------------------------
@@ -229,8 +230,8 @@ class BoxRelax(Fix):
         if self.uniform:
             s, d = scale[0], 2 if self.flat else 3
             self.energy = self.hydrostatic * (s**d - 1.0) * self.volume * self.pv2e
-            return self.energy, np.array([d * s ** (d - 1) * self.volume * (self.pressure.scalar(snapshot) - self.hydrostatic) * self.pv2e])
-        now = self.pressure.vector(snapshot)[list(VOIGT)]
+            return self.energy, np.array([d * s ** (d - 1) * self.volume * (self.press.scalar(snapshot) - self.hydrostatic) * self.pv2e])
+        now = self.press.vector(snapshot)[list(VOIGT)]
         shared = list(SHARED[self.couple])
         if shared:
             now[shared] = now[shared].mean()

@@ -20,6 +20,7 @@ from asemd.compute.temp import Temp
 from asemd.errors import InputError, nearest
 from asemd.fix.deform import COUNTS, DIMENSIONS, ENTRY, Deform
 from asemd.fix.formula import read
+from asemd.fix.measured import take_pressure, take_temperature
 from asemd.words import choice, number, take, whole, yes_no
 
 STYLES = {"pressure": 2, "pressure/mean": 2, "erate/rescale": 1}
@@ -55,6 +56,7 @@ class DeformPressure(Deform):
     """
 
     style = "deform/pressure"
+    brings = ("temp", "press")
     needs = frozenset({"virial"})
 
     def __init__(self, group: str = "all", every: int = 1, changes: Mapping | None = None, remap: str = "x", flip: bool = True,
@@ -219,13 +221,9 @@ class DeformPressure(Deform):
 
     def modify_option(self, keyword, value, session):
         if keyword == "temp":
-            self.temp = find_temperature(value, session, "fix_modify temp")
-            self.press = Pressure("all", self.temp, self.press.words) if not self.press.id else self.press
+            take_temperature(self, find_temperature(value, session, "fix_modify temp"), session)
             return True
         if keyword == "press":
-            found = session.scene.computes.get(value)
-            if not isinstance(found, Pressure):
-                raise InputError(f"fix_modify press: there is no compute {value} of style pressure")
-            self.press = found
+            take_pressure(self, value, session)
             return True
         return super().modify_option(keyword, value, session)

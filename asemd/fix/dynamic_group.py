@@ -66,8 +66,12 @@ class DynamicGroup(Fix):
 
     def choose(self, loop) -> None:
         """Set the group, here and in the loop."""
+        before = loop.groups[self.name]
         loop.groups[self.name] = self.members()
         engine, state = loop.engine, loop.state
         engine.set_groups(loop.groups, engine.bits)
         slots = np.flatnonzero(state.row >= 0)
         state.mask[slots] = engine.mask_row[state.row[slots]]
+        if loop.step > loop.begin and not np.array_equal(before, loop.groups[self.name]):
+            for fix in loop.fixes:      # degrees of freedom
+                fix.resize(loop)

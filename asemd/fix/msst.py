@@ -27,11 +27,12 @@ import math
 import numpy as np
 
 from asemd.compute.pe import PE
-from asemd.compute.pressure import VIRIAL, Pressure, find_temperature
+from asemd.compute.pressure import VIRIAL, Pressure, find_pressure, find_temperature
 from asemd.compute.temp import Temp
 from asemd.errors import InputError, NotYet, SimulationError, nearest
 from asemd.fix import Fix, hook
 from asemd.fix.barostat import box_volume, kinetic_tensor, measure_pressure, take_along
+from asemd.fix.measured import take_pressure, take_temperature
 from asemd.fix.nose_hoover_box import tail_virial
 from asemd.kernels.box import follow
 from asemd.kernels.threads import barrier, reduce_sum
@@ -133,6 +134,7 @@ class MSST(Fix):
     """
 
     style = "msst"
+    brings = ("temp", "press", "pe")
     integrates = True
     ecouple = True
     box_moves = "size"
@@ -159,6 +161,7 @@ class MSST(Fix):
         self.restarted = False
         self.temp = Temp("all")
         self.press = Pressure("all", self.temp, ())
+        self.pe = PE()
         self.p, self.q, self.b, self.w, self.change = np.zeros(15), np.zeros(34), np.zeros((13, 6)), np.zeros(1), np.eye(3)
         self._loop = None
 
@@ -312,7 +315,7 @@ class MSST(Fix):
 
     # ---- outputs ------------------------------------------------------------------------------------------------------------------------
     def _energy(self, state) -> float:
-        return PE().scalar(state) + 0.5 * self.temp.dof(state) * state.units.boltz * self.temp.scalar(state)
+        return self.pe.scalar(state) + 0.5 * self.temp.dof(state) * state.units.boltz * self.temp.scalar(state)
 
     def _compression(self) -> tuple[float, float]:
         """Volume, and 1 - V / V0."""
@@ -346,24 +349,21 @@ class MSST(Fix):
         return excess / (self.temp.dof(state) * state.units.boltz)
 
     def modify_option(self, keyword, value, session):
-        computes = session.scene.computes
         if keyword in ("temp", "press"):
             what = f"fix_modify {keyword}"
-            found = find_temperature(value, session, what) if keyword == "temp" else computes.get(value)
-            if found is None:
-                raise InputError(f"{what}: there is no compute {value}{nearest(value, computes)}")
-            if keyword == "press" and not isinstance(found, Pressure):
-                raise InputError(f"{what}: compute {value} (style {found.style}) does not compute a pressure")
+            found = (find_temperature if keyword == "temp" else find_pressure)(value, session, what)
             plain = found if keyword == "temp" else found.temperature or self.temp
             if type(plain) is not Temp:
                 raise InputError(f"{what}: fix {self.style} takes a compute of style temp only, {plain.id} has style {plain.style}")
             if keyword == "press":
-                self.press = found
-            else:
-                self.temp = found
-                self.press = Pressure("all", found, self.press.words) if not self.press.id else self.press
+                take_pressure(self, value, session)
+            else:       # a pressure of the script's own keeps its temperature
+                take_temperature(self, found, session, self.press.maker == self.id)
             return True
         return super().modify_option(keyword, value, session)
+
+    def own_computes(self) -> dict:
+        return {f"{self.id}MSST_{name}": getattr(self, name) for name in self.brings}
 
     def state(self) -> dict:
         """The rate of the volume and the state before the shock."""

@@ -15,7 +15,7 @@ from asemd.errors import InputError, nearest
 from asemd.fix.thermostat import Thermostat
 from asemd.words import choice, number, take, whole, yes_no
 
-HEADER = 15     # numbers before the chain: eta (n), its velocity (n + 1), acceleration (n), mass (n)
+HEADER = 16     # numbers before the chain: eta (n), its velocity (n + 1), acceleration (n), mass (n)
 COMPONENTS = ("x", "y", "z", "yz", "xz", "xy")      # of the pressure, in Voigt's order
 SHORT = {"iso": COMPONENTS[:3], "aniso": COMPONENTS[:3], "tri": COMPONENTS}
 COUPLINGS = ("none", "xyz", "xy", "yz", "xz")
@@ -27,7 +27,8 @@ KEYWORDS = {"temp": 3, **dict.fromkeys((*SHORT, *COMPONENTS, "fixedpoint"), 3),
 def nose_hoover_chain(th, p):
     """Half a timestep of the chain; afterwards ``p[12]`` is the factor of the velocities and ``p[11]`` the temperature they then have.
 
-    The masses of the chain follow the target temperature unless ``p[14]`` is set.
+    The masses of the chain follow the target temperature unless ``p[14]`` is set. ``p[15]`` are the degrees of freedom when the last half
+    step ended: atoms that leave or join in between count for the temperature, but not yet for its target, as in LAMMPS.
     """
     dof, boltz, n, loops = p[2], p[3], int(p[9]), int(p[10])
     done = 0.0
@@ -35,14 +36,14 @@ def nose_hoover_chain(th, p):
         done = (th.step - th.begin) / (th.end - th.begin)
     target = p[5] + done * (p[6] - p[5])
     kt = boltz * target
-    eta, rate, push, mass = p[15:15 + n], p[15 + n:16 + 2 * n], p[16 + 2 * n:16 + 3 * n], p[16 + 3 * n:16 + 4 * n]
+    eta, rate, push, mass = p[16:16 + n], p[16 + n:17 + 2 * n], p[17 + 2 * n:17 + 3 * n], p[17 + 3 * n:17 + 4 * n]
     if p[14] == 0.0:
         for k in range(n):
             mass[k] = kt / (p[7] * p[7])
         mass[0] *= dof
     half, quarter, eighth = 0.5 * th.dt / loops, 0.25 * th.dt / loops, 0.125 * th.dt / loops
     drag = 1.0 - th.dt * p[7] * p[8] / loops
-    push[0] = boltz * dof * (p[11] - target) / mass[0] if dof > 0.0 else 0.0
+    push[0] = boltz * (dof * p[11] - p[15] * target) / mass[0] if dof > 0.0 else 0.0
     factor = 1.0
     for _ in range(loops):
         for k in range(n - 1, -1, -1):
@@ -51,7 +52,7 @@ def nose_hoover_chain(th, p):
         scale = math.exp(-half * rate[0])
         factor *= scale
         p[11] *= scale * scale
-        push[0] = boltz * dof * (p[11] - target) / mass[0] if dof > 0.0 else 0.0
+        push[0] = boltz * (dof * p[11] - p[15] * target) / mass[0] if dof > 0.0 else 0.0
         for k in range(n):
             eta[k] += half * rate[k]
         for k in range(n):
@@ -63,7 +64,7 @@ def nose_hoover_chain(th, p):
             else:
                 rate[k] *= slow
                 rate[k] = (rate[k] + push[k] * quarter) * slow
-    p[12], p[13] = factor, target
+    p[12], p[13], p[15] = factor, target, dof
 
 
 class NoseHoover(Thermostat):
@@ -90,9 +91,10 @@ class NoseHoover(Thermostat):
 
     integrates = True
     levels = "every"
+    brings = ("temp",)
     takes_bias = True
     kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate",
-             "temp/sphere", "viscosity/cos")      # of the temperature it takes
+             "temp/sphere", "viscosity/cos", "temp/region", "temp/deform")      # of the temperature it takes
     turns = False       # whether it moves spheres that turn: fixes nvt/sphere ...
 
     def modify_option(self, keyword, value, session):
@@ -187,10 +189,13 @@ class NoseHoover(Thermostat):
                        self.start, self.stop, 1.0 / self.damping, self.drag, self.chain, self.loops)
         return self.p
 
+    def resize(self, loop) -> None:
+        self.p[2] = self.temp.dof(loop)
+
     def setup(self, loop) -> None:
         """The chain's masses and accelerations for the temperature at the start of the run."""
         n, p = self.chain, self.p
-        p[11:14] = self.temp.scalar(loop.snapshot()), 1.0, self.reference(loop)
+        p[11:14], p[15] = (self.temp.scalar(loop.snapshot()), 1.0, self.reference(loop)), p[2]
         rate, push, mass = p[HEADER + n:HEADER + 2 * n], p[HEADER + 2 * n + 1:HEADER + 3 * n + 1], p[HEADER + 3 * n + 1:]
         mass[:] = p[3] * p[13] * self.damping**2
         mass[0] *= p[2]

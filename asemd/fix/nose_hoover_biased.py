@@ -14,7 +14,7 @@ from asemd.fix.thermostat import scale_thermal
 from asemd.kernels.box import follow
 
 # flows that LAMMPS takes from the present positions; others are those of the last temperature
-LIVE = ("temp/ramp", "temp/deform", "viscosity/cos")
+LIVE = ("temp/ramp", "temp/region", "temp/deform", "viscosity/cos")
 
 
 def scale(fix, loop, factor: float) -> None:

@@ -7,8 +7,9 @@ import numpy as np
 
 from asemd.compute.pressure import VIRIAL, Pressure
 from asemd.compute.temp import Temp
-from asemd.errors import InputError, SimulationError, nearest
+from asemd.errors import InputError, SimulationError
 from asemd.fix.barostat import hold_box, target_pressure
+from asemd.fix.measured import take_pressure
 from asemd.fix.nose_hoover import COMPONENTS, COUPLINGS, SHORT, NoseHoover
 from asemd.kernels.box import changed
 
@@ -36,6 +37,7 @@ class NoseHooverBox(NoseHoover):
     """
 
     virial_every = 1
+    brings = ("temp", "press")
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, pressure=0.0, pressure_damping: float = 1000.0,
                  shape: str = "iso", components: Mapping[str, tuple[float, float, float]] | None = None, couple: str | None = None,
@@ -195,6 +197,7 @@ class NoseHooverBox(NoseHoover):
         return p
 
     def resize(self, loop) -> None:
+        super().resize(loop)
         self.q[5] = loop.system.n
         self.q[22] = tail_virial(loop, self.press)
 
@@ -268,17 +271,9 @@ class NoseHooverBox(NoseHoover):
     # ---- outputs ------------------------------------------------------------------------------------------------------------------------
     def modify_option(self, keyword, value, session):
         if keyword == "press":
-            computes = session.scene.computes
-            if value not in computes:
-                raise InputError(f"fix_modify press: there is no compute {value}{nearest(value, computes)}")
-            if not isinstance(computes[value], Pressure):
-                raise InputError(f"fix_modify press: compute {value} (style {computes[value].style}) does not compute a pressure")
-            self.press = computes[value]
+            take_pressure(self, value, session)
             return True
-        known = super().modify_option(keyword, value, session)
-        if keyword == "temp":
-            self.press = Pressure("all", self.temp, self.press.words) if not self.press.id else self.press
-        return known
+        return super().modify_option(keyword, value, session)
 
     def box_energies(self) -> list[np.ndarray]:
         """Potential and kinetic energies of the box and of its chain, then the strain energy, as LAMMPS's vector has them."""

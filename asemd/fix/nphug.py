@@ -95,6 +95,7 @@ class NPHug(NoseHooverBox):
     """
 
     style = "nphug"
+    brings = ("temp", "press", "pe")
     inner = InnerLevel
     with_energies = True
     output_needs = frozenset({"energy", "virial"})
@@ -106,7 +107,7 @@ class NPHug(NoseHooverBox):
         super().__init__(group, temperature, damping, pressure, pressure_damping, **keywords)
         self.deviatoric = False
         self.e0, self.v0, self.p0 = energy, volume, reference_pressure
-        self.q = np.zeros(40)
+        self.q, self.pe = np.zeros(40), PE()
         self._loop, self._density, self._counted = None, 0.0, []
 
     def settle(self, system) -> None:
@@ -145,7 +146,7 @@ class NPHug(NoseHooverBox):
         first_half(th, s, p, a)
 
     def parameters(self, loop) -> np.ndarray:
-        self._loop, self._potential = loop, PE()
+        self._loop = loop
         # a constraint has an energy in minimisations only
         self._counted = [f for f in loop.fixes if f.thermo_energy and f.style not in ("shake", "rattle")]
         p = super().parameters(loop)
@@ -191,7 +192,7 @@ class NPHug(NoseHooverBox):
 
     # ---- outputs ------------------------------------------------------------------------------------------------------------------------
     def _energy(self, state) -> float:
-        return self._potential.scalar(state) + 0.5 * self.temp.dof(state) * state.units.boltz * self.temp.scalar(state)
+        return self.pe.scalar(state) + 0.5 * self.temp.dof(state) * state.units.boltz * self.temp.scalar(state)
 
     def _pressure(self, state) -> float:
         axis = int(self.q[AXIS])

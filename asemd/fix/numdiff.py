@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.compute.pe import PE
 from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.words import exactly, number, whole
@@ -35,6 +36,7 @@ class NumDiff(Fix):
     """
 
     style = "numdiff"
+    brings = ("pe",)
     levels = "every"
     outputs = frozenset({"per_atom"})
 
@@ -43,7 +45,7 @@ class NumDiff(Fix):
         if every < 1 or not delta > 0.0:
             raise InputError(f"fix {self.style}: N must be at least 1 and delta positive, got {every} and {delta:g}")
         self.every, self.delta = every, delta
-        self.values = np.zeros((0, 3))
+        self.values, self.pe = np.zeros((0, 3)), PE()
 
     @classmethod
     def from_lammps(cls, group, words, session):

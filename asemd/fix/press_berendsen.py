@@ -20,6 +20,7 @@ from asemd.compute.temp import Temp
 from asemd.errors import InputError, SimulationError, nearest
 from asemd.fix import Fix, hook
 from asemd.fix.barostat import box_volume, kinetic_tensor, measure_pressure, take_along
+from asemd.fix.measured import take_pressure, take_temperature
 from asemd.fix.nose_hoover import COUPLINGS
 from asemd.fix.nose_hoover_box import COUPLED, tail_virial
 from asemd.kernels.box import follow
@@ -83,6 +84,7 @@ class PressBerendsen(Fix):
     """
 
     style = "press/berendsen"
+    brings = ("temp", "press")
     box_moves = "size"
     virial_every = 1
     needs = frozenset({"virial"})
@@ -211,7 +213,7 @@ class PressBerendsen(Fix):
         loop.sync_out()
         state = loop.snapshot()
         measured = self.press.temperature or self.temp
-        self.b[10] = measured.vector(state)
+        self.b[10] = measured.vector(state)[:6]
         if self.q[0] == 1.0:        # then LAMMPS takes the scalar, which counts degrees of freedom
             dimension = int(self.q[26])
             self.b[10, :dimension] = measured.dof(state) * state.units.boltz * measured.scalar(state) / dimension
@@ -233,15 +235,9 @@ class PressBerendsen(Fix):
 
     def modify_option(self, keyword, value, session):
         if keyword == "temp":
-            self.temp = find_temperature(value, session, "fix_modify temp")
-            self.press = Pressure("all", self.temp, self.press.words) if not self.press.id else self.press
+            take_temperature(self, find_temperature(value, session, "fix_modify temp"), session)
             return True
         if keyword == "press":
-            computes = session.scene.computes
-            if value not in computes:
-                raise InputError(f"fix_modify press: there is no compute {value}{nearest(value, computes)}")
-            if not isinstance(computes[value], Pressure):
-                raise InputError(f"fix_modify press: compute {value} (style {computes[value].style}) does not compute a pressure")
-            self.press = computes[value]
+            take_pressure(self, value, session)
             return True
         return super().modify_option(keyword, value, session)

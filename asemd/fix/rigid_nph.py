@@ -22,3 +22,4 @@ class RigidNPH(RigidNVT):
     style = "rigid/nph"
     thermostats = False
     barostats = True
+    brings = ("temp", "press")

@@ -22,3 +22,4 @@ class RigidNPT(RigidNVT):
     style = "rigid/npt"
     thermostats = True
     barostats = True
+    brings = ("temp", "press")

@@ -20,6 +20,7 @@ from asemd.compute.pressure import Pressure
 from asemd.compute.temp import Temp
 from asemd.errors import InputError
 from asemd.fix import hook
+from asemd.fix.measured import take_pressure, take_temperature
 from asemd.fix.rigid_nve import MOVE, RigidNVE
 from asemd.kernels.box import follow
 from asemd.kernels.rigid_bath import (
@@ -93,6 +94,7 @@ class RigidNVT(RigidNVE):
             self._check_pressure(what)
             self.box_moves, self.virial_every = "size", 1
         self.temp = Temp()
+        self.press = Pressure("all", self.temp, ())
         self.p = np.zeros(CHAINS + 8 * chain + 4 * pressure_chain)
 
     def _check_pressure(self, what: str) -> None:
@@ -122,10 +124,10 @@ class RigidNVT(RigidNVE):
         if self.barostats and keyword in ("temp", "press"):
             found = session.scene.computes.get(value)
             if keyword == "temp" and type(found) is Temp:
-                self.temp = found
+                take_temperature(self, found, session)
                 return True
-            if keyword == "press" and type(found) is Pressure and set(Pressure(temperature=found.temperature).terms) == set(found.terms):
-                self.temp = found.temperature
+            if keyword == "press" and type(found) is Pressure and type(found.temperature) is Temp and found.terms == self.press.terms:
+                take_pressure(self, value, session)
                 return True
             wanted = "temp" if keyword == "temp" else "pressure"
             raise InputError(f"fix_modify {keyword}: fix {self.style} takes a compute of style {wanted} with all terms, {value} is "
@@ -156,7 +158,7 @@ class RigidNVT(RigidNVE):
                 start, stop, damping = self.pressure[axis]
                 p[34 + k], p[37 + k], p[40 + k], p[43 + k] = 1.0, start, stop, 1.0 / damping
         p[55:58] = p[43:46].max(), self.pressure_chain, u.nktv2p
-        p[59:61] = loop.group_bit(self.dilate), loop.group_bit(self.temp.group)
+        p[59:61] = loop.group_bit(self.dilate), loop.group_bit(self.press.temperature.group)
         p[66:66 + self.order] = WEIGHTS[self.order]
         return p
 
@@ -195,7 +197,7 @@ class RigidNVT(RigidNVE):
         mass[:] = kt / p[55] ** 2
         mass[0] *= d * d
         p[at + 2 * n + 1:at + 3 * n] = (mass[:-1] * rate[:-1] ** 2 - kt) / mass[1:]
-        measured = Pressure(temperature=self.temp).vector(snapshot)[:3].copy()
+        measured = self.press.vector(snapshot)[:3].copy()
         body_couple_pressure(p, measured)
         p[61:64] = p[34:37] * (p[37:40] + done * (p[40:43] - p[37:40]))
         p[64] = p[61:64].sum() / p[33]

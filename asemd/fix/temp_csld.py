@@ -43,6 +43,8 @@ class TempCSLD(Thermostat):
     """
 
     style = "temp/csld"
+    brings = ("temp",)
+    takes_bias = True
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1):
         super().__init__(group, temperature, damping)
@@ -61,6 +63,13 @@ class TempCSLD(Thermostat):
 
     def to_lammps(self) -> list[str]:
         return [write(self.start), repr(self.stop), repr(self.damping), str(self.seed)]
+
+    def modify_option(self, keyword, value, session):
+        known = super().modify_option(keyword, value, session)
+        if self.style == "temp/csld" and self.temp.style == "temp/sphere" and self.temp.bias:
+            raise InputError(f"fix_modify temp: fix temp/csld takes no compute temp/sphere with a bias, as {value} is: the flow of random "
+                             "velocities is not that of the atoms; take fix temp/csvr")
+        return known
 
     def setup(self, loop) -> None:
         self.storage.begin(loop)
@@ -87,9 +96,23 @@ class TempCSLD(Thermostat):
         system.v[mask] = noise / np.sqrt(system.atom_masses()[mask])[:, None]
         keep = math.exp(-loop.dt / self.damping)
         mix = math.sqrt((1.0 - keep * keep) * target / self.temp.scalar(state))
-        system.v[mask] = held * keep + system.v[mask] * mix
+        flow = self._flow(state, mask, held)
+        system.v[mask] = (held - flow) * keep + system.v[mask] * mix + flow
         self.energy += unit * (before - self.temp.scalar(state))
         loop.sync_in()
+
+    def _flow(self, state, mask, held) -> np.ndarray | float:
+        """The bias of the velocities before, `held`: a flow is that of the random velocities, which LAMMPS measured last."""
+        if not self.temp.bias:
+            return 0.0
+        v = state.system.v
+        if not self.temp.hides and self.temp.style != "temp/region":
+            return (v - self.temp.remove_bias(state))[mask]
+        drawn = v.copy()
+        v[mask] = held
+        flow = (v - self.temp.remove_bias(state))[mask]
+        v[:] = drawn
+        return flow
 
     def scalar(self) -> float:
         """Energy taken out of the atoms so far, energy units."""

@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 
 from asemd.fix.temp_csld import TempCSLD as Stochastic
+from asemd.fix.thermostat import scale_thermal
 from asemd.marsaglia import Marsaglia
 
 
@@ -88,6 +89,5 @@ class TempCSVR(Stochastic):
         share = (1.0 - keep) * target / now / dof
         first = self.random.gaussian()
         square = keep + share * (first * first + squares(self.random, int(dof - 1.0))) + 2.0 * first * math.sqrt(keep * share)
-        loop.system.v[loop.groups[self.group]] *= math.sqrt(square)
+        scale_thermal(loop, self.temp, self.group, math.sqrt(square))
         self.energy += 0.5 * loop.units.boltz * dof * now * (1.0 - square)
-        loop.sync_in()

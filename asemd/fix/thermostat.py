@@ -14,6 +14,7 @@ from asemd.compute.temp import Temp
 from asemd.errors import InputError, SimulationError
 from asemd.fix import Fix
 from asemd.fix.formula import Value, read
+from asemd.fix.measured import take_temperature
 from asemd.kernels.threads import reduce_sum
 from asemd.words import number
 
@@ -96,7 +97,7 @@ class Thermostat(Fix):
             found = find_temperature(value, session, "fix_modify temp")
             if type(found) is not Temp and not self.takes_bias:
                 raise InputError(f"fix_modify temp: fix {self.style} takes a compute of style temp only, {value} has style {found.style}")
-            self.temp = found
+            take_temperature(self, found, session)
             return True
         if keyword == "energy" and value in ("yes", "on", "true"):
             raise InputError(f"fix_modify energy: the energy of fix {self.style} is that of a heat bath, not potential energy; "
@@ -167,6 +168,7 @@ class VelocityScaling(Thermostat):
 
     scaled = None
     takes_bias = True
+    brings = ("temp",)
 
     def __init__(self, group="all", temperature=300.0, damping=1.0):
         super().__init__(group, temperature, damping)
@@ -186,6 +188,9 @@ class VelocityScaling(Thermostat):
         self.p = np.array([loop.group_bit(self.group), loop.group_bit(self.temp.group), self.temp.dof(loop), loop.units.boltz,
                            loop.units.mvv2e, start, self.stop, energy, 0.0, *self.settings()], dtype=float)
         return self.p
+
+    def resize(self, loop) -> None:
+        self.p[2] = self.temp.dof(loop)
 
     def _in_python(self, loop) -> None:
         """One step with the target from a variable, or with a temperature that compiled code does not measure."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from asemd import units
 from asemd.errors import InputError, InputWarning
-from asemd.lammps import checkpoint, log, restart, setup_log, torn
+from asemd.lammps import checkpoint, log, references, restart, setup_log, torn
 from asemd.lammps.live_coefficients import fill, live_coefficients, scale
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
@@ -41,6 +41,7 @@ def check(session) -> None:
     """
     scene = session.scene
     system = scene.system
+    references.renew(session)
     fill(session)
     scale(session)
     if system.rmass is None:
@@ -171,8 +172,7 @@ class Driver:
             state = restart.first_run(session)
             session.close_loop()
             fixes = [*scene.dynamic_groups.values(), *scene.fixes.values(), *live_coefficients(session)]
-            parts = (scene.system, scene.interactions, scene.settings(), fixes,
-                     scene.groups, scene.dt)
+            parts = (scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt)
             loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
             loop.warn, loop.say = session.warn, session.later.append        # what is said in the set-up comes after the list
             loop.watchdog.on = session.switches.watchdog

@@ -25,7 +25,7 @@ def run(session, args):
     session.defining = id
     new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
     new.id = id
-    scene.fixes[id] = new
+    scene.add_fix(new)
     restart.restore_fix(session, new)
     session.remember(f"fix {id}")
     session.loop = None

@@ -10,7 +10,5 @@ def run(session, args):
     fixes = session.scene.fixes
     if id not in fixes:
         raise InputError(f"unfix: there is no fix {id}{nearest(id, fixes)}")
-    fix = fixes.pop(id)
-    if session.scene.system is not None:
-        fix.detach(session.scene.system)
+    session.scene.remove_fix(id)
     session.loop = None

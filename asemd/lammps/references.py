@@ -1,0 +1,42 @@
+"""Computes that computes, fixes and thermo output go by, looked up by their IDs when a run begins: one may be gone, or made anew."""
+from __future__ import annotations
+
+from asemd.compute import Compute
+from asemd.errors import InputError, nearest
+
+
+def renew(session) -> None:
+    """What goes by a compute goes by the one that has its ID now.
+
+    Raises
+    ------
+    InputError
+        There is none any more, or another kind of it.
+    """
+    scene = session.scene
+    for kind, table in (("fix", scene.fixes), ("compute", scene.computes)):
+        for owner in table.values():
+            for name, held in list(vars(owner).items()):
+                if isinstance(held, Compute) and held.id and scene.computes.get(held.id) is not held:
+                    try:
+                        _replace(session, kind, owner, name, held)
+                    except InputError as e:
+                        raise e.at(session.places.get(f"{kind} {owner.id}")) from None
+    for keyword in ("temp", "press"):
+        id = getattr(scene.thermo, keyword)
+        if id not in scene.computes:
+            raise InputError(f"thermo_modify {keyword} {id}: there is no compute {id} any more{nearest(id, scene.computes)}")
+
+
+def _replace(session, kind: str, owner, name: str, held: Compute) -> None:
+    what, found = f"{kind} {owner.id} (style {owner.style})", session.scene.computes.get(held.id)
+    if found is None:
+        raise InputError(f"{what} goes by compute {held.id}, which is not there any more")
+    if type(found) is type(held):
+        setattr(owner, name, found)
+    elif kind == "fix" and name in ("temp", "press"):
+        owner.modify([name, held.id], session)
+    elif hasattr(found, "dof") and hasattr(held, "dof"):
+        setattr(owner, name, found)
+    else:
+        raise InputError(f"{what} goes by compute {held.id}, which has style {found.style} now, it had {held.style}")
