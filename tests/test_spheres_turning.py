@@ -97,6 +97,8 @@ OTHERS = {      # with the field, in which spheres turn
     "drag": [SPIN, "fix 2 some drag 1 1 1 0.7 0.4"],
     "indent": [SPIN, "fix 2 all indent 50 sphere 2.1 2.3 2.2 1.5"],
     "wall/reflect": ["change_box all boundary p p f", SPIN, "fix 4 all wall/reflect zlo EDGE zhi EDGE"],
+    "temp/csvr": [SPIN, "fix 2 all temp/csvr 1 2 0.1 77", "fix_modify 2 temp t"],
+    "temp/csld": [SPIN, "fix 2 some temp/csld 1 2 0.1 77", "fix_modify 2 temp t"],
     "temp/berendsen": [SPIN, "fix 2 all temp/berendsen 1 2 0.1", "fix_modify 2 temp t"],
     "press/berendsen": [SPIN, "fix 2 all press/berendsen iso 0 1 0.5", "fix_modify 2 temp t"],
     "move": [REST, "fix 2 some move rotate 1 1 1 0 0 1 2.0"],

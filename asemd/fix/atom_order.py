@@ -34,6 +34,14 @@ class AtomOrder:
         self.ids = np.concatenate([ids, system.id[~np.isin(system.id, ids)]])
         return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
 
+    def remove(self, gone) -> None:
+        """Atoms of these IDs leave; the last ones take their places, as in LAMMPS."""
+        left = self.ids.tolist()
+        for k in np.flatnonzero(np.isin(self.ids, gone))[::-1].tolist():
+            left[k] = left[-1]
+            left.pop()
+        self.ids = np.array(left, np.int64)
+
     def sort(self, loop, x: np.ndarray | None = None) -> None:
         """Sort by bins of the box, those of x first; within a bin the order stays.
 
@@ -56,6 +64,18 @@ class AtomOrder:
         count = bin_counts(high - low, self.width or 0.5 * (cutoff + e.settings.skin), system.dimension)
         bins = np.clip(((x[rows] - low) * (count / (high - low))).astype(np.int64), 0, count - 1)
         self.ids = self.ids[np.argsort((bins[:, 2] * count[1] + bins[:, 1]) * count[0] + bins[:, 0], kind="stable")]
+
+
+def storage_of(loop, own: AtomOrder) -> AtomOrder:
+    """The one that all fixes of a run share."""
+    return next((f.storage for f in loop.fixes if type(getattr(f, "storage", None)) is AtomOrder), own)
+
+
+def sort_if_due(loop, storage: AtomOrder, fix) -> None:
+    """Called by each fix before a list build, after it has acted: the last one of those that share an order sorts it."""
+    if storage.due <= loop.step and fix is next(f for f in reversed(loop.fixes) if getattr(f, "storage", None) is storage):
+        loop.sync_out()
+        storage.sort(loop)
 
 
 def bin_counts(length: np.ndarray, width: float, dimension: int) -> np.ndarray:

@@ -1,8 +1,8 @@
 r"""Take atoms or molecules out of a region now and then, as a solvent that dries.
 
 Every N steps M of the atoms of the group in the region are chosen at random and taken out, with their whole molecules if asked for: then
-atoms are counted until there are M or more. LAMMPS draws from its atoms in the order of their storage, asemd in that of their rows: the
-same numbers choose other atoms.
+atoms are counted until there are M or more. The random numbers are LAMMPS's, and the order of the atoms from which they choose, that of its
+storage on one processor (see `asemd.fix.atom_order`).
 
 Source: LAMMPS manual, fix evaporate. Output: a scalar, how many atoms went so far.
 """
@@ -13,6 +13,7 @@ import numpy as np
 from asemd import population
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix
+from asemd.fix.atom_order import AtomOrder, sort_if_due, storage_of
 from asemd.random import ParkMiller
 from asemd.words import take, whole, yes_no
 
@@ -52,7 +53,8 @@ class Evaporate(Fix):
             raise InputError("fix evaporate needs a region to take atoms from")
         self.interval, self.count, self.region, self.molecules = every, count, region, molecules
         self.seed, self.random = seed, ParkMiller(seed)
-        self.taken = 0
+        self.random.skip(30)        # as LAMMPS: the first numbers of neighbouring seeds are alike
+        self.taken, self.storage, self.resumed = 0, AtomOrder(), False
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -67,7 +69,7 @@ class Evaporate(Fix):
             raise InputError(f"fix evaporate molecule yes: atoms of style {scene.system.atom_style} have no molecules")
         fix = cls(group, whole(every, "fix evaporate N"), whole(count, "fix evaporate M"), scene.region(name, "fix evaporate"),
                   whole(seed, "fix evaporate seed"), molecules)
-        fix.region_id = name
+        fix.region_id, fix.storage = name, AtomOrder(*scene.sort, scene.order)
         if not molecules and (scene.system.molecule[scene.groups.mask(group)] != 0).any():
             session.warn("fix evaporate may delete atoms of molecules: use molecule yes to delete whole ones")
         return fix
@@ -77,6 +79,10 @@ class Evaporate(Fix):
         return words + ["molecule", "yes"] * self.molecules
 
     def setup(self, loop) -> None:
+        self.storage = storage_of(loop, self.storage)
+        if not self.resumed:
+            self.storage.sort(loop)
+        self.resumed = False
         if self.next_reneighbor <= loop.step:
             self.next_reneighbor = self._next(loop.step)
 
@@ -85,34 +91,48 @@ class Evaporate(Fix):
 
     def pre_exchange(self, loop) -> None:
         """On its steps: choose and take."""
-        if loop.step != self.next_reneighbor:
-            return
-        self.next_reneighbor = self._next(loop.step)
-        loop.sync_out()
+        if loop.step == self.next_reneighbor:
+            self.next_reneighbor = self._next(loop.step)
+            loop.sync_out()
+            gone = self._chosen(loop)
+            if len(gone):
+                self.storage.remove(loop.system.id[gone])
+                population.remove(loop, gone, lost=False, listed=False)
+                self.taken += len(gone)
+        sort_if_due(loop, self.storage, self)
+
+    def _chosen(self, loop) -> np.ndarray:
+        """Rows of those that go."""
         system = loop.system
-        inside = loop.groups[self.group] & self.region.inside(system.x)
-        candidates = list(np.flatnonzero(inside))
-        gone: set[int] = set()
-        while candidates and len(gone) < self.count:
+        inside, gone = loop.groups[self.group] & self.region.inside(system.x), np.zeros(system.n, bool)
+        candidates = [row for row in self.storage.rows(system).tolist() if inside[row]]
+        while candidates and np.count_nonzero(gone) < self.count:
             at = int(len(candidates) * self.random.uniform())
             row = candidates[at]
-            candidates[at] = candidates[-1]
-            candidates.pop()
-            if not self.molecules or system.molecule[row] == 0:
-                gone.add(int(row))
-            else:
-                whole_one = np.flatnonzero(system.molecule == system.molecule[row])
-                gone.update(map(int, whole_one))
-                candidates = [c for c in candidates if c not in gone]
-        if gone:
-            population.remove(loop, sorted(gone), lost=False, listed=False)
-            self.taken += len(gone)
+            gone[row] = True
+            if not self.molecules:
+                candidates[at] = candidates[-1]
+                candidates.pop()
+                continue
+            if system.molecule[row] != 0:
+                gone |= system.molecule == system.molecule[row]
+            k = 0
+            while k < len(candidates):      # the last one takes the place of one that goes
+                if gone[candidates[k]]:
+                    candidates[k] = candidates[-1]
+                    candidates.pop()
+                else:
+                    k += 1
+        return np.flatnonzero(gone)
 
     def scalar(self) -> float:
         return float(self.taken)
 
     def state(self) -> dict:
-        return {"taken": self.taken, "random": self.random.state, "next": self.next_reneighbor}
+        return {"taken": self.taken, "random": self.random.state, "next": self.next_reneighbor, "ids": self.storage.ids,
+                "due": self.storage.due}
 
     def restore(self, state: dict) -> None:
         self.taken, self.random.state, self.next_reneighbor = int(state["taken"]), int(state["random"]), int(state["next"])
+        self.resumed = True
+        self.storage.ids, self.storage.due = np.array(state["ids"], np.int64), int(state["due"])

@@ -27,10 +27,9 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.fix import Fix
-from asemd.fix.atom_order import AtomOrder
+from asemd.fix.atom_order import AtomOrder, sort_if_due, storage_of
 from asemd.fix.gcmc_moves import Moves
 from asemd.fix.reservoir import check_scene, find_molecule, find_region, gas_type, read, region_volume
-from asemd.fix.trial_atoms import storage_of
 from asemd.random import ParkMiller
 from asemd.words import bounds, number, take, whole
 
@@ -192,9 +191,7 @@ class GCMC(Fix):
             moves.carry_over()
             self.held_tail = moves.tail.held
             self.next_reneighbor += self.interval
-        if self.storage.due <= loop.step and self is next(f for f in reversed(loop.fixes) if getattr(f, "storage", None) is self.storage):
-            loop.sync_out()
-            self.storage.sort(loop)
+        sort_if_due(loop, self.storage, self)
 
     def vector(self, i: int) -> float:
         """1, 2: attempts and successes of translations; 3, 4: of insertions; 5, 6: of deletions; 7, 8: of rotations."""

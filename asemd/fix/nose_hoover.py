@@ -212,7 +212,7 @@ class NoseHoover(Thermostat):
         n, p = self.chain, self.p
         eta, rate, mass = p[HEADER:HEADER + n], p[HEADER + n:HEADER + 2 * n], p[HEADER + 3 * n + 1:]
         potential = p[3] * p[13] * eta
-        potential[0] *= p[2]
+        potential[0] *= p[15]
         return potential, 0.5 * mass * rate * rate
 
     def scalar(self) -> float:

@@ -91,6 +91,7 @@ def begin(fix: NoseHoover, loop) -> None:
         measure(fix, loop, True)
         fix.aim_in_python(loop)
     if fix.thermal:
+        p[15] = p[2]
         nose_hoover_chain(th, p)
         scale(fix, loop, p[12])
     if box:
@@ -129,7 +130,9 @@ def end(fix: NoseHoover, loop) -> None:
         measure_pressure(s, fix.q, fix.b, fix.w)
         push_box(th, s, p, fix.q, fix.b, fix.m)
     if fix.thermal:
+        aimed = p[15]       # its target, and with it the energy of the chain, stay those of this step
         nose_hoover_chain(th, p)
+        p[15] = aimed
         scale(fix, loop, p[12])
     if box and fix.q[11] > 0.0:
         barostat_chain(th, fix.q, fix.b, fix.e, p[3] * p[13])

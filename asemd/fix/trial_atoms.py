@@ -16,11 +16,6 @@ from asemd.kernels import trial
 NOBODY = -1
 
 
-def storage_of(loop, own: AtomOrder) -> AtomOrder:
-    """The one that all fixes of a run share."""
-    return next((f.storage for f in loop.fixes if type(getattr(f, "storage", None)) is AtomOrder), own)
-
-
 class Energies:
     """Pair energies of atoms at trial positions.
 
