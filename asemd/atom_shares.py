@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from asemd.manybody_term import ManyBodyTerm
 from asemd.result import Result
 from asemd.term import PairListTerm, PairRowsTerm, PairTerm
 
@@ -32,12 +33,14 @@ def add(engine: Engine, result: Result) -> Result:
             t.rebuild(engine)
         engine.atom_energy[:] = 0.0
         engine.atom_virial[:] = 0.0
-        f = t.kernel(True, True)
-        given = [t.arguments(engine, tid) for tid in range(engine.threads)]
+        f, many = t.kernel(True, True), isinstance(t, ManyBodyTerm)
+        given = [t.arguments(engine, tid, shares=True) if many else t.arguments(engine, tid) for tid in range(engine.threads)]
         engine.parallel(lambda tid, f=f, given=given: f(*given[tid]))
         e, v = np.zeros(n), np.zeros((n, 6))
         e[rows[slots]] = engine.atom_energy.sum(0)[slots]
         v[rows[slots]] = engine.atom_virial.sum(0)[:, slots].T
+        if many:
+            e, v = t.owner.use.factor * e, t.owner.use.factor * v
         result.energies_of[t.category] = result.energies_of.get(t.category, 0.0) + e
         result.virials_of[t.category] = result.virials_of.get(t.category, 0.0) + v
     engine.acc[:], engine.buffers[:] = keep

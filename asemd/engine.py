@@ -15,6 +15,7 @@ from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.kspace import solve
+from asemd.manybody_term import ManyBodyTerm, all_pairs
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
 from asemd.result import Result, Settings, Snapshot
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
@@ -64,14 +65,16 @@ class Engine:
         self.set_box()
         s, inter = self.settings, self.interactions
         self.solver = solve(system, inter, self.units) if inter.kspace != "none" or inter.needs_solver else None
-        self.pair_terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts]
+        terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts or t.style.many]
         for kind, *pair in s.exclude:
             if kind == "type":
-                for t in self.pair_terms:
+                for t in terms:
                     t.exclude(*pair)
-        self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) for t in self.pair_terms), default=0.0) ** 0.5
+        self.pair_terms, self.many_terms = [t for t in terms if t.style.parts], [t for t in terms if t.style.many]
+        self.has_pairs = bool(terms)
+        self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) for t in terms), default=0.0) ** 0.5
         self.reach = self.cutoff + s.skin
-        self.exclusions = Exclusions(system, inter, s.exclude, bool(self.pair_terms))
+        self.exclusions = Exclusions(system, inter, s.exclude, self.has_pairs)
         self._choose_list()
         self.k = kernels(self.ortho, s.outdated or self.sparse)
         self.terms = self._make_terms()
@@ -88,13 +91,14 @@ class Engine:
         self.list = ClusterList(self.threads, self.reach, width, marked) if self.mode == "cluster" else PlainList(self.reach)
         self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
         self.state, self._offset, self.ns = None, None, 0
+        self.listed: tuple | None = None      # the present list as plain pairs, if anything asked for it
 
     def _choose_list(self) -> None:
         """Which neighbour list the scene needs, and why."""
         n = self.system.n
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
         widths = 1.0 / np.linalg.norm(np.linalg.inv(self.vectors), axis=0)
-        if not self.pair_terms:
+        if not self.has_pairs:
             self.mode, self.why = "none", "no pair interactions"
         elif n < SMALL:
             self.mode, self.why = "plain", f"fewer than {SMALL} atoms"
@@ -104,13 +108,14 @@ class Engine:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
         self.expanded = self.mode == "cluster" and any(np.ndim(t.use.factor) > 0 for t in self.pair_terms)
         volume = abs(float(np.linalg.det(self.vectors)))
-        few = 2.1 * self.reach**3 * n < SPARSE * volume
+        few = 2.1 * self.reach**3 * n < SPARSE * volume or not self.pair_terms
         rules = bool(len(self.exclusions.rules))
         chosen = any(t.molecules for t in self.pair_terms)
         self.sparse = self.mode == "cluster" and not self.expanded and (few or table or rules or chosen)
         if self.sparse:
-            reason = ("tables" if table else "neigh_modify exclude" if rules else "pairs are chosen by molecule" if chosen else
-                      f"fewer than {SPARSE} neighbours per atom")
+            reasons = (("only many-body styles", not self.pair_terms), ("tables", table), ("neigh_modify exclude", rules),
+                       ("pairs are chosen by molecule", chosen), (f"fewer than {SPARSE} neighbours per atom", True))
+            reason = next(text for text, holds in reasons if holds)
             self.why = f"{reason}: rows of single atoms"
 
     def _make_terms(self) -> list:
@@ -124,6 +129,7 @@ class Engine:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special", owner=t))
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t))
+        terms += [ManyBodyTerm(t) for t in self.many_terms]
         if self.solver is not None and self.solver.modify["compute"]:
             terms.append(self.solver.term(self))
         return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]
@@ -240,6 +246,7 @@ class Engine:
             bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
         self.moved[:] = 0.0
+        self.listed = None
         new = self.state._replace(slot=self.slot_of, image=self.system.image, box=live_box.live(self))
         self.state = new if any(a is not b for a, b in zip(new, self.state)) else self.state      # the same one is packed in memory
         for t in self.terms:
@@ -263,6 +270,8 @@ class Engine:
     @property
     def pairs(self) -> int:
         """Pairs in the list, as LAMMPS counts them: within reach when it was built, without special pairs of no weight."""
+        if self.mode == "cluster" and not self.pair_terms:
+            return len(all_pairs(self)[0])
         if self.mode == "cluster" and not self.expanded:
             i, j, code = self.special
             d = self.held[:, i] - self.held[:, j] - self.shifts27[code >> 2].T
@@ -331,7 +340,7 @@ class Engine:
             virial_of["fix"] = self.state.virial.sum(axis=0)
         virial = sum(virial_of.values(), np.zeros(6))
         self.store()        # the box too, which the tail depends on
-        if self.interactions.tail and self.pair_terms:
+        if self.interactions.tail and self.has_pairs:
             energy["etail"], p = self.interactions.tail_correction(self.system, self.units)
             p *= abs(np.linalg.det(self.vectors)) / self.units.nktv2p
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])

@@ -160,7 +160,7 @@ class Interactions:
                 return
             use, words = self.sub_style(category, name, words[1:])
         values = use.style.parse_coeff(words, use.settings)
-        for key in keys:
+        for key in use.style.keys(values, keys):
             joined = use.style.join(use.coeff.get(key, {}), values)
             if self.hybrid[category] not in ADDED:
                 self._forget(category, key)
@@ -256,7 +256,7 @@ class Interactions:
         lines = [(key, -1, [*_words_of(key), "none"]) for key in self.none[category]]
         for k, use in enumerate(self.uses[category]):
             name = use.label.split() if self.hybrid[category] else []
-            lines += [(key, k, [*_words_of(key), *name, *line]) for key, c in use.coeff.items() for line in use.style.coeff_lines(c)]
+            lines += [(key, k, [*types, *name, *line]) for key, types, line in use.style.lines(use.coeff)]
         return [line for _, _, line in sorted(lines, key=lambda entry: entry[:2])]
 
     def modify_lines(self) -> list[list[str]]:

@@ -290,8 +290,8 @@ class PlainList:
         self.size, self.copies = 1024, 1024
 
     def build(self, k, state, ns: int, bins: BinCell, cell_vectors: np.ndarray, periodic: np.ndarray):
-        """Returns (pair_i, pair_j, code) and keeps `shifts (m, 3)`."""
-        self.shifts, opposite = image_shifts(cell_vectors, periodic, self.reach)
+        """Returns (pair_i, pair_j, code) and keeps `shifts (m, 3)` and `opposite (m,)`, the image the other way."""
+        self.shifts, self.opposite = image_shifts(cell_vectors, periodic, self.reach)
         pairs = 2.1 * self.reach**3 * ns**2 / abs(np.linalg.det(cell_vectors)) if periodic.all() else 0.0
         if pairs > MOST_PAIRS:
             raise InputError(f"cutoff plus skin, {self.reach:g}: about {pairs:.2g} pairs of atoms are in reach, too many to list")
@@ -310,7 +310,7 @@ class PlainList:
         head, following = np.empty(int(counts.prod()), np.int32), np.empty(ns + ng, np.int32)
         while True:
             out = [np.empty(self.size, np.int32) for _ in range(3)]
-            n = k.pairs(state.x, ns, everything, slot, image, ng, opposite, counts, low, width, head, following, self.reach, *out)
+            n = k.pairs(state.x, ns, everything, slot, image, ng, self.opposite, counts, low, width, head, following, self.reach, *out)
             if n >= 0:
                 return [a[:n] for a in out]
             self.size *= 2

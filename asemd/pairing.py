@@ -59,6 +59,8 @@ class PairTerm:
     @property
     def cut_rows(self) -> list[int]:
         """Which rows of the tables are squared cutoffs: the first one of each part."""
+        if self.style.many:
+            return [0]
         lengths = [2 + len(part.rows) for part in self.style.parts]
         return [sum(lengths[:k]) for k in range(len(lengths))]
 

@@ -107,6 +107,7 @@ class PairStyle(Style):
     """
 
     solvers: frozenset[str] = frozenset()      # kinds of kspace_style that complete the parts; empty: none is needed
+    many = False                     # energies of single pairs; True: `asemd.manybody`
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
 

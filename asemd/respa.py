@@ -205,7 +205,7 @@ class RespaLoop(Loop):
             if t.category != "pair" or getattr(t, "pairs", "") == "one_four":
                 self._work[at["dihedral" if t.category == "pair" else t.category] - 1].append(t)
                 continue
-            owner = next(p for p in e.pair_terms if p.tables is t.tables)
+            owner = next(p for p in e.pair_terms + e.many_terms if p.tables is t.tables)
             if self.levels.hybrid:
                 self._work[self.levels.hybrid[self._number(owner.use)] - 1].append(t)
             elif "pair" in at:

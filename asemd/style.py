@@ -246,6 +246,15 @@ class Style:
         """Words of all lines that make the coefficients of a type again."""
         return [self.format_coeff(coeff)]
 
+    def lines(self, coeffs: Mapping[Any, Mapping[str, Any]]) -> list[tuple[Any, list[str], list[str]]]:
+        """All lines of ``*_coeff``: the type or pair of types to sort them by, the words of the types, the other words."""
+        return [(key, [str(k) for k in key] if isinstance(key, tuple) else [str(key)], line)
+                for key, c in coeffs.items() for line in self.coeff_lines(c)]
+
+    def keys(self, values: Mapping[str, Any], keys: list) -> list:
+        """The types (or pairs of types), of those of the command, that these coefficients are for."""
+        return keys
+
     def rest_value(self, coeff: Mapping[str, Any]) -> float:
         """Rest length, or rest angle in degrees, of a type with these coefficients; nan if the style has none."""
         value = self.rest(coeff) if self.rest else coeff.get(self.equilibrium)

@@ -49,17 +49,18 @@ def force_field_style(s: style.Style) -> list[str]:
     category = s.category
     module = sys.modules[style.module_of(category, s.name)]
     out = [f"### {category} {s.name}", "", markdown(s.doc or inspect.getdoc(module) or ""), ""]
-    keys = "i j " if category == "pair" else "type "
+    many = getattr(s, "many", False) and s.elements
+    keys = "* * " if many else "i j " if category == "pair" else "type "
     syntax = [f"{category}_style {s.name} {words(s.settings)}".rstrip()]
     if s.coeff:
-        syntax.append(f"{category}_coeff {keys}{words(s.coeff)}")
+        syntax.append(f"{category}_coeff {keys}{words(s.coeff)}{' ...' * many}")
     out += ["```lammps", *syntax, "```", ""]
     if s.settings or s.coeff:
         out += [units_of([*s.settings, *s.coeff]) + ".", ""]
     if s.domain:
         out += [f"Domain: {s.domain}.", ""]
     if s.example:
-        types = "1 1" if category == "pair" else "1"
+        types = "* *" if many else "1 1" if category == "pair" else "1"
         lines = [f"{category}_style {s.name} {s.settings_example}".rstrip(), f"{category}_coeff {types} {s.example}"]
         out += ["Example:", "", "```lammps", *lines, "```", ""]
     if s.see and s.see not in s.doc:

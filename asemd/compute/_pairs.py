@@ -126,7 +126,7 @@ def _own(state, reach: float) -> SimpleNamespace:
     bins, made = BinCell(vectors, np.asarray(box.origin, float), periodic, s.x, row, n), PlainList(reach)
     i, j, code = made.build(k, s, n, bins, vectors, periodic)
     if engine is not None:
-        rules = engine.exclusions if engine.pair_terms else Exclusions(system, engine.interactions, engine.settings.exclude, True)
+        rules = engine.exclusions if engine.has_pairs else Exclusions(system, engine.interactions, engine.settings.exclude, True)
         i, j, code = rules.mark(k, s.x, row, i, j, code, made.shifts, cell_arrays(vectors, periodic), periodic)
     return SimpleNamespace(x=s.x, row=row, i=i, j=j, code=code, shifts=made.shifts, held=s.x)
 
@@ -191,6 +191,7 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         A style whose forces are not those of its energy (a factor for each atom).
     """
     engine, m = state.engine, len(pairs.i)
+    check_pairwise(engine.many_terms if terms is None else ())
     energy, force = np.zeros(m), np.zeros((m, 3))
     x, q = np.zeros((3, 2 * m)), np.zeros(2 * m)
     x[:, :m] = pairs.d.T
@@ -221,6 +222,18 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         energy += e[:m] + e[m:]
         force += f[:, :m].T
     return energy, force
+
+
+def check_pairwise(many) -> None:
+    """Refuse pair styles without energies of single pairs.
+
+    Raises
+    ------
+    InputError
+        The message names the style.
+    """
+    for term in many:
+        raise InputError(f"pair style {term.style.name} is a many-body potential: there is no energy or force of a single pair of atoms")
 
 
 def _kernel(term):

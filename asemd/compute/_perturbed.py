@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from asemd.compute import Compute
+from asemd.compute._pairs import check_pairwise
 from asemd.errors import InputError, nearest
 from asemd.words import bounds
 
@@ -71,6 +72,7 @@ def perturbed_terms(state, changes, what: str) -> list:
             for pair in [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]:
                 if name in use.coeff.get(pair, ()):
                     use.coeff[pair][name] = before[pair][name] + delta
+    check_pairwise(state.engine.many_terms)
     terms = [t for t in new.pair_terms(n, state.units) if t.style.parts]
     for kind, *pair in state.engine.settings.exclude:
         if kind == "type":

@@ -105,6 +105,8 @@ class BornMatrix(Compute):
     def _analytic(self, state) -> np.ndarray:
         engine, mask, chosen = state.engine, state.mask(self.group), self.terms or TERMS
         out = np.zeros((6, 6))
+        if "pair" in chosen and engine.many_terms:
+            raise InputError(f"compute born/matrix: pair style {engine.many_terms[0].style.name} has no second derivatives: use numdiff")
         if "pair" in chosen and engine.pair_terms:
             for d, b in _pairs(state, mask):
                 _add_pairs(out, d, b)

@@ -37,6 +37,9 @@ class Energies:
             raise InputError(f"{what}: a pair style whose factor differs from atom to atom has no energy")
         if any(t.molecules == "same" for t in terms):
             raise InputError(f"{what}: pair_style hybrid/molecular is not supported")
+        if engine.many_terms:
+            raise InputError(f"{what}: pair style {engine.many_terms[0].style.name} is a many-body potential, in which "
+                             "an atom has no energy of pairs")
         self.module = trial.kernel(tuple(t.style for t in terms))
         one = np.ones(5)
         self.tables = tuple((t.tables.rows, t.tables.constants, t.tables.arrays, np.array([w[0] for w in t.weights(one, one)]))

@@ -242,6 +242,8 @@ def _coefficients(interactions: Interactions, s: System, pair: str) -> Iterator[
         style = interactions.style_name(category)
         if style == "none" or not _count(s, "atom" if category == "pair" else category):
             continue
+        if category == "pair" and any(use.style.many for use in interactions.uses["pair"]):      # potential files are not in data files
+            continue
         if style == "bpm/spring":      # as in LAMMPS, whose scripts choose this style after read_data
             continue
         if category == "pair":

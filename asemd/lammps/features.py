@@ -42,7 +42,8 @@ def active(scene, category: str, name: str) -> bool:
         _known(name, ("single", "respa", "manybody", "tail", "shift"), "is_active(pair)")
         pairs = bool(uses["pair"])
         splits = pairs and all(use.style.splits for use in uses["pair"])
-        return {"single": pairs, "respa": splits, "manybody": False}.get(name, bool(getattr(scene.interactions, name, False)))
+        many = any(use.style.many for use in uses["pair"])
+        return {"single": pairs and not many, "respa": splits, "manybody": many}.get(name, bool(getattr(scene.interactions, name, False)))
     one = {"atom_style": scene.atom_style, "min_style": scene.min_style, "run_style": "respa" if scene.respa else "verlet",
            "comm_style": "brick", "kspace_style": "none"}
     styles = [f"{c}_style" for c in catalog.FORCE_FIELD]

@@ -12,6 +12,7 @@ from asemd import units as unit_styles
 from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.lammps.plan_memory import holdings, pairs_around
+from asemd.manybody_term import ManyBodyTerm
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 from asemd.text_table import Table
 
@@ -195,6 +196,8 @@ def _term(e: Engine, t) -> Item:
         hidden = "excluded partners left out of the rows" if e.exclusions.partners is not None else "no exclusions"
         which = {"same": ", pairs within molecules", "other": ", pairs between molecules"}.get(t.owner.molecules, "")
         return Item(f"pair {style.name}", f"rows of single atoms{which}, double precision, {charged}, {hidden}{times}", e.why)
+    if isinstance(t, ManyBodyTerm):
+        return Item(f"pair {style.name}", f"rows of all neighbours of each atom, double precision{times}", "pair_style")
     assert isinstance(t, PairListTerm)
     if t.pairs == "special":
         return Item(f"pair {style.name} (special)", f"{len(e.exclusions.weighted)} weighted pairs, one by one",
@@ -229,7 +232,7 @@ def _absent(e: Engine) -> list[Item]:
     out, inter, s = [], e.interactions, e.system
     if e.mode == "none":
         out.append(Item("neighbour list", "", e.why, "pair_style"))
-    elif not any(t.style.charged for t in e.pair_terms):
+    elif not any(t.style.charged for t in e.pair_terms + e.many_terms):
         why = "no pair style in use has one" + (", the charges act on nothing" if s.has_charge else "")
         out.append(Item("Coulomb part", "", why, "a pair_style with coul in its name"))
     out.append(Item("k-space", "", "no style has a long-range part", "kspace_style"))

@@ -8,6 +8,7 @@ import numpy as np
 
 from asemd.engine import Engine
 from asemd.kernels.cluster import CLUSTER
+from asemd.manybody_term import ManyBodyTerm
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 from asemd.topology import ATOMS
 
@@ -84,6 +85,8 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         if isinstance(t, (PairTerm, PairRowsTerm)):
             out.append(Holding(f"pair {t.style.name}", (64.0 if t.owner.is_plain else 88.0) * threads * cap,
                                "positions and forces by cluster", "pair_style"))
+        elif isinstance(t, ManyBodyTerm):
+            out.append(Holding(f"pair {t.style.name}", 24.0 * cap + 10.0 * pairs, "rows of all neighbours", "pair_style"))
         elif isinstance(t, BondedTerm):
             k = ATOMS[t.category]
             m = len(t.items)

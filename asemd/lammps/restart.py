@@ -126,6 +126,12 @@ def force_field(interactions: Interactions) -> dict[str, Any]:
     names = ("settings", "coeff", "label", "modify", "special", "scale", "memory")
     out["uses"] = {category: [{"style": use.style.name, **{n: getattr(use, n) for n in names}} for use in uses]
                    for category, uses in interactions.uses.items()}
+    # potential files are not kept, as in LAMMPS: the script gives the style (a sub-style's coefficients) again
+    if out["hybrid"]["pair"]:
+        for use in out["uses"]["pair"]:
+            use["coeff"] = {} if find("pair", use["style"]).many else use["coeff"]
+    else:
+        out["uses"]["pair"] = [use for use in out["uses"]["pair"] if not find("pair", use["style"]).many]
     return out
 
 

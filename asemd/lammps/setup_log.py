@@ -89,6 +89,8 @@ def report_mixing(session, command: str = "") -> None:
         terms = complete(scene.interactions, n)
     except InputError:      # what is missing is told when a run needs it
         return
+    if not scene.interactions.hybrid["pair"] and uses[0].style.many:
+        return
     mixed = sum(pair not in use.coeff for use, filled in terms if _mixes_energies(use.style) for pair in filled)
     rules = [use.modify["mix"] for use in uses if "mix" in use.modify]
     rule = (rules or [scene.interactions.mix or ("geometric" if scene.interactions.hybrid["pair"] else uses[0].style.mix_rule)])[-1]
@@ -118,7 +120,7 @@ def _report_list(session, engine) -> None:
         f"  master list distance cutoff = {engine.reach:.8g}",
         "  1 neighbor lists, perpetual/occasional/extra = 1 0 0",
         f"  (1) pair {scene.interactions.style_name('pair')}, perpetual",
-        f"      attributes: half, newton {'on' if scene.newton[0] else 'off'}",
+        f"      attributes: {'full' if engine.many_terms else 'half'}, newton {'on' if scene.newton[0] else 'off'}",
         f"      pair build: {engine.mode}"])
     if text != session.list_told:
         session.list_told = text

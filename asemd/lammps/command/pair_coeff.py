@@ -1,11 +1,25 @@
 """``pair_coeff I J values``"""
 from __future__ import annotations
 
+from asemd import units as unit_styles
 from asemd.lammps.live_coefficients import fill
+
+
+def report_files(session, args) -> None:
+    """What LAMMPS's log says about potential files, those of this command."""
+    for use in session.scene.interactions.uses["pair"]:
+        if use.style.many:
+            for c in {c["file"]: c for c in use.coeff.values() if c["file"] in args}.values():
+                file, units = c["units"], session.scene.units
+                if file.date:
+                    session.print(f"Reading {use.style.reads} potential file {file.name} with DATE: {file.date}")
+                if use.style.unit_factor(c, unit_styles.get(units)) != 1.0 and units != "ase":
+                    session.warn(f"Converting {use.style.reads} potential in {file.units} units to {units} units")
 
 
 def run(session, args):
     scene = session.scene
     with session.passing_warnings():
         scene.interactions.set_coeff("pair", args, scene.need_system("pair_coeff"))
+        report_files(session, args)
     fill(session, "pair")

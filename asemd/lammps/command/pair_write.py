@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd.compute._pairs import check_pairwise
 from asemd.errors import InputError, InputWarning
 from asemd.lammps import live_coefficients
 from asemd.lammps.table_write import append, one_type
@@ -33,6 +34,7 @@ def chosen(session, ntypes: int, units) -> list:
     for fill in (live_coefficients.fill, live_coefficients.scale):
         fill(session)
     terms = session.scene.interactions.pair_terms(ntypes, units)
+    check_pairwise(t for t in terms if t.style.many)
     if not any(term.molecules for term in terms):
         return terms
     which = "other" if system.n > 1 and system.molecule[0] != system.molecule[1] else "same"

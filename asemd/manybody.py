@@ -1,0 +1,171 @@
+r"""Many-body pair styles: energies of an atom that depend on where all its neighbours are.
+
+A style is read from a file, ``pair_coeff * * FILE El1 El2 ...``, one element (or NULL) for each atom type, and is the sum of energies of
+sites: of each atom i one energy, a function of the vectors from i to its neighbours within the cutoff::
+
+    def site(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
+        ...
+        return energy
+
+``near (4, cap)`` holds dx, dy, dz (neighbour minus i) and r^2 of the n neighbours, ``types (cap,)`` their types, and ``grad (3, cap)``,
+zero at first, takes the derivative of the energy by the neighbours' positions; the kernel makes forces and virial of it. The neighbours
+come in an order: of the first `m` the pair with i is counted here, of the others by the neighbour, so that a pair energy is computed once.
+``room (rooms, cap)`` is work space by neighbour, ``constants`` and ``arrays`` are those that `pack_pairs` made (coefficients by atom
+type). ``if PER_ATOM:`` the site tells how its energy is shared, with ``share_pair(shares, j, e, gx, gy, gz)``, half of it and of its
+virial to i and half to neighbour j, and ``share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)``, a third to each. Bodies
+follow the rules of `asemd.style`: strict, compiled, ``math`` only.
+
+::
+
+    class SW(ManyBody):
+        def read(self, file, elements, settings): ...      # -> what pack_pairs needs, kept as coeff["data"]
+        def pack_pairs(self, settings, filled, ntypes, units, shift=False): ...     # -> PairTables; rows[0]: cutoffs^2
+
+    register(SW("sw", site=site, rooms=6, ...))
+
+A style that is no sum of such sites (densities first, then forces) has `forces` instead of `site`: its whole kernel, with the arguments
+that `asemd.kernels.manybody.site_forces` has and the helpers of that module. Its threads own atoms ``lo..hi-1``, may use
+``shared (shares, cap)``, rows of numbers by slot that all threads see, and wait for each other with ``barrier(meeting)``.
+
+A file for each pair of types, as eam has: ``elements=False``, and ``coeff`` as for any pair style. Cutoffs are whatever `pack_pairs`
+says, special_bonds weights other than 0 do not matter, and there is no energy of a single pair, as in LAMMPS.
+"""
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.pairstyle import PairStyle, PairTables, missing_pairs
+from asemd.potential_file import PotentialFile
+
+
+class ManyBody(PairStyle):
+    """A many-body pair style.
+
+    Parameters
+    ----------
+    name : str
+    site, forces : callable
+        One of the two, see above; `helpers` are functions that it calls.
+    rooms, shares : int
+        Rows of work space by neighbour of a thread, and by slot for all threads.
+    elements : bool
+        Coefficients are a file and an element for each atom type.
+    converts : bool
+        Files in metal units can be used with real units and the other way round; otherwise they must agree.
+    """
+
+    many = True
+
+    def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, helpers=(), rooms: int = 1,
+                 shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="", example="", **options):
+        coeff, notes = ("file element", {"file": "path", "element": "word"}) if elements else (coeff, {})
+        options["units"] = {**notes, **options.get("units", {})}
+        options.setdefault("doc", inspect.getdoc(inspect.getmodule(site or forces)) or "")
+        super().__init__(name, [], settings=settings, coeff=coeff, example=example, **options)
+        self.site, self.forces, self.helpers = site, forces, tuple(helpers)
+        self.reads = name.partition("/")[0]      # the word for it in LAMMPS's log
+        self.rooms, self.shares, self.elements, self.converts = rooms, shares, elements, converts
+
+    # ------------------------------------------------------------------ for styles to write ---
+
+    def read(self, file: PotentialFile, elements: tuple[str, ...], settings: Mapping[str, Any]) -> Any:
+        """What the file says about the elements (without NULL, each once)."""
+        raise NotImplementedError
+
+    def pack_pairs(self, settings, filled, ntypes, units, shift=False) -> PairTables:
+        """Squared cutoffs by pair of types as ``rows[0]`` (0: no interaction), constants and arrays of the kernel."""
+        raise NotImplementedError
+
+    # ------------------------------------------------------------------------------- words ---
+
+    def parse_coeff(self, words, settings):
+        if not self.elements:
+            return super().parse_coeff(words, settings)
+        what = f"pair_coeff {self.name}"
+        if len(words) < 2:
+            raise InputError(f"{what} needs * * FILE and an element, or NULL, for each atom type, got {len(words)} word"
+                             f"{'s' * (len(words) != 1)} after the types")
+        file, elements = PotentialFile(words[0], what), tuple(words[1:])
+        chosen = tuple(dict.fromkeys(e for e in elements if e != "NULL"))
+        values = {"file": words[0], "element": elements, "data": self.read(file, chosen, settings), "units": file}
+        values["reach"] = 0.0
+        n, used = len(elements), [t for t, e in enumerate(elements, 1) if e != "NULL"]
+        if used:
+            tables = self.pack_pairs(settings, {(i, j): values for i in used for j in used if i <= j}, n, None)
+            values["reach"] = float(np.sqrt(tables.rows[0].max()))
+        return values
+
+    def join(self, old, new):
+        return new if self.elements else dict(new)
+
+    def format_coeff(self, coeff):
+        return [coeff["file"], *coeff["element"]] if self.elements else super().format_coeff(coeff)
+
+    def keys(self, values, keys):
+        """The pairs of types, of those of the command, that these coefficients are for: both are elements of the file.
+
+        Raises
+        ------
+        InputError
+            Not all types (``* *``), or not one element for each.
+        """
+        if not self.elements:
+            return keys
+        n, elements = max(j for _, j in keys), values["element"]
+        if len(keys) != n * (n + 1) // 2:
+            raise InputError(f"pair_coeff {self.name} must be for all types at once: pair_coeff * * {values['file']} ...")
+        if len(elements) != n:
+            raise InputError(f"pair_coeff {self.name} needs an element, or NULL, for each of {n} atom types, got {len(elements)}: "
+                             f"{' '.join(elements)}")
+        return [(i, j) for i, j in keys if elements[i - 1] != "NULL" and elements[j - 1] != "NULL"]
+
+    def lines(self, coeffs):
+        if not self.elements:
+            return super().lines(coeffs)
+        different = {(c["file"], c["element"]): c for c in coeffs.values()}
+        return [((0, 0), ["*", "*"], self.format_coeff(c)) for c in different.values()]
+
+    # ------------------------------------------------------------------------ coefficients ---
+
+    def filled(self, coeffs, settings, ntypes, rule=None, only=None):
+        pairs = only if only is not None else {(i, j) for i in range(1, ntypes + 1) for j in range(i, ntypes + 1)}
+        if self.elements:
+            missing = sorted(pair for pair in pairs if pair not in coeffs)
+            if missing:
+                raise InputError(f"{missing_pairs(missing)}: pair_coeff * * FILE needs an element for each type")
+        return {pair: coeffs[pair] for pair in sorted(pairs) if pair in coeffs}
+
+    def reset_cutoffs(self, coeffs):
+        return dict(coeffs)
+
+    def reach(self, coeff, settings):
+        if "reach" in coeff:
+            return coeff["reach"]
+        return float(np.sqrt(self.pack_pairs(settings, {(1, 1): coeff}, 1, None).rows[0].max()))
+
+    def unit_factor(self, coeff: Mapping[str, Any], units) -> float:
+        """Factor from the energies of a file to those of the scene.
+
+        Raises
+        ------
+        InputError
+            The file is in other units, and the style does not convert them.
+        """
+        file, name = coeff["units"], units.name if units is not None else ""
+        factor = file.factor(name)
+        if factor != 1.0 and not self.converts:
+            raise file.error(f"the file is in {file.units} units, but {name} units are in use", 1)
+        return factor
+
+
+def element_of(filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int) -> list[str | None]:
+    """The element of each atom type, None for types that the style does not serve (and for entry 0)."""
+    out: list[str | None] = [None] * (ntypes + 1)
+    for (i, j), c in filled.items():
+        out[i], out[j] = c["element"][i - 1], c["element"][j - 1]
+    return out

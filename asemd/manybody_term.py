@@ -1,0 +1,105 @@
+"""Terms of many-body pair styles: rows of all neighbours of each atom, and the kernel over them."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import InputError, SimulationError
+from asemd.kernels import manybody
+from asemd.kernels.state import aligned
+from asemd.neighbor import IMAGES
+from asemd.term import FactorTerm
+
+
+def all_pairs(engine) -> tuple[np.ndarray, ...]:
+    """The present list as plain pairs: slots i and j, code (image * 4 + kind), shifts of the images, the image opposite to each.
+
+    Pairs of special atoms are there unless their weights are 0.
+    """
+    if engine.listed is None:
+        mine = engine.list
+        if engine.mode == "plain" or engine.expanded:
+            pairs = engine.plain
+        else:
+            found = mine.expand(engine.k, engine.state, engine.reach)
+            pairs = engine.exclusions.mark(engine.k, engine.state.x, engine.state.row, *found, mine.shifts, engine.cell, engine.periodic)
+        opposite = mine.opposite if engine.mode == "plain" else np.arange(len(IMAGES), dtype=np.int32)[::-1].copy()
+        engine.listed = *pairs, mine.shifts, opposite
+    return engine.listed
+
+
+class ManyBodyTerm(FactorTerm):
+    """A many-body pair style over rows of neighbours, see `asemd.kernels.manybody`; each thread owns a range of slots.
+
+    Attributes
+    ----------
+    first, middle, last (cap,), neighbors, codes (m,)
+        The rows of the present list.
+    """
+
+    category = "pair"
+
+    def __init__(self, term):
+        self.owner, self.style, self.tables = term, term.style, term.tables
+        if np.ndim(term.use.factor) > 0:
+            raise InputError(f"pair_style hybrid/scaled: the factor of {term.label} cannot differ from atom to atom")
+        cut2 = self.tables.rows[0]
+        self.uniform = bool((cut2[1:, 1:] == cut2[1, 1]).all())
+        self.first = self.middle = self.last = np.zeros(0, np.int64)
+        self.neighbors, self.codes = np.zeros(0, np.int32), np.zeros(0, np.uint8)
+        self.width = 0
+
+    def kernel(self, energy, per_atom):
+        made = manybody.kernel(self.style, energy=energy, per_atom=per_atom, uniform=self.uniform)
+        return made if per_atom else self._scaled(made, energy)
+
+    def rebuild(self, engine):
+        s, capacity = engine.state, engine.state.x.shape[1]
+        i, j, code, shifts, opposite = all_pairs(engine)
+        cut2, skin = self.tables.rows[0], engine.settings.skin
+        reach2 = np.where(cut2 > 0.0, (np.sqrt(cut2) + skin) ** 2, 0.0)
+        if len(self.first) < capacity:
+            self.first, self.middle, self.last = (np.zeros(capacity, np.int64) for _ in range(3))
+        kind = np.uint8 if len(opposite) <= 256 else np.int32
+        if self.codes.dtype != kind:
+            self.neighbors, self.codes = np.zeros(0, np.int32), np.zeros(0, kind)
+        while True:
+            n = manybody.rows_module().fill_rows(engine.ns, i, j, code, opposite, s.x, shifts, s.type, s.row, engine.system.id, reach2,
+                                                 self.first, self.middle, self.last, self.neighbors, self.codes)
+            if n <= len(self.neighbors):
+                break
+            self.neighbors, self.codes = np.zeros(n + n // 8, np.int32), np.zeros(n + n // 8, kind)
+        self.shifts, self.ns = shifts, engine.ns
+        lengths = self.last[:self.ns] - self.first[:self.ns]
+        self.edges = np.searchsorted(self.first[:self.ns], np.arange(engine.threads + 1) * n / engine.threads)
+        self.edges[0], self.edges[-1] = 0, self.ns
+        longest = int(lengths.max(initial=0)) + 1
+        if longest > self.width or len(self.near) != engine.threads:
+            self.width = longest + longest // 4 + 7 & -8
+            nth = engine.threads
+            self.near, self.grad = aligned((nth, 4, self.width)), aligned((nth, 3, self.width))
+            self.room = aligned((nth, self.style.rooms, self.width))
+            self.types, self.slots = np.zeros((nth, self.width), np.int32), np.zeros((nth, self.width), np.int32)
+        if self.style.shares and getattr(self, "shared", np.zeros((0, 0))).shape[1] != capacity:
+            self.shared = aligned((self.style.shares, capacity))
+        elif not self.style.shares:
+            self.shared = np.zeros((0, 0))
+
+    @property
+    def entries(self) -> int:
+        """Pairs in the rows, each counted once."""
+        return int((self.middle[:self.ns] - self.first[:self.ns]).sum())
+
+    def arguments(self, engine, tid, shares: bool = False):
+        s = engine.state
+        f, acc = (engine.buffers[tid], engine.acc[tid, self.index]) if shares else self._sums(engine, tid)
+        arguments = (
+            s.x, f, s.q, s.type, self.first, self.middle, self.last, self.neighbors, self.codes, self.shifts, int(self.edges[tid]),
+            int(self.edges[tid + 1]), self.tables.rows[0], self.tables.constants, self.tables.arrays, self.near[tid], self.types[tid],
+            self.slots[tid], self.grad[tid], self.room[tid], self.shared, engine.qqr2e, acc, engine.atom_energy[tid],
+            engine.atom_virial[tid], engine.bad[tid, self.index], engine.meeting)
+        return arguments if shares else self._with_factor(engine, tid, arguments)
+
+    def describe(self, engine, item, value):
+        atom = int(engine.system.id[engine.state.row[int(item)]])
+        return SimulationError(f"pair style {self.style.name}: the energy of atom {atom} with its neighbours is not finite: "
+                               f"{self.style.domain or 'atoms coincide, or are outside of what the potential is for'}")

@@ -1,0 +1,163 @@
+r"""Stillinger-Weber potential of silicon and of other materials of tetrahedra.
+
+$$E=\sum_i\sum_{j>i}A\epsilon\Big[B\Big(\frac{\sigma}{r_{ij}}\Big)^p-\Big(\frac{\sigma}{r_{ij}}\Big)^q\Big]e^{\sigma/(r_{ij}-a\sigma)}+
+\sum_i\sum_{j<k}\lambda\epsilon(\cos\theta_{jik}-\cos\theta_0)^2e^{\gamma\sigma/(r_{ij}-a\sigma)+\gamma\sigma/(r_{ik}-a\sigma)}$$
+
+An entry of the file is a triple of elements, the one in the middle first; pairs take theirs from the entry i j j. ``threebody off`` leaves
+the triples out. A tolerance in the file that is not 0 ends the interaction where its exponential falls below it.
+"""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd import words as read
+from asemd.errors import InputError
+from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.manybody import ManyBody, element_of
+from asemd.pairstyle import PairTables
+from asemd.style import register
+from asemd.triples import read_triples
+
+NAMES = "epsilon sigma a lambda gamma costheta A B p q tol"
+
+
+def power(x, n):
+    """x^n, with whole exponents as products."""
+    if n == 4.0:
+        return (x * x) * (x * x)
+    if n == 0.0:
+        return 1.0
+    if n == 2.0:
+        return x * x
+    return math.pow(x, n)
+
+
+def neighbours(n, m, ti, near, types, room, grad, two, shares):
+    """Pair energies of the first `m` of n neighbours; what triples need of each goes to `room`: its unit vector, 1/r, the exponential and
+    minus its logarithm's derivative."""
+    energy = 0.0
+    for k in range(n):
+        t = types[k]
+        r2 = near[3, k]
+        r = math.sqrt(r2)
+        ir = 1.0 / r
+        room[0, k] = near[0, k] * ir
+        room[1, k] = near[1, k] * ir
+        room[2, k] = near[2, k] * ir
+        room[3, k] = ir
+        s = 1.0 / (r - two[ti, t, 1])
+        gs = two[ti, t, 2] * s
+        room[4, k] = math.exp(gs)
+        room[5, k] = gs * s
+        if k < m:
+            x = two[ti, t, 0] * ir
+            e = math.exp(two[ti, t, 0] * s)
+            b = two[ti, t, 4] * power(x, two[ti, t, 5])
+            c = two[ti, t, 7] * power(x, two[ti, t, 6])
+            u = (b - c) * e
+            d = -((two[ti, t, 5] * b - two[ti, t, 6] * c) * ir + (b - c) * two[ti, t, 0] * s * s) * e
+            energy += u
+            gx = d * room[0, k]
+            gy = d * room[1, k]
+            gz = d * room[2, k]
+            grad[0, k] += gx
+            grad[1, k] += gy
+            grad[2, k] += gz
+            if PER_ATOM:
+                share_pair(shares, k, u, gx, gy, gz)
+    return energy
+
+
+def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
+    two, three = arrays
+    energy = neighbours(n, m, ti, near, types, room, grad, two, shares)
+    for j in range(n - 1):
+        ux, uy, uz = room[0, j], room[1, j], room[2, j]
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for k in range(j + 1, n):
+            vx, vy, vz = room[0, k], room[1, k], room[2, k]
+            c = ux * vx + uy * vy + uz * vz
+            delta = c - three[ti, types[j], types[k], 1]
+            w = three[ti, types[j], types[k], 0] * delta * room[4, j] * room[4, k]
+            e = w * delta
+            energy += e
+            a = -e * room[5, j] - 2.0 * w * c * room[3, j]        # along u: by r_ij, and what the cosine has of it
+            b = 2.0 * w * room[3, j]
+            gjx = a * ux + b * vx
+            gjy = a * uy + b * vy
+            gjz = a * uz + b * vz
+            a = -e * room[5, k] - 2.0 * w * c * room[3, k]
+            b = 2.0 * w * room[3, k]
+            gkx = a * vx + b * ux
+            gky = a * vy + b * uy
+            gkz = a * vz + b * uz
+            fx += gjx
+            fy += gjy
+            fz += gjz
+            grad[0, k] += gkx
+            grad[1, k] += gky
+            grad[2, k] += gkz
+            if PER_ATOM:
+                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
+        grad[0, j] += fx
+        grad[1, j] += fy
+        grad[2, j] += fz
+    return energy
+
+
+class SW(ManyBody):
+    """Tables by atom type from the triples of the file."""
+
+    def parse_settings(self, words):
+        what = f"pair_style {self.name}"
+        values = {"threebody": "on"}
+        for name, value in zip(words[::2], words[1::2]):
+            if name != "threebody":
+                raise InputError(f"{what}: unknown keyword {name!r}, expected threebody")
+            values["threebody"] = "on" if read.yes_no(value, f"{what} threebody") else "off"
+        if len(words) % 2:
+            raise InputError(f"{what}: a value is missing after {words[-1]}")
+        return values
+
+    def format_settings(self, settings):
+        return ["threebody", "off"] if settings["threebody"] == "off" else []
+
+    def read(self, file, elements, settings):
+        found = read_triples(file, elements, NAMES)
+        for key, (p, where) in found.items():
+            wrong = [n for n in ("epsilon", "sigma", "a", "lambda", "gamma", "A", "B", "p", "q", "tol") if p[n] < 0.0]
+            if wrong:
+                raise InputError(f"{file.what}: {wrong[0]} of {' '.join(key)} must not be negative, got {p[wrong[0]]:g}", where)
+        return {key: p for key, (p, _) in found.items()}
+
+    def pack_pairs(self, settings, filled, ntypes, units, shift=False):
+        element = element_of(filled, ntypes)
+        n = ntypes + 1
+        rows, two, three = np.zeros((1, n, n)), np.zeros((n, n, 8)), np.zeros((n, n, n, 2))
+        for (a, b), c in filled.items():
+            unit = self.unit_factor(c, units)
+            for i, j in {(a, b), (b, a)}:
+                p = c["data"][element[i], element[j], element[j]]
+                sigma, cut, epsilon = p["sigma"], p["sigma"] * p["a"], p["epsilon"] * unit
+                rows[0, i, j] = ends_at(p) ** 2
+                two[i, j] = [sigma, cut, p["gamma"] * sigma, 0.0, p["A"] * epsilon * p["B"], p["p"], p["q"], p["A"] * epsilon]
+                for k in range(1, n):
+                    if element[k] is not None:
+                        q = c["data"][element[i], element[j], element[k]]
+                        on = settings["threebody"] == "on"
+                        three[i, j, k] = [q["lambda"] * q["epsilon"] * unit * on, q["costheta"]]
+        return PairTables(rows, np.zeros(1), (two, three))
+
+
+def ends_at(p) -> float:
+    """Where a pair ends: at a sigma, or before, where the exponential falls below the tolerance."""
+    tol = min(p["tol"], 0.01)
+    width = p["gamma"] * p["sigma"] if p["gamma"] < 1.0 else p["sigma"]
+    return p["sigma"] * p["a"] + (width / math.log(tol) if tol > 0.0 else 0.0)
+
+
+register(SW("sw", site=sw, helpers=(power, neighbours), rooms=6, settings="[threebody] [on|off]",
+            units={"threebody": "word", "on|off": "word"}, example="Si.sw Si",
+            see="F. H. Stillinger and T. A. Weber, Phys. Rev. B 31, 5262 (1985)"))

@@ -1,0 +1,118 @@
+"""Files of many-body potentials, as LAMMPS reads them: words in records that may go over several lines, comments after ``#``.
+
+The first line may name the units the numbers are in, ``UNITS: metal``; energies are then converted between metal and real units. Every
+error names the file and the line.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from asemd.errors import InputError, Where
+from asemd.tabulated import find_file
+
+EV = 23.060549     # kcal/mol, LAMMPS's factor between real and metal
+CONVERT = {("metal", "real"): EV, ("real", "metal"): 1.0 / EV, ("metal", "ase"): 1.0, ("real", "ase"): 1.0 / EV}
+
+
+class Record:
+    """Words of one record, taken one by one.
+
+    Attributes
+    ----------
+    words : list of str
+    where : Where
+        Its first line.
+    """
+
+    def __init__(self, words: list[str], where: Where, what: str):
+        self.words, self.where, self.what, self.at = words, where, what, 0
+
+    def word(self, name: str = "a word") -> str:
+        """The next word."""
+        if self.at >= len(self.words):
+            raise InputError(f"{self.what}: {name} is missing", self.where)
+        self.at += 1
+        return self.words[self.at - 1]
+
+    def number(self, name: str = "a number") -> float:
+        """The next word, a number; Fortran's exponents (1.0d-3) are refused as in LAMMPS."""
+        return self._as(float, name, "a number")
+
+    def whole(self, name: str = "a whole number") -> int:
+        return self._as(int, name, "a whole number")
+
+    def numbers(self, names: str) -> dict[str, float]:
+        """As many numbers as there are names, by name."""
+        return {name: self.number(name) for name in names.split()}
+
+    def _as(self, kind: Callable, name: str, expected: str):
+        word = self.word(name)
+        try:
+            if "_" in word:
+                raise ValueError
+            return kind(word)
+        except ValueError:
+            raise InputError(f"{self.what}: {name} must be {expected}, got {word!r}", self.where) from None
+
+
+class PotentialFile:
+    """A potential file.
+
+    Parameters
+    ----------
+    name : str
+        As given in ``pair_coeff``: relative to the folder LAMMPS runs in, or in a folder of ``LAMMPS_POTENTIALS``.
+    what : str
+        The beginning of messages, ``pair_coeff sw``.
+
+    Attributes
+    ----------
+    units, date : str
+        Words after ``UNITS:`` and ``DATE:`` in the first line; empty without.
+    lines : list of (int, str)
+        Number and text of each line that is not empty without its comment.
+    """
+
+    def __init__(self, name: str, what: str):
+        self.name, self.what, self.path = name, what, Path(find_file(name, what))
+        text = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
+        tags = text[0].split() if text else []
+        self.units, self.date = (tags[tags.index(t) + 1] if t in tags[:-1] else "" for t in ("UNITS:", "DATE:"))
+        self.raw = text
+        stripped = ((k, line.split("#")[0].strip()) for k, line in enumerate(text, 1))
+        self.lines = [(k, line) for k, line in stripped if line]
+
+    def where(self, line: int) -> Where:
+        """A place in the file, counted from 1."""
+        return Where(self.name, line, self.raw[line - 1].strip() if 0 < line <= len(self.raw) else "")
+
+    def error(self, message: str, line: int) -> InputError:
+        return InputError(f"{self.what}: {message}", self.where(line))
+
+    def records(self, count: int) -> Iterator[Record]:
+        """Records of at least `count` words: a line, and those that follow while there are fewer; more words on its last line count too."""
+        words: list[str] = []
+        first = 0
+        for number, line in self.lines:
+            first = first if words else number
+            words += line.split()
+            if len(words) >= count:
+                yield Record(words, self.where(first), self.what)
+                words = []
+        if words:
+            raise self.error(f"the last entry needs {count} words, got {len(words)}", first)
+
+    def factor(self, units: str) -> float:
+        """Factor from energies of the file to those of a unit style.
+
+        Raises
+        ------
+        InputError
+            The file is in units that are not converted.
+        """
+        if not self.units or not units or self.units == units:
+            return 1.0
+        if (self.units, units) not in CONVERT:
+            raise self.error(f"the file is in {self.units} units, but {units} units are in use", 1)
+        return CONVERT[self.units, units]
