@@ -80,8 +80,12 @@ EXTRA = {
 
 
 def every_style() -> list[tuple[str, str]]:
-    """(category, name) of all force-field styles, those included that are made of others or of nothing."""
-    return [(c, n) for c in CATEGORIES for n in catalog.names(c)]
+    """(category, name) of all force-field styles, those included that are made of others or of nothing.
+
+    Many-body potentials are left out: their coefficients are files of many numbers.
+    """
+    return [(c, n) for c in CATEGORIES for n in catalog.names(c)
+            if c != "pair" or n in (*catalog.WRAPPERS, *HYBRIDS) or not registry.find(c, n).many]
 
 
 def text_of(category: str, name: str) -> str:
