@@ -181,3 +181,40 @@ def test_words_come_back(plain):
         fix = plain.session.scene.fixes["8"]
         assert [fix.style, *fix.to_lammps()] == words.split()
         plain.command("unfix 8")
+
+
+def test_a_body_of_one_atom(tmp_path):
+    lmp = scene(tmp_path)
+    lmp.command("group lone id 7")
+    with pytest.raises(InputError, match="rigid body 1 has 1 atom, it needs two or more"):
+        lmp.command("fix 1 lone rigid single")
+
+
+SHAPES = {"dimers": [(0, 0, 0), (1, 0, 0)], "triangles": [(0, 0, 0), (1, 0, 0), (0.5, 3**0.5 / 2, 0)],
+          "tetrahedra": [(0.5, 0.5, 0.5), (0.5, -0.5, -0.5), (-0.5, 0.5, -0.5), (-0.5, -0.5, 0.5)]}
+SYMMETRIC = {f"{shape}, {words}": (shape, f"fix 1 all rigid/{words}", runs)
+             for shape in SHAPES for words, runs in (("nve molecule", "run 60"), ("nve molecule reinit no", "run 30\nrun 30"),
+                                                     ("nvt/small molecule temp 1.5 1.0 0.2", "run 60"))}
+
+
+def symmetric(shape, fix, runs):
+    """Molecules of that shape, each turned otherwise."""
+    rng, atoms = np.random.default_rng(4), SHAPES[shape]
+    lines = ["units lj", "atom_style molecular", "atom_modify map array sort 0 0", "region box block 0 12 0 12 0 12", "create_box 1 box",
+             "mass 1 1", "pair_style lj/cut 2.5", "pair_coeff 1 1 1 1", "timestep 0.004", "comm_modify cutoff 5"]
+    for k, centre in enumerate(np.ndindex(3, 3, 2), 1):
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        lines += ["create_atoms 1 single {:.17g} {:.17g} {:.17g}".format(*(np.array(centre) * (4, 4, 5) + 1.7 + turn @ np.array(p)))
+                  for p in atoms]
+        lines.append(f"set atom {(k - 1) * len(atoms) + 1}*{k * len(atoms)} mol {k}")
+    return "\n".join([*lines, "velocity all create 1.5 87287 loop geom", "neigh_modify exclude molecule/intra all", fix, runs])
+
+
+def test_symmetric_bodies_have_the_axes_of_lammps():
+    """Rounding decides on their axes, and these on the error of the symplectic rotation: the trajectories are LAMMPS's nevertheless."""
+    from both import asemd, lammps
+    scripts = {name: symmetric(*case) for name, case in SYMMETRIC.items()}
+    theirs = lammps(scripts)
+    for name, text in scripts.items():
+        system, v = asemd(text).scene.system, np.array(theirs[name]["v"])
+        assert abs(system.v[np.argsort(system.id)] - v).max() < 1e-11, name

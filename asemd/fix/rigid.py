@@ -169,7 +169,7 @@ class Rigid(Fix):
         size = np.diff(self.members.first)
         if size.min() < 2:
             k = int(np.argmin(size))
-            raise InputError(f"fix {self.style}: rigid body {k + 1} has {size[k]} atom{'s' * (size[k] != 1)}, it needs two or more")
+            raise InputError(f"fix {self.style}: rigid body {k + 1} has {size[k]} atom{'s' * (int(size[k]) != 1)}, it needs two or more")
         for keyword, settings in (("force", self.force), ("torque", self.torque)):
             for which, _ in settings:
                 bounds(str(which), 1, self.members.count, f"fix {self.style} {keyword}")

@@ -68,7 +68,8 @@ def read_file(path: str, style: str) -> dict[int, np.ndarray]:
 def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Eigenvalues (nb, 3), the smallest first, and eigenvectors (nb, 3, 3) as rows, of symmetric matrices, by Jacobi's method.
 
-    Each rotation removes the largest off-diagonal element: where eigenvalues coincide, the axes are those that LAMMPS finds.
+    Each rotation removes the largest off-diagonal element. Where eigenvalues coincide, as in symmetric bodies, rounding decides on the
+    axes, and with them on the errors of a splitting of the rotation: the order of operations here is LAMMPS's, whose axes these are then.
     """
     m, e = tensors.copy(), np.tile(np.eye(3), (len(tensors), 1, 1))
     pairs, all_of = np.array([(0, 1), (0, 2), (1, 2)]), np.arange(len(m))
@@ -84,14 +85,19 @@ def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             t = 1.0 / (np.sqrt(1.0 + kappa * kappa) + np.abs(kappa))
         t = np.where(b == a, 1.0, np.where(c == 0.0, 0.0, np.where(kappa < 0.0, -t, t))) * live
         cosine = 1.0 / np.sqrt(1.0 + t * t)
-        turn = np.tile(np.eye(3), (len(m), 1, 1))
-        turn[all_of, i, i] = turn[all_of, j, j] = cosine
-        turn[all_of, i, j], turn[all_of, j, i] = -cosine * t, cosine * t
-        m = np.einsum("nij,njk,nlk->nil", turn, m, turn)
-        m[all_of, i, j] = m[all_of, j, i] = 0.0
-        e = np.einsum("nij,njk->nik", turn, e)
+        sine, k = cosine * t, 3 - i - j
+        ik, jk = m[all_of, i, k], m[all_of, j, k]
+        m[all_of, i, i], m[all_of, j, j] = a - t * c, b + t * c
+        m[all_of, i, j] = m[all_of, j, i] = np.where(live, 0.0, c)
+        m[all_of, i, k] = m[all_of, k, i] = cosine * ik - sine * jk
+        m[all_of, j, k] = m[all_of, k, j] = sine * ik + cosine * jk
+        ei, ej, cosine, sine = e[all_of, i], e[all_of, j], cosine[:, None], sine[:, None]
+        e[all_of, i], e[all_of, j] = cosine * ei - sine * ej, sine * ei + cosine * ej
     moments = np.einsum("nii->ni", m)
-    order = np.argsort(moments, axis=1, kind="stable")
+    order = np.tile(np.arange(3), (len(m), 1))
+    for k in (0, 1):        # the smallest of the rest changes places with the first of them
+        least = k + np.take_along_axis(moments, order, 1)[:, k:].argmin(axis=1)
+        order[all_of, k], order[all_of, least] = order[all_of, least], order[all_of, k]
     return np.take_along_axis(moments, order, 1), np.take_along_axis(e, order[:, :, None], 1)
 
 
@@ -126,8 +132,8 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     m, v = system.atom_masses()[rows], system.v[rows]
     r = system.box.unwrap(system.x, system.image)[rows]
 
-    def total(a):
-        return np.add.reduceat(a, first[:-1], axis=0)
+    def total(a):       # one atom after the other, as LAMMPS does
+        return np.stack([np.bincount(body, column, nb) for column in a.reshape(len(a), -1).T], axis=1).reshape(nb, *a.shape[1:])
     mass = total(m)
     center = total(m[:, None] * r) / mass[:, None]
     image = np.zeros((nb, 3), np.int32)
@@ -135,8 +141,11 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     for k, values in given.items():
         mass[k], center[k], image[k] = values[0], values[1:4], values[16:19].astype(np.int32)
     system.box.wrap(center, image)
-    d = r - image[body] @ system.box.cell - center[body]
-    tensor = np.einsum("i,ij->i", m, d * d)[:, None, None] * np.eye(3) - np.einsum("i,ia,ib->iab", m, d, d)
+    d = system.x[rows] + (system.image[rows] - image[body]) @ system.box.cell - center[body]
+    x, y, z = d.T
+    xx, yy, zz = m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y)
+    xy, xz, yz = -m * x * y, -m * x * z, -m * y * z
+    tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
     radius, spin, mu = spheres(system, rows)
     own = INERTIA * m * radius**2
     tensor = total(tensor + own[:, None, None] * np.eye(3))

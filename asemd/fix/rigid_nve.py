@@ -7,6 +7,8 @@ Hamiltonian
 
 whose terms, rotations about one principal axis, are solved exactly, one after the other: axes 3 2 1 2 3, for halves of the step but for
 axis 1. Half steps of the torque come before and after. No energy is lost in the long run, unlike with the iteration of ``fix rigid``.
+The error of the splitting depends on the axes. Those of symmetric bodies are a matter of rounding each time a run takes the bodies anew
+from their atoms: second runs differ by as much as this error, from LAMMPS's and from one long run, unless ``reinit no`` is given.
 
 Source: T. F. Miller et al., J. Chem. Phys. 116, 8649 (2002); LAMMPS manual, fix rigid/nve. Output: as fix rigid.
 """
