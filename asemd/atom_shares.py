@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from asemd.embedded_term import EmbeddedTerm
 from asemd.manybody_term import ManyBodyTerm
 from asemd.result import Result
 from asemd.term import PairListTerm, PairRowsTerm, PairTerm
@@ -29,6 +30,10 @@ def add(engine: Engine, result: Result) -> Result:
             continue
         if isinstance(t, (PairTerm, PairRowsTerm)):
             t, index = PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t.owner), t.index
+            t.index = index
+            t.rebuild(engine)
+        elif isinstance(t, EmbeddedTerm):
+            t, index, engine.listed = ManyBodyTerm(t.owner), t.index, None
             t.index = index
             t.rebuild(engine)
         engine.atom_energy[:] = 0.0

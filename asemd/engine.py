@@ -9,6 +9,7 @@ from numba import config
 from asemd import atom_shares, faults, live_box
 from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
+from asemd.embedded_term import EmbeddedTerm
 from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
 from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
@@ -107,8 +108,10 @@ class Engine:
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
         self.expanded = self.mode == "cluster" and any(np.ndim(t.use.factor) > 0 for t in self.pair_terms)
+        self.packed = (self.mode == "cluster" and not self.expanded and self.exclusions.partners is None and not len(self.exclusions.rules)
+                       and all(getattr(t.style, "packable", False) for t in self.many_terms))
         volume = abs(float(np.linalg.det(self.vectors)))
-        few = 2.1 * self.reach**3 * n < SPARSE * volume or not self.pair_terms
+        few = 2.1 * self.reach**3 * n < SPARSE * volume or not (self.pair_terms or self.packed)
         rules = bool(len(self.exclusions.rules))
         chosen = any(t.molecules for t in self.pair_terms)
         self.sparse = self.mode == "cluster" and not self.expanded and (few or table or rules or chosen)
@@ -129,7 +132,7 @@ class Engine:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special", owner=t))
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t))
-        terms += [ManyBodyTerm(t) for t in self.many_terms]
+        terms += [(EmbeddedTerm if self.packed else ManyBodyTerm)(t) for t in self.many_terms]
         if self.solver is not None and self.solver.modify["compute"]:
             terms.append(self.solver.term(self))
         return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]
@@ -270,7 +273,7 @@ class Engine:
     @property
     def pairs(self) -> int:
         """Pairs in the list, as LAMMPS counts them: within reach when it was built, without special pairs of no weight."""
-        if self.mode == "cluster" and not self.pair_terms:
+        if self.mode == "cluster" and not self.pair_terms and not self.packed:
             return len(all_pairs(self)[0])
         if self.mode == "cluster" and not self.expanded:
             i, j, code = self.special

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.lammps.plan_memory import holdings, pairs_around
@@ -196,6 +197,9 @@ def _term(e: Engine, t) -> Item:
         hidden = "excluded partners left out of the rows" if e.exclusions.partners is not None else "no exclusions"
         which = {"same": ", pairs within molecules", "other": ", pairs between molecules"}.get(t.owner.molecules, "")
         return Item(f"pair {style.name}", f"rows of single atoms{which}, double precision, {charged}, {hidden}{times}", e.why)
+    if isinstance(t, EmbeddedTerm):
+        blocks = "tables by pair of types" if t.varying else "the same tables for all types"
+        return Item(f"pair {style.name}", f"cluster kernel, densities first, then forces, double precision, {blocks}{times}", "pair_style")
     if isinstance(t, ManyBodyTerm):
         return Item(f"pair {style.name}", f"rows of all neighbours of each atom, double precision{times}", "pair_style")
     assert isinstance(t, PairListTerm)

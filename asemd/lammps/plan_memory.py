@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
 from asemd.kernels.cluster import CLUSTER
 from asemd.manybody_term import ManyBodyTerm
@@ -85,6 +86,9 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         if isinstance(t, (PairTerm, PairRowsTerm)):
             out.append(Holding(f"pair {t.style.name}", (64.0 if t.owner.is_plain else 88.0) * threads * cap,
                                "positions and forces by cluster", "pair_style"))
+        elif isinstance(t, EmbeddedTerm):
+            out.append(Holding(f"pair {t.style.name}", (72.0 if t.owner.is_plain else 96.0) * threads * cap + 6.0 * pairs,
+                               "positions, densities and forces by cluster, pairs in reach", "pair_style"))
         elif isinstance(t, ManyBodyTerm):
             out.append(Holding(f"pair {t.style.name}", 24.0 * cap + 10.0 * pairs, "rows of all neighbours", "pair_style"))
         elif isinstance(t, BondedTerm):

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
 from asemd.lammps.calibration import Costs
 from asemd.lammps.plan_memory import pairs_around
 from asemd.manybody_term import ManyBodyTerm
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 
+EMBEDDED = 4        # an embedded-atom potential over clusters costs about so many times the pairs of a simple one
 MANY = 4            # a many-body style costs about so many times the pairs, one by one
 PYTHON = 2e-4       # seconds of a step with a hook in Python
 
@@ -62,6 +64,9 @@ def expected(e: Engine, costs: Costs, dt: float, moving: bool = True, rows: floa
     for t in e.terms:
         if isinstance(t, BondedTerm):
             parts["Bond"] += len(t.items) * costs.items[t.category]
+            continue
+        if isinstance(t, EmbeddedTerm):
+            parts["Pair"] += pairs * EMBEDDED * costs.pair
             continue
         if isinstance(t, ManyBodyTerm):
             parts["Pair"] += pairs * MANY * costs.single

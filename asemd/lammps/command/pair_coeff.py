@@ -17,9 +17,19 @@ def report_files(session, args) -> None:
                     session.warn(f"Converting {use.style.reads} potential in {file.units} units to {units} units")
 
 
+def set_masses(interactions, before: set[int], system) -> None:
+    """Masses of atom types by the potential files of this command, where these have some; `before`: coefficients that were there."""
+    for use in interactions.uses["pair"]:
+        for (i, j), c in use.coeff.items():
+            if i == j and id(c) not in before and (masses := getattr(use.style, "masses", None)):
+                system.mass[i] = masses(c, i)
+
+
 def run(session, args):
     scene = session.scene
+    before = {id(c) for use in scene.interactions.uses["pair"] for c in use.coeff.values()}
     with session.passing_warnings():
         scene.interactions.set_coeff("pair", args, scene.need_system("pair_coeff"))
+        set_masses(scene.interactions, before, scene.system)
         report_files(session, args)
     fill(session, "pair")

@@ -1,0 +1,70 @@
+"""The term of an embedded-atom potential over the cluster list."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import SimulationError
+from asemd.kernels import embedded_cluster
+from asemd.kernels.state import aligned
+from asemd.term import FactorTerm
+
+
+class EmbeddedTerm(FactorTerm):
+    """See `asemd.kernels.embedded_cluster`; it knows no special pairs and no exclusions."""
+
+    category = "pair"
+
+    def __init__(self, term):
+        self.owner, self.style, self.tables = term, term.style, term.tables
+        table, offset, self.functions, self.function_of, self.share = term.tables.arrays
+        self.types = len(offset)
+        self.table = aligned((table.size,))
+        self.table[:] = table.ravel()
+        self.offset = np.ascontiguousarray(8 * offset.ravel(), np.int32)
+        cut2 = term.tables.rows[0]
+        self.offset[cut2.ravel() == 0.0] = 0
+        self.cut = float(np.sqrt(cut2.max()))
+        self.varying = bool((self.offset.reshape(offset.shape)[1:, 1:] != self.offset[self.types + 1]).any())
+        self.longest, self.room = -1, 0
+
+    def kernel(self, energy, per_atom):
+        return self._scaled(embedded_cluster.kernel(energy=energy, varying=self.varying, outdated=self.outdated), energy)
+
+    def rebuild(self, engine):
+        clusters, nth, slots = engine.list, engine.threads, engine.state.x.shape[1]
+        self.outdated = engine.settings.outdated
+        if getattr(self, "rho", np.zeros((0, 0))).shape != (nth, slots):
+            self.rho, self.slope = aligned((nth, slots)), aligned((slots,))
+            self.tables4 = aligned((nth, 2, slots, 4))
+        longest, most = clusters.longest(), 0
+        ends = [clusters.first[t, int(clusters.bounds[t + 1])] for t in range(nth)]
+        most = 8 * (max(int(n) for n in ends) + 64 * (len(clusters.own) // nth + 8))
+        if longest > self.longest:
+            self.longest = longest + longest // 8
+            self.row = -(-(self.longest + 48) // 16) * 16
+            stage = 8 * (self.row + 8)
+            self.b, self.local = aligned((nth, 4 * self.row + 16), np.float32), aligned((nth, 4 * (self.row + 8)))
+            self.b[:, 3 * self.row:] = 99.0
+            self.sums, self.work = aligned((nth, 4 * (self.row + 8))), aligned((nth, 6 * stage))
+            self.kinds, self.lanes = aligned((nth, 4 * (self.row + 8)), np.int32), aligned((nth, 16), np.int32)
+            self.there, self.back = aligned((nth, stage), np.int32), aligned((nth, stage), np.int32)
+        if most > self.room:
+            self.room = most + most // 8
+            self.kept, self.owners = aligned((nth, self.room + 64), np.int32), aligned((nth, self.room // 8 + 64), np.int32)
+        if getattr(self, "ends", np.zeros(0)).shape != (len(clusters.own),):
+            self.ends = np.zeros(len(clusters.own), np.int64)
+
+    def arguments(self, engine, tid):
+        s, c = engine.state, engine.list
+        f, acc = self._sums(engine, tid)
+        return self._with_factor(engine, tid, (
+            s.x, f, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, int(c.bounds[tid]),
+            int(c.bounds[tid + 1]), self.tables.constants, self.table, self.offset, self.types, self.cut, c.reach, self.functions, self.function_of, self.share, self.rho, self.slope,
+            self.b[tid], self.row, self.local[tid], self.sums[tid], self.kinds[tid], self.kept[tid], self.owners[tid], self.ends,
+            self.work[tid], self.there[tid], self.back[tid], self.lanes[tid], *self.tables4[tid], acc, c.hide[tid], engine.settings.skin,
+            engine.moved, engine.farthest[tid:tid + 1], tid, engine.meeting, engine.bad[tid, self.index]))
+
+    def describe(self, engine, item, value):
+        atom = int(engine.system.id[engine.state.row[int(item)]])
+        return SimulationError(f"pair style {self.style.name}: the density at atom {atom} is not finite: atoms coincide, or have left the "
+                               "range of the potential")
