@@ -127,8 +127,6 @@ def test_when_they_are_there(commands, there):
     ([NVT, "uncompute 1_temp", "run 0"], "fix 1 .style nvt. goes by compute 1_temp, which is not there any more"),
     ([NVT, "uncompute 1_temp", "compute 1_temp all pe", "run 0"], "does not compute a temperature"),
     (["compute c all chunk/atom type", "compute t all temp/chunk c", NVT, "fix_modify 1 temp t"], "fix nvt takes a compute of style temp"),
-    (["compute c all chunk/atom type", "compute t all temp/chunk c", "fix 1 all temp/csvr 1 1 1 77", "fix_modify 1 temp t"],
-     "cannot go by compute t .style temp/chunk., which tells no degrees of freedom"),
     ([NVT, NPT.replace(" 1 ", " 2 ", 1), "fix_modify 2 temp 1_temp", "unfix 1", "run 0"], "fix 2 .style npt. goes by compute 1_temp"),
 ])
 def test_what_is_refused(commands, message):
@@ -145,3 +143,11 @@ def test_a_restart_goes_on(tmp_path):
     there = lmp.extract_compute("1_temp", 0, 0)
     lmp.commands_list(["clear", f"read_restart {tmp_path}/r", "pair_coeff * *", *own])
     assert lmp.extract_compute("1_temp", 0, 0) == pytest.approx(there, rel=1e-12)
+
+
+def test_a_plan_names_those_that_are_shown():
+    from asemd.lammps import plan
+    lmp = started()
+    lmp.commands_list([NPT, "thermo_style custom step c_1_press"])
+    shown = [item.name for item in plan.of_scene(lmp.scene).sections["Output"]]
+    assert "compute 1_press" in shown and "compute 1_temp" not in shown

@@ -102,15 +102,8 @@ class TempChunk(Temp):
         return float(state.system.dimension) if self.adof is None else self.adof
 
     def dof(self, state) -> float:
-        """0: those of its temperature are told to nobody, as in LAMMPS; energies and pressures that ask for them have no kinetic part."""
-        return 0.0
-
-    def scalar(self, state) -> float:
-        """The temperature of all chunks; 0 without degrees of freedom."""
-        _, pieces = self._pieces(state)
-        dof, v = self._dof_of_atom(state) * len(pieces.rows) + self.cdof * pieces.count, self.remove_bias(state)
-        twice = state.units.mvv2e * np.einsum("i,ij,ij->", self._weights(state), v, v)
-        return float(twice / (dof * state.units.boltz)) if dof > 0.0 else 0.0
+        _, pieces = self._pieces(state.snapshot() if hasattr(state, "snapshot") else state)
+        return max(self._dof_of_atom(state) * len(pieces.rows) + self.cdof * pieces.count, 0.0)
 
     def _weights(self, state) -> np.ndarray:
         at, _ = self.chunks.assign(state)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from asemd.compute import Compute
 from asemd.compute.pressure import find_pressure
-from asemd.errors import InputError
 from asemd.fix import Fix
 
 
@@ -20,9 +19,6 @@ def _instead(fix: Fix, name: str, found: Compute, session) -> None:
 
 def take_temperature(fix: Fix, found: Compute, session, pressure: bool = True) -> None:
     """``fix_modify ID temp``: the pressure that the fix goes by is then of this temperature, too, as in LAMMPS."""
-    if fix.brings and found.style == "temp/chunk":
-        raise InputError(f"fix_modify temp: fix {fix.style} cannot go by compute {found.id} (style temp/chunk), which tells no degrees of "
-                         "freedom: in LAMMPS, too, such a fix would do nothing, or leave the kinetic part of the pressure out")
     _instead(fix, "temp", found, session)
     if pressure and isinstance(getattr(fix, "press", None), Compute):
         fix.press.temperature = found

@@ -291,9 +291,9 @@ def _output(scene, references) -> tuple[list[Item], list[Item]]:
         needs = ", ".join(sorted(dump.needs)) or "nothing but the atoms"
         out.append(Item(f"dump {id}", f"{dump.style} every {dump.every} steps", f"needs {needs}"))
     for id, compute in computes.items():
-        if not id.startswith("thermo_"):
+        shown = any(w.partition("[")[0] == f"c_{id}" for w in words)
+        if not id.startswith("thermo_") and (shown or not compute.maker):
             needs = ", ".join(sorted(compute.needs)) or "nothing but the atoms"
-            shown = any(w.partition("[")[0] == f"c_{id}" for w in words)
             when_used = "shown in thermo rows" if shown else "evaluated when asked for"
             out.append(Item(f"compute {id}", compute.style, f"needs {needs}; {when_used}"))
     out.append(Item("energy and virial", f"{when}; on steps with a dump", "the kernel with energies runs on these steps only"))
