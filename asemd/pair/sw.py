@@ -34,6 +34,11 @@ def power(x, n):
     return math.pow(x, n)
 
 
+def bend(delta, constants):
+    """What counts of the deviation of a cosine, and the derivative."""
+    return delta, 1.0
+
+
 def neighbours(n, m, ti, near, types, room, grad, two, shares):
     """Pair energies of the first `m` of n neighbours; what triples need of each goes to `room`: its unit vector, 1/r, the exponential and
     minus its logarithm's derivative."""
@@ -79,9 +84,10 @@ def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
         for k in range(j + 1, n):
             vx, vy, vz = room[0, k], room[1, k], room[2, k]
             c = ux * vx + uy * vy + uz * vz
-            delta = c - three[ti, types[j], types[k], 1]
+            delta, slope = bend(c - three[ti, types[j], types[k], 1], constants)
             w = three[ti, types[j], types[k], 0] * delta * room[4, j] * room[4, k]
             e = w * delta
+            w *= slope
             energy += e
             a = -e * room[5, j] - 2.0 * w * c * room[3, j]        # along u: by r_ij, and what the cosine has of it
             b = 2.0 * w * room[3, j]
@@ -148,7 +154,11 @@ class SW(ManyBody):
                         q = c["data"][element[i], element[j], element[k]]
                         on = settings["threebody"] == "on"
                         three[i, j, k] = [q["lambda"] * q["epsilon"] * unit * on, q["costheta"]]
-        return PairTables(rows, np.zeros(1), (two, three))
+        return PairTables(rows, np.array(self.numbers(settings)), (two, three))
+
+    def numbers(self, settings):
+        """Constants of `bend`."""
+        return [0.0]
 
 
 def ends_at(p) -> float:
@@ -158,6 +168,6 @@ def ends_at(p) -> float:
     return p["sigma"] * p["a"] + (width / math.log(tol) if tol > 0.0 else 0.0)
 
 
-register(SW("sw", site=sw, helpers=(power, neighbours), rooms=6, settings="[threebody] [on|off]",
+register(SW("sw", site=sw, helpers=(power, bend, neighbours), rooms=6, settings="[threebody] [on|off]",
             units={"threebody": "word", "on|off": "word"}, example="Si.sw Si",
             see="F. H. Stillinger and T. A. Weber, Phys. Rev. B 31, 5262 (1985)"))

@@ -1,0 +1,237 @@
+r"""Tersoff's bond-order potential of covalent materials.
+
+$$E=\tfrac12\sum_i\sum_{j\ne i}f_C(r_{ij})\big[A e^{-\lambda_1r_{ij}}-b_{ij}Be^{-\lambda_2r_{ij}}\big],\quad
+b_{ij}=(1+\beta^n\zeta_{ij}^n)^{-1/2n}$$
+$$\zeta_{ij}=\sum_{k\ne i,j}f_C(r_{ik})\,g(\theta_{ijk})\,e^{\lambda_3^m(r_{ij}-r_{ik})^m},\quad
+g=\gamma_{ijk}\Big[1+\frac{c^2}{d^2}-\frac{c^2}{d^2+(\cos\theta-\cos\theta_0)^2}\Big]$$
+
+The cutoff function goes from 1 at R - D to 0 at R + D as half a sine. Entries of the file are triples: the atom i, the neighbour j it is
+bonded to, the neighbour k that weakens the bond; pairs take theirs from the entry i j j. ``shift d`` adds d to all distances.
+"""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd import words as read
+from asemd.errors import InputError
+from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.manybody import ManyBody, element_of
+from asemd.pairstyle import PairTables
+from asemd.style import register
+from asemd.triples import read_triples
+
+# columns of the table of triples; variants have more of them after these
+COLUMNS = "reach inner R D A lambda1 B lambda2 lambda3 m gamma c d h n beta".split()
+
+
+def taper(r, p):
+    """Cutoff function and its derivative."""
+    if r < p[1]:
+        return 1.0, 0.0
+    if r >= p[0]:
+        return 0.0, 0.0
+    w = 1.5707963267948966 / p[3]
+    a = w * (r - p[2])
+    return 0.5 - 0.5 * math.sin(a), -0.5 * w * math.cos(a)
+
+
+def repulsion(r, p):
+    fc, slope = taper(r, p)
+    e = p[4] * math.exp(-p[5] * r)
+    return fc * e, (slope - fc * p[5]) * e
+
+
+def attraction(r, p):
+    fc, slope = taper(r, p)
+    e = -p[6] * math.exp(-p[7] * r)
+    return fc * e, (slope - fc * p[7]) * e
+
+
+def angular(x, p):
+    """g and its derivative by the cosine."""
+    u = p[13] - x
+    c2 = p[11] * p[11]
+    d2 = p[12] * p[12]
+    w = 1.0 / (d2 + u * u)
+    return p[10] * (1.0 + c2 / d2 - c2 * w), -2.0 * p[10] * c2 * u * w * w
+
+
+def order(zeta, p):
+    """Bond order and its derivative by zeta."""
+    n = p[14]
+    t = p[15] * zeta
+    if t <= 0.0:
+        return 1.0, 0.0
+    tn = math.pow(t, n)
+    if not tn < 1e300:
+        return 1.0 / math.sqrt(t), -0.5 / (math.sqrt(t) * zeta)
+    b = math.pow(1.0 + tn, -0.5 / n)
+    return b, -0.5 * b * tn / ((1.0 + tn) * zeta)
+
+
+def longer(d, p):
+    """exp(lambda3^m (rij - rik)^m) and its derivative by the difference."""
+    if p[8] == 0.0:
+        return 1.0, 0.0
+    x = p[8] * d
+    a = x * x * x if p[9] == 3.0 else x
+    slope = 3.0 * p[8] * x * x if p[9] == 3.0 else p[8]
+    if a > 69.0776:
+        return 1e30, slope * 1e30
+    if a < -69.0776:
+        return 0.0, 0.0
+    e = math.exp(a)
+    return e, slope * e
+
+
+def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
+    three = arrays[0]
+    energy = 0.0
+    for k in range(n):
+        r = math.sqrt(near[3, k])
+        ir = 1.0 / r
+        room[0, k] = near[0, k] * ir
+        room[1, k] = near[1, k] * ir
+        room[2, k] = near[2, k] * ir
+        room[3, k] = ir
+        room[4, k] = r + constants[0]
+    for j in range(n):
+        p = three[ti, types[j], types[j]]
+        rj = room[4, j]
+        if rj >= p[0]:
+            continue
+        ux, uy, uz, ij = room[0, j], room[1, j], room[2, j], room[3, j]
+        if j < m:
+            e, d = repulsion(rj, p)
+            energy += e
+            grad[0, j] += d * ux
+            grad[1, j] += d * uy
+            grad[2, j] += d * uz
+            if PER_ATOM:
+                share_pair(shares, j, e, d * ux, d * uy, d * uz)
+        zeta, zj = 0.0, 0.0
+        for k in range(n):
+            room[5, k] = 0.0
+            room[6, k] = 0.0
+            q = three[ti, types[j], types[k]]
+            rk = room[4, k]
+            if k == j or rk >= q[0]:
+                continue
+            x = ux * room[0, k] + uy * room[1, k] + uz * room[2, k]
+            fc, slope = taper(rk, q)
+            g, dg = angular(x, q)
+            ex, dex = longer(rj - rk, q)
+            zeta += fc * g * ex
+            zj += fc * g * dex
+            room[5, k] = fc * dg * ex                    # by the cosine
+            room[6, k] = g * (slope * ex - fc * dex)     # by r_ik
+            room[7, k] = x
+            if PER_ATOM:
+                room[8, k] = fc * g * dex
+        fa, dfa = attraction(rj, p)
+        b, db = order(zeta, p)
+        e = 0.5 * fa * b
+        energy += e
+        w = 0.5 * fa * db
+        s = 0.5 * b * dfa + w * zj
+        if PER_ATOM:
+            d = 0.5 * b * dfa
+            share_pair(shares, j, e, d * ux, d * uy, d * uz)
+        sx, sy, sz = s * ux, s * uy, s * uz
+        for k in range(n):
+            if room[5, k] == 0.0 and room[6, k] == 0.0:
+                continue
+            x, vx, vy, vz = room[7, k], room[0, k], room[1, k], room[2, k]
+            a = w * room[5, k] * ij
+            c = w * room[5, k] * room[3, k]
+            d = w * room[6, k] - c * x
+            gjx = a * (vx - x * ux)
+            gjy = a * (vy - x * uy)
+            gjz = a * (vz - x * uz)
+            gkx = c * ux + d * vx
+            gky = c * uy + d * vy
+            gkz = c * uz + d * vz
+            sx += gjx
+            sy += gjy
+            sz += gjz
+            grad[0, k] += gkx
+            grad[1, k] += gky
+            grad[2, k] += gkz
+            if PER_ATOM:
+                d = w * room[8, k]
+                share_triple(shares, j, k, 0.0, gjx + d * ux, gjy + d * uy, gjz + d * uz, gkx, gky, gkz)
+        grad[0, j] += sx
+        grad[1, j] += sy
+        grad[2, j] += sz
+    return energy
+
+
+class Tersoff(ManyBody):
+    """Reads triples; `names` are the numbers of an entry in the file's order, `columns` those of the kernel's table, made by `row`."""
+
+    names = "m gamma lambda3 c d h n beta lambda2 B R D lambda1 A"
+    columns = COLUMNS
+    positive = "c d n beta lambda2 B R D lambda1 A gamma"
+    energies = ("A", "B")
+
+    def parse_settings(self, words):
+        what = f"pair_style {self.name}"
+        values = {"shift": 0.0}
+        for name, value in zip(words[::2], words[1::2]):
+            if name != "shift":
+                raise InputError(f"{what}: unknown keyword {name!r}, expected shift")
+            values["shift"] = read.number(value, f"{what} shift")
+        if len(words) % 2:
+            raise InputError(f"{what}: a value is missing after {words[-1]}")
+        return values
+
+    def format_settings(self, settings):
+        return ["shift", repr(settings["shift"])] if settings["shift"] else []
+
+    def read(self, file, elements, settings):
+        found = read_triples(file, elements, self.names)
+        for key, (p, where) in found.items():
+            self.check_entry(p, lambda text, key=key, where=where: InputError(f"{file.what}: entry {' '.join(key)}: {text}", where))
+        return {key: p for key, (p, _) in found.items()}
+
+    def check_entry(self, p, error) -> None:
+        """Refuse numbers that make no sense."""
+        wrong = [n for n in self.positive.split() if p[n] < 0.0]
+        if wrong:
+            raise error(f"{wrong[0]} must not be negative, got {p[wrong[0]]:g}")
+        if p["D"] > p["R"]:
+            raise error(f"D, {p['D']:g}, is larger than R, {p['R']:g}")
+        self.check_power(p, error)
+
+    def check_power(self, p, error) -> None:
+        if p["m"] not in (1.0, 3.0):
+            raise error(f"m must be 1 or 3, got {p['m']:g}")
+
+    def row(self, p, units) -> dict[str, float]:
+        """Columns that are not numbers of the file."""
+        return {"reach": p["R"] + p["D"], "inner": p["R"] - p["D"]}
+
+    def pack_pairs(self, settings, filled, ntypes, units, shift=False):
+        element, n = element_of(filled, ntypes), ntypes + 1
+        rows, three = np.zeros((1, n, n)), np.zeros((n, n, n, len(self.columns)))
+        served = {t for pair in filled for t in pair}
+        for (a, b), c in filled.items():
+            unit = self.unit_factor(c, units)
+            for i, j in {(a, b), (b, a)}:
+                for k in served:
+                    p = c["data"][element[i], element[j], element[k]]
+                    p = {**p, **{name: p[name] * unit for name in self.energies}}
+                    p |= self.row(p, units)
+                    three[i, j, k] = [p[name] for name in self.columns]
+        reach = three[..., 0]
+        farthest = np.maximum(reach.max(axis=1), reach.max(axis=2)) - settings["shift"]
+        for i, j in filled:
+            rows[0, i, j] = rows[0, j, i] = max(farthest[i, j], farthest[j, i], 0.0) ** 2
+        return PairTables(rows, np.array([settings["shift"]]), (three,))
+
+
+OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)
+register(Tersoff("tersoff", site=tersoff, helpers=(taper, repulsion, attraction, angular, order, longer), example="Si.tersoff Si",
+                 see="J. Tersoff, Phys. Rev. B 37, 6991 (1988); 39, 5566 (1989)", **OPTIONS))

@@ -1,0 +1,57 @@
+r"""Tersoff potential of Kumagai: another angular term and a smoother cutoff, fitted to elastic constants and the melting point of silicon.
+
+$$b_{ij}=(1+\zeta_{ij}^\eta)^{-1/2n},\quad\zeta_{ij}=\sum_{k\ne i,j}f_C(r_{ik})\,g(\theta)\,e^{\alpha^\beta(r_{ij}-r_{ik})^\beta},\quad
+g=c_1+\frac{c_2(h-\cos\theta)^2}{c_3+(h-\cos\theta)^2}\big[1+c_4e^{-c_5(h-\cos\theta)^2}\big]$$
+
+The rest is as in `pair tersoff`; beta is 1 or 3.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.pair.tersoff import OPTIONS, Tersoff, attraction, longer, repulsion, tersoff
+from asemd.style import register
+
+
+def taper(r, p):
+    """Cutoff function, whose second derivative has no step, and its derivative."""
+    if r < p[1]:
+        return 1.0, 0.0
+    if r >= p[0]:
+        return 0.0, 0.0
+    w = 1.5707963267948966 / p[3]
+    a = w * (r - p[2])
+    return 0.5 - 0.5625 * math.sin(a) - 0.0625 * math.sin(3.0 * a), -w * (0.5625 * math.cos(a) + 0.1875 * math.cos(3.0 * a))
+
+
+def angular(x, p):
+    """g and its derivative by the cosine."""
+    u = p[13] - x
+    u2 = u * u
+    w = 1.0 / (p[17] + u2)
+    go = p[16] * u2 * w
+    f = p[18] * math.exp(-p[19] * u2)
+    return p[11] + go * (1.0 + f), -2.0 * u * (p[16] * p[17] * w * w * (1.0 + f) - go * p[19] * f)
+
+
+def order(zeta, p):
+    """Bond order and its derivative by zeta."""
+    if zeta <= 0.0:
+        return 1.0, 0.0
+    t = math.pow(zeta, p[15])
+    if not t < 1e300:
+        b = math.pow(zeta, -0.5 * p[15] / p[14])
+        return b, -0.5 * p[15] / p[14] * b / zeta
+    b = math.pow(1.0 + t, -0.5 / p[14])
+    return b, -0.5 * p[15] / p[14] * b * t / ((1.0 + t) * zeta)
+
+
+class TersoffMod(Tersoff):
+    names = "m alpha h eta beta_ters lambda2 B R D lambda1 A n c1 c2 c3 c4 c5"
+    columns = "reach inner R D A lambda1 B lambda2 alpha m c3 c1 c4 h n eta c2 c3 c4 c5".split()
+    positive = "lambda2 B R D lambda1 A n"
+
+
+HELPERS = (taper, repulsion, attraction, angular, order, longer)
+register(TersoffMod("tersoff/mod", site=tersoff, helpers=HELPERS, example="Si.tersoff.mod Si", doc=__doc__,
+                    see="T. Kumagai, S. Izumi, S. Hara, S. Sakai, Comput. Mater. Sci. 39, 457 (2007)", **OPTIONS))
