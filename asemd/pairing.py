@@ -127,7 +127,7 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
         if interactions.modified(use, "compute"):
             shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
             style = use.style.variant(use.settings, interactions.compat).bind(use.settings, filled)
-            molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else ""
+            molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
             settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
             tables = style.pack_pairs(settings, filled, ntypes, units, shift)
             out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))

@@ -110,6 +110,7 @@ class PairStyle(Style):
     many = False                     # energies of single pairs; True: `asemd.manybody`
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
+    molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
                  mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, derived=None,

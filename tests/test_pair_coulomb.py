@@ -1,0 +1,81 @@
+"""Pair styles with charges, compared with LAMMPS: energies, stress and forces of short chains whose partners have weights."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from both import asemd, lines_of
+from test_pair_hybrid import chain
+from wheel import ask
+
+from asemd import style
+
+COLUMNS = ("evdwl", "ecoul", "etail", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")
+HALF = "special_bonds lj/coul 0 0.3 0.5\n"
+LJ = "pair_coeff 1 1 0.1 2.5\npair_coeff 2 2 0.3 2.2\n"
+CASES = {      # name of the style, and what makes a case another one -> commands
+    "coul/debye": "pair_style coul/debye 0.3 7\npair_coeff * *\npair_coeff 2 2 6",
+    "lj/cut/coul/debye": "pair_style lj/cut/coul/debye 0.3 5 7\npair_coeff 1 1 0.1 2.5 4.5 6\npair_coeff 2 2 0.3 2.2\npair_modify shift yes",
+    "lj/cut/coul/debye tail": "pair_style lj/cut/coul/debye 0.3 6\n" + LJ + "pair_modify tail yes mix sixthpower",
+    "coul/cut/global": "pair_style coul/cut/global 7\npair_coeff * *",
+    "coul/diel": "pair_style coul/diel 7\npair_coeff * * 78 2.5 0.8",
+    "coul/slater/cut": "pair_style coul/slater/cut 2.5 7\npair_coeff * *\npair_coeff 1 1 6",
+    "coul/shield": "pair_style coul/shield 7\npair_coeff * * 0.7",
+    "coul/shield plain": "pair_style coul/shield 7 0\npair_coeff * * 0.7\npair_coeff 1 2 0.5 6",
+    "coul/shield taper": "pair_style coul/shield 7 1\npair_coeff * * 0.7\npair_coeff 1 2 0.5 6",
+    "coul/cut/soft": "pair_style coul/cut/soft 2 5 7\npair_coeff * * 0.7\npair_coeff 2 2 0.7 6",
+    "lj/charmm/coul/charmm/implicit": "pair_style lj/charmm/coul/charmm/implicit 4 6 5 7\n" + LJ,
+    "buck/coul/cut": "pair_style buck/coul/cut 5 7\npair_coeff * * 1000 0.3 20\npair_coeff 1 2 900 0.25 10 4 6\npair_modify shift yes",
+    "buck/coul/cut tail": "pair_style buck/coul/cut 5\npair_coeff * * 1000 0.3 20\npair_modify tail yes",
+}
+THEIRS = """
+import numpy as np
+answer = {}
+for name, lines in given["cases"].items():
+    lmp = start()
+    try:
+        for line in lines:
+            lmp.command(line)
+        answer[name] = {"thermo": [lmp.get_thermo(c) for c in given["columns"]], "f": np.array(lmp.gather_atoms("f", 1, 3))}
+    except Exception as e:
+        answer[name] = {"error": str(e)}
+    lmp.close()
+"""
+
+
+def script(name: str, special: str) -> str:
+    return chain() + special + CASES[name] + "\ndisplace_atoms all random 0.1 0.1 0.1 4711\nrun 0\n"
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return ask(THEIRS, cases={f"{name}|{special}": lines_of(script(name, special)) for name in CASES for special in ("", HALF)},
+               columns=COLUMNS)
+
+
+@pytest.mark.parametrize("special", ["", HALF], ids=["weights", "left out"])
+@pytest.mark.parametrize("name", CASES)
+def test_like_lammps(theirs, name, special):
+    expected = theirs[f"{name}|{special}"]
+    assert "error" not in expected, expected
+    twin = style.find("pair", name.split()[0]).twin is not None
+    session = asemd(("compat lammps\n" if twin else "") + script(name, special))
+    system = session.scene.system
+    other = np.reshape(expected["f"], (-1, 3))
+    np.testing.assert_allclose(system.f[np.argsort(system.id)], other, rtol=0, atol=1e-12 * np.abs(other).max())
+    row = [session.variables.evaluate(c) for c in COLUMNS]
+    np.testing.assert_allclose(row, expected["thermo"], rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", ["coul/debye", "coul/shield plain"])
+def test_many_atoms_are_the_same(name):
+    """Clusters, and special pairs one by one, give what the plain list of few atoms gives."""
+    check_many(name)
+
+
+def check_many(name):
+    small, large = (asemd(chain() + CASES[name] + f"\n{more}\nrun 0") for more in ("print x", "replicate 3 3 3"))
+    assert large.loop.engine.mode == "cluster" and small.loop.engine.mode == "plain"
+    sums = [s.variables.evaluate("evdwl+ecoul") for s in (small, large)]
+    assert 27 * sums[0] == pytest.approx(sums[1], rel=1e-11)
+    forces = [s.scene.system.f[np.argsort(s.scene.system.id)] for s in (small, large)]
+    np.testing.assert_allclose(forces[0], forces[1][:len(forces[0])], rtol=0, atol=1e-11 * np.abs(forces[0]).max())
