@@ -154,7 +154,7 @@ def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = Fa
     for part in parts:
         d2 = getattr(part.function, "d2", None)
         weight = weights[1] if part.charged else weights[0]
-        near = np.flatnonzero((r2 < tables.rows[row, ti, tj]) & (weight != 0.0))
+        near = np.flatnonzero((r2 < tables.rows[row, ti, tj]) & ((weight != 0.0) | part.long))
         if d2 is None and not numerical and len(near):
             raise _missing("pair", style.name)
         loop = curvature.of_part(part, d2, row, constant, array)
@@ -166,13 +166,17 @@ def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = Fa
             loop(q, *arguments, slope, second)
             if d2 is None:
                 second = _numerical(loop, q, slope, arguments, [False])
-            one, two = weight[m] * slope[:, 0], weight[m] * second[:, 0, 0]
+            one, two = slope[:, 0], second[:, 0, 0]
+            if not part.long:
+                one, two = weight[m] * one, weight[m] * two
             if not (np.isfinite(one).all() and np.isfinite(two).all()):
                 raise SimulationError(f"pair style {style.name}: a second derivative is not finite")
             if part.coordinate == "r2":
-                yield m, 2.0 * one, 4.0 * two
+                a, b = 2.0 * one, 4.0 * two
             else:
-                yield m, one / q[:, 0], (two - one / q[:, 0]) / r2[m]
+                a, b = one / q[:, 0], (two - one / q[:, 0]) / r2[m]
+            bare = (1.0 - weight[m]) * qq[m] / (r2[m] * np.sqrt(r2[m])) if part.long else 0.0
+            yield m, a + bare, b - 3.0 * bare / r2[m]
         row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
 

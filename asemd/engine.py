@@ -18,6 +18,7 @@ from asemd.kernels.team import Team
 from asemd.kspace import solve
 from asemd.manybody_term import ManyBodyTerm, all_pairs
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
+from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
 
@@ -133,6 +134,7 @@ class Engine:
             else:
                 terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t))
         terms += [(EmbeddedTerm if self.packed else ManyBodyTerm)(t) for t in self.many_terms]
+        terms += own_terms(self.pair_terms, self.system.counts["ntypes"], self.qqr2e)
         if self.solver is not None and self.solver.modify["compute"]:
             terms.append(self.solver.term(self))
         return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]

@@ -15,6 +15,7 @@ from asemd.curvatures import SHIFT, STEP, bonded_items, of_list
 from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.loads import Maps
+from asemd.own_term import OwnTerm
 from asemd.term import BondedTerm, PairListTerm
 
 
@@ -59,7 +60,7 @@ def hessian_of(system, interactions, settings, numerical: bool = False):
             for atoms, d, a, b in of_list(engine, term, numerical):
                 inner = a[:, None, None] * np.eye(3) + b[:, None, None] * d[:, :, None] * d[:, None, :]
                 blocks.append(_block(atoms, [(0, 1)], inner))
-        else:
+        elif type(term) is not OwnTerm:
             raise InputError(f"no second derivatives: {term.category} style {term.style.name} is not a function of positions alone")
     if not blocks:
         return sparse.csr_matrix((3 * n, 3 * n))

@@ -232,6 +232,10 @@ class PairStyle(Style):
         """What the functions may take besides coefficients: the settings. Override to add numbers that follow from them."""
         return settings
 
+    def own_energy(self, settings: Mapping[str, Any], filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int,
+                   qqr2e: float) -> np.ndarray | None:
+        """For styles whose energy holds that of each charge by itself, q (a + b q): a and b of each type, (2, ntypes + 1)."""
+
     def pack_pairs(self, settings: Mapping[str, Any], filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int, units,
                    shift: bool = False) -> PairTables:
         """Tables for the kernels; pairs that are not in `filled` have cut^2 = 0 and never interact.

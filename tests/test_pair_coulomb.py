@@ -3,25 +3,41 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from both import asemd, lines_of
+from both import lines_of
 from test_pair_hybrid import chain
 from wheel import ask
 
 from asemd import style
+from asemd.lammps.session import Session
+from asemd.lammps.switches import Switches
 
 COLUMNS = ("evdwl", "ecoul", "etail", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")
 HALF = "special_bonds lj/coul 0 0.3 0.5\n"
+BORN = "pair_coeff * * 600 0.3 2.2 20 30\npair_coeff 1 2 500 0.3 2.1 10 5 4\n"
 LJ = "pair_coeff 1 1 0.1 2.5\npair_coeff 2 2 0.3 2.2\n"
 CASES = {      # name of the style, and what makes a case another one -> commands
     "coul/debye": "pair_style coul/debye 0.3 7\npair_coeff * *\npair_coeff 2 2 6",
     "lj/cut/coul/debye": "pair_style lj/cut/coul/debye 0.3 5 7\npair_coeff 1 1 0.1 2.5 4.5 6\npair_coeff 2 2 0.3 2.2\npair_modify shift yes",
     "lj/cut/coul/debye tail": "pair_style lj/cut/coul/debye 0.3 6\n" + LJ + "pair_modify tail yes mix sixthpower",
+    "coul/dsf": "pair_style coul/dsf 0.2 7\npair_coeff * *",
+    "coul/wolf": "pair_style coul/wolf 0.25 7\npair_coeff * *",
+    "coul/wolf factor": "pair_style hybrid/scaled 0.7 coul/wolf 0.25 7 0.3 coul/dsf 0.1 5\npair_coeff * * coul/dsf\npair_coeff 1 1 coul/wolf",
+    "lj/cut/coul/dsf": "pair_style lj/cut/coul/dsf 0.1 5 7\n" + LJ + "dielectric 1.5",
+    "lj/cut/coul/wolf": "pair_style lj/cut/coul/wolf 0.1 6\n" + LJ + "pair_modify shift yes",
+    "born/coul/wolf": "pair_style born/coul/wolf 0.1 5 7\n" + BORN + "pair_modify tail yes",
+    "born/coul/dsf": "pair_style born/coul/dsf 0.1 5 7\n" + BORN,
+    "lj/class2/coul/cut": "pair_style lj/class2/coul/cut 5 7\npair_coeff 1 1 0.1 2.5 4 6\npair_coeff 2 2 0.3 2.2\npair_modify tail yes",
+    "nm/cut/coul/cut": "pair_style nm/cut/coul/cut 5 7\npair_coeff * * 0.1 3 9 6\npair_coeff 1 2 0.2 2.9 8 5 4 6\npair_modify tail yes",
+    "lj/cut/coul/cut/soft": "pair_style lj/cut/coul/cut/soft 2 0.5 5 5 7\npair_coeff * * 0.1 2.5 0.7\npair_modify shift yes",
+    "lj/cut/coul/cut/soft tail": "pair_style lj/cut/coul/cut/soft 1 0.5 5 7\npair_coeff * * 0.1 2.5 0.7\npair_modify tail yes",
+    "lj/class2/coul/cut/soft": "pair_style lj/class2/coul/cut/soft 2 0.5 5 5 7\npair_coeff * * 0.1 2.5 0.7",
+    "lj/gromacs/coul/gromacs": "pair_style lj/gromacs/coul/gromacs 4 5 5 7\n" + LJ,
     "coul/cut/global": "pair_style coul/cut/global 7\npair_coeff * *",
     "coul/diel": "pair_style coul/diel 7\npair_coeff * * 78 2.5 0.8",
     "coul/slater/cut": "pair_style coul/slater/cut 2.5 7\npair_coeff * *\npair_coeff 1 1 6",
     "coul/shield": "pair_style coul/shield 7\npair_coeff * * 0.7",
-    "coul/shield plain": "pair_style coul/shield 7 0\npair_coeff * * 0.7\npair_coeff 1 2 0.5 6",
-    "coul/shield taper": "pair_style coul/shield 7 1\npair_coeff * * 0.7\npair_coeff 1 2 0.5 6",
+    "coul/shield plain": "pair_style coul/shield 7 0\npair_coeff * * 0.7\npair_coeff 1 2 0.7 6",
+    "coul/shield taper": "pair_style coul/shield 7 1\npair_coeff * * 0.7 6",
     "coul/cut/soft": "pair_style coul/cut/soft 2 5 7\npair_coeff * * 0.7\npair_coeff 2 2 0.7 6",
     "lj/charmm/coul/charmm/implicit": "pair_style lj/charmm/coul/charmm/implicit 4 6 5 7\n" + LJ,
     "buck/coul/cut": "pair_style buck/coul/cut 5 7\npair_coeff * * 1000 0.3 20\npair_coeff 1 2 900 0.25 10 4 6\npair_modify shift yes",
@@ -42,6 +58,14 @@ for name, lines in given["cases"].items():
 """
 
 
+def ours(text: str, compat: str = ""):
+    switches = Switches()
+    switches.log, switches.compat = "none", compat
+    session = Session(switches=switches, screen=lambda text: None)
+    session.commands("\n".join(lines_of(text)) + "\n")
+    return session
+
+
 def script(name: str, special: str) -> str:
     return chain() + special + CASES[name] + "\ndisplace_atoms all random 0.1 0.1 0.1 4711\nrun 0\n"
 
@@ -58,7 +82,7 @@ def test_like_lammps(theirs, name, special):
     expected = theirs[f"{name}|{special}"]
     assert "error" not in expected, expected
     twin = style.find("pair", name.split()[0]).twin is not None
-    session = asemd(("compat lammps\n" if twin else "") + script(name, special))
+    session = ours(script(name, special), "lammps" if twin else "")
     system = session.scene.system
     other = np.reshape(expected["f"], (-1, 3))
     np.testing.assert_allclose(system.f[np.argsort(system.id)], other, rtol=0, atol=1e-12 * np.abs(other).max())
@@ -73,7 +97,7 @@ def test_many_atoms_are_the_same(name):
 
 
 def check_many(name):
-    small, large = (asemd(chain() + CASES[name] + f"\n{more}\nrun 0") for more in ("print x", "replicate 3 3 3"))
+    small, large = (ours(chain() + CASES[name] + f"\n{more}\nrun 0") for more in ("print x", "replicate 3 3 3"))
     assert large.loop.engine.mode == "cluster" and small.loop.engine.mode == "plain"
     sums = [s.variables.evaluate("evdwl+ecoul") for s in (small, large)]
     assert 27 * sums[0] == pytest.approx(sums[1], rel=1e-11)

@@ -191,7 +191,14 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         w = "coul" if part.charged else "lj"
         slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
         if part.long:
-            lines += [f"    if r2 < rows[{row}, ti, tj]:",
+            near = getattr(part.function, "special", None)
+            if near is not None:
+                b.function(near, f"special_{name}")
+                lines += [f"    if coul < 1.0 and r2 < rows[{row}, ti, tj]:",
+                          f"        e{k}, d{k} = special_{name}({', '.join(args)}, 1.0 - coul)",
+                          f"        fp += {slope}",
+                          f"        ec += e{k}"]
+            lines += [f"    {'if' if near is None else 'elif'} r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
                       "        bare = (1.0 - coul) * qq / math.sqrt(r2) if coul < 1.0 else 0.0",
                       f"        fp += {slope} - (bare / r2 if bare != 0.0 else 0.0)",

@@ -4,7 +4,8 @@ r"""$$E = C \frac{q_i q_j}{r} \left( \frac{\epsilon}{\epsilon_D(r)} - 1 \right) 
 Correction of the Coulomb interaction of ions in an implicit solvent, whose permittivity falls from eps_s to 5.2 where they touch; add it
 to coul/cut or coul/long. Lenart, Jusufi and Panagiotopoulos, J. Chem. Phys. 126, 044509 (2007).
 
-``pair_modify shift yes`` has no effect: LAMMPS's offset holds the charges of two atoms that have nothing to do with the pair.
+LAMMPS takes the eps_s of the last pair_coeff for all pairs of types, here each has its own. ``pair_modify shift yes`` has no effect:
+LAMMPS's offset holds the charges of two atoms that have nothing to do with the pair.
 """
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ class ShieldPair(UnshiftedPair):
             raise InputError(f"pair_style {self.name} needs an atom_style with molecule numbers, such as full")
 
 
-def coul_shield_d2(r, qq, cut, tap_flag, lamda):
+def coul_shield_d2(r, qq, cut, lamda, tap_flag):
     third, x = 1.0 / (lamda * lamda * lamda), r / cut
     s = 1.0 / (r * r * r + third)
     e = qq * math.pow(s, 0.3333333333333333)
@@ -49,7 +49,7 @@ def coul_shield_d2(r, qq, cut, tap_flag, lamda):
 @pair("coul/shield", cls=ShieldPair, settings="cut [tap_flag]", coeff="lamda [cut]", defaults={"tap_flag": 1},
       units={"tap_flag": "integer"}, settings_example="10.0 1", example="0.7",
       see="LAMMPS manual, pair_style coul/shield", d2=coul_shield_d2)
-def coul_shield(r, qq, cut: "distance", tap_flag, lamda: "1/distance"):
+def coul_shield(r, qq, cut: "distance", lamda: "1/distance", tap_flag):
     x = r / cut
     r2 = r * r
     inverse = 1.0 / (r * r2 + 1.0 / (lamda * lamda * lamda))

@@ -1,0 +1,48 @@
+"""The energy that charges have by themselves in a pair style: constants that belong to its energy and make no forces."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import SimulationError
+from asemd.kernels import own_energy
+from asemd.term import Term
+
+
+class OwnTerm(Term):
+    """What `asemd.pairstyle.PairStyle.own_energy` of one pair style gives."""
+
+    category = "pair"
+
+    def __init__(self, owner, numbers: np.ndarray):
+        self.owner, self.style, self.tables, self.numbers = owner, owner.style, owner.tables, numbers
+        self.factor = np.zeros(1)
+
+    def kernel(self, energy, per_atom):
+        return own_energy.of_atoms if per_atom else own_energy.energies if energy else own_energy.nothing
+
+    def rebuild(self, engine):
+        self.scale(engine)
+
+    def scale(self, engine) -> None:
+        """Take up the present factor of the pair style; one by atom has no energy."""
+        self.factor[0] = self.owner.use.factor if np.ndim(self.owner.use.factor) == 0 else 0.0
+
+    def arguments(self, engine, tid):
+        s, ns, nth = engine.state, engine.ns, engine.threads
+        return (s.q, s.type, s.row, ns * tid // nth, ns * (tid + 1) // nth, self.numbers, self.factor, engine.acc[tid, self.index],
+                engine.atom_energy[tid])
+
+    def describe(self, engine, item, value):
+        return SimulationError(f"pair style {self.style.name}: the energy of the charges is not finite")
+
+
+def own_terms(pair_terms, ntypes: int, qqr2e: float) -> list[OwnTerm]:
+    """The terms of those pair styles that have such energies, of the atoms whose types they serve."""
+    out = []
+    for owner in pair_terms:
+        numbers = owner.style.own_energy(owner.use.settings, owner.filled, ntypes, qqr2e)
+        if numbers is not None:
+            served = {t for pair in owner.filled for t in pair}
+            numbers[:, [t for t in range(ntypes + 1) if t not in served]] = 0.0
+            out.append(OwnTerm(owner, numbers))
+    return out
