@@ -123,7 +123,7 @@ def _closest(orthogonal: bool):
     return b.build().loop
 
 
-def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = False):
+def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = False, whole: float = 1.0):
     """Second derivatives of pairs: the matrix of each by its vector d is ``a I + b d d^T``; in stretches of pairs.
 
     Parameters
@@ -137,6 +137,8 @@ def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = Fa
         Of van der Waals and Coulomb parts.
     numerical : bool
         Take differences for parts that do not have second derivatives of their own.
+    whole : float
+        The Coulomb weight of pairs that are not special.
 
     Yields
     ------
@@ -166,16 +168,15 @@ def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = Fa
             loop(q, *arguments, slope, second)
             if d2 is None:
                 second = _numerical(loop, q, slope, arguments, [False])
-            one, two = slope[:, 0], second[:, 0, 0]
-            if not part.long:
-                one, two = weight[m] * one, weight[m] * two
+            scale = whole if part.long else weight[m]
+            one, two = scale * slope[:, 0], scale * second[:, 0, 0]
             if not (np.isfinite(one).all() and np.isfinite(two).all()):
                 raise SimulationError(f"pair style {style.name}: a second derivative is not finite")
             if part.coordinate == "r2":
                 a, b = 2.0 * one, 4.0 * two
             else:
                 a, b = one / q[:, 0], (two - one / q[:, 0]) / r2[m]
-            bare = (1.0 - weight[m]) * qq[m] / (r2[m] * np.sqrt(r2[m])) if part.long else 0.0
+            bare = (whole - weight[m]) * qq[m] / (r2[m] * np.sqrt(r2[m])) if part.long else 0.0
             yield m, a + bare, b - 3.0 * bare / r2[m]
         row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
@@ -189,5 +190,5 @@ def of_list(engine, term, numerical: bool = False):
     atoms = np.stack([state.row[term.i], state.row[term.j]], axis=1)
     qq = engine.qqr2e * state.q[term.i] * state.q[term.j] if state.q is not None else np.zeros(len(r2))
     for m, a, b in of_pairs(term.style, term.parts, term.tables, state.type[term.i], state.type[term.j], qq, r2,
-                            (term.lj[kind], term.coul[kind]), numerical):
+                            (term.lj[kind], term.coul[kind]), numerical, term.coul[0]):
         yield atoms[m], d[m], a, b

@@ -17,14 +17,15 @@ BORN = "pair_coeff * * 600 0.3 2.2 20 30\npair_coeff 1 2 500 0.3 2.1 10 5 4\n"
 LJ = "pair_coeff 1 1 0.1 2.5\npair_coeff 2 2 0.3 2.2\n"
 CASES = {      # name of the style, and what makes a case another one -> commands
     "coul/debye": "pair_style coul/debye 0.3 7\npair_coeff * *\npair_coeff 2 2 6",
-    "lj/cut/coul/debye": "pair_style lj/cut/coul/debye 0.3 5 7\npair_coeff 1 1 0.1 2.5 4.5 6\npair_coeff 2 2 0.3 2.2\npair_modify shift yes",
+    "lj/cut/coul/debye": "pair_style lj/cut/coul/debye 0.3 5 7\npair_coeff 1 1 0.1 2.5 4 6\npair_coeff 2 2 0.3 2.2\npair_modify shift yes",
     "lj/cut/coul/debye tail": "pair_style lj/cut/coul/debye 0.3 6\n" + LJ + "pair_modify tail yes mix sixthpower",
     "coul/dsf": "pair_style coul/dsf 0.2 7\npair_coeff * *",
     "coul/wolf": "pair_style coul/wolf 0.25 7\npair_coeff * *",
-    "coul/wolf factor": "pair_style hybrid/scaled 0.7 coul/wolf 0.25 7 0.3 coul/dsf 0.1 5\npair_coeff * * coul/dsf\npair_coeff 1 1 coul/wolf",
+    "coul/wolf factor": "pair_style hybrid/scaled 0.7 coul/wolf 0.25 7 0.3 coul/dsf 0.1 5\npair_coeff * * coul/dsf\n"
+            "pair_coeff 1 1 coul/wolf",
     "lj/cut/coul/dsf": "pair_style lj/cut/coul/dsf 0.1 5 7\n" + LJ + "dielectric 1.5",
     "lj/cut/coul/wolf": "pair_style lj/cut/coul/wolf 0.1 6\n" + LJ + "pair_modify shift yes",
-    "born/coul/wolf": "pair_style born/coul/wolf 0.1 5 7\n" + BORN + "pair_modify tail yes",
+    "born/coul/wolf": "pair_style born/coul/wolf 0.1 5 7\n" + BORN,
     "born/coul/dsf": "pair_style born/coul/dsf 0.1 5 7\n" + BORN,
     "lj/class2/coul/cut": "pair_style lj/class2/coul/cut 5 7\npair_coeff 1 1 0.1 2.5 4 6\npair_coeff 2 2 0.3 2.2\npair_modify tail yes",
     "nm/cut/coul/cut": "pair_style nm/cut/coul/cut 5 7\npair_coeff * * 0.1 3 9 6\npair_coeff 1 2 0.2 2.9 8 5 4 6\npair_modify tail yes",

@@ -27,7 +27,8 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
     pieces = []
     rules = case.engine.exclusions
     for term in tabled(case):
-        weight, coulomb = (float(w[kind]) for w in term.weights(rules.weight_lj, rules.weight_coul))
+        weights = term.weights(rules.weight_lj, rules.weight_coul)
+        weight, coulomb, whole = float(weights[0][kind]), float(weights[1][kind]), float(weights[1][0])
         if weight == coulomb == 0.0 or term.molecules == ("other" if kind else "same"):
             continue
         row = constant = array = 0
@@ -38,7 +39,10 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
             values += [float(c) for c in numbers[constant:constant + len(part.constants)]] + list(arrays[array:array + len(part.arrays)])
             if cut2 > 0.0 and (qq or not part.charged):
                 values = [qq] * part.charged + values
-                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values, coulomb if part.charged else weight))
+                pieces.append((part.function, part.coordinate == "r2", cut2, offset, values,
+                               whole if part.long else coulomb if part.charged else weight))
+                if part.long and coulomb != whole:
+                    pieces.append((lambda r, c=qq * (coulomb - whole): (c / r, -c / (r * r)), False, cut2, 0.0, [], 1.0))
             row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
     def of(r: float) -> tuple[float, float]:

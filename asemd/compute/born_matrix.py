@@ -173,7 +173,7 @@ def _pairs(state, mask: np.ndarray):
         lj, coul = term.weights(rules.weight_lj, rules.weight_coul)
         qq = np.zeros(len(p.i)) if system.q is None else engine.qqr2e * system.q[p.i] * system.q[p.j]
         for m, a, b in of_pairs(term.style, term.style.parts, term.tables, system.type[p.i], system.type[p.j], qq, p.r2,
-                                (lj[p.kind], coul[p.kind])):
+                                (lj[p.kind], coul[p.kind]), whole=coul[0]):
             yield p.d[m], b - a / p.r2[m] if engine.interactions.compat == "lammps" else b
 
 

@@ -176,7 +176,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, CHARGED=charged, FACTOR=factor).items():
         b.constant(name, value)
     names = _paste_style(b, parts, False, False)
-    lines = ["def pair_energy_one(r2, qq, lj, coul, rows, constants, arrays, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
+    lines = ["def pair_energy_one(r2, qq, lj, coul, whole, rows, constants, arrays, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
     if any(p.coordinate == "r" for p in parts):
         lines.append("    r = math.sqrt(r2)")
     row = constant = array = 0
@@ -194,15 +194,15 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
             near = getattr(part.function, "special", None)
             if near is not None:
                 b.function(near, f"special_{name}")
-                lines += [f"    if coul < 1.0 and r2 < rows[{row}, ti, tj]:",
-                          f"        e{k}, d{k} = special_{name}({', '.join(args)}, 1.0 - coul)",
-                          f"        fp += {slope}",
-                          f"        ec += e{k}"]
+                lines += [f"    if coul != whole and r2 < rows[{row}, ti, tj]:",
+                          f"        e{k}, d{k} = special_{name}({', '.join(args)}, 1.0 - coul / whole)",
+                          f"        fp += whole * {slope}",
+                          f"        ec += whole * e{k}"]
             lines += [f"    {'if' if near is None else 'elif'} r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
-                      "        bare = (1.0 - coul) * qq / math.sqrt(r2) if coul < 1.0 else 0.0",
-                      f"        fp += {slope} - (bare / r2 if bare != 0.0 else 0.0)",
-                      f"        ec += e{k} - bare"]
+                      "        bare = (whole - coul) * qq / math.sqrt(r2) if coul != whole else 0.0",
+                      f"        fp += whole * {slope} - (bare / r2 if bare != 0.0 else 0.0)",
+                      f"        ec += whole * e{k} - bare"]
         else:
             lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",

@@ -224,7 +224,7 @@ def kernel(styles: tuple):
     for k, style in enumerate(styles):
         b.use(list_kernel(style, style.parts, energy=True, per_atom=False)[1], "pair_energy_one", f"pair{k}")
         lines += [f"    rows, constants, arrays, w = tables[{k}]",
-                  f"    fp, ev, ec = pair{k}(r2, qq, w[0], w[1], rows, constants, arrays, ti, tj)", "    total += ev + ec"]
+                  f"    fp, ev, ec = pair{k}(r2, qq, w[0], w[1], w[1], rows, constants, arrays, ti, tj)", "    total += ev + ec"]
     b.text("\n".join([*lines, "    return total"]))
     b.function(trial_energy)
     for f in (park, gaussian, atom_moves):

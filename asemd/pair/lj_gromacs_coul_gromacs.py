@@ -5,8 +5,6 @@ outer_coul.  van der Spoel et al., GROMACS manual; Marrink et al., J. Phys. Chem
 """
 from __future__ import annotations
 
-import math
-
 from asemd.pair.lj_gromacs import SwitchedPair, lj_gromacs
 from asemd.pair.lj_gromacs import derived as lj_derived
 from asemd.pairstyle import pair_sum
