@@ -1,7 +1,7 @@
 """Energy that charges have by themselves, q (a + b q) with two numbers a, b of each type; no forces."""
 from __future__ import annotations
 
-from numba import njit
+from asemd.kernels.target import njit
 
 
 @njit(cache=True, nogil=True)

@@ -1,4 +1,4 @@
-r"""$$E = 4\epsilon \left[ (\sigma/r)^{12} - (\sigma/r)^6 \right] + S_{LJ}(r) + C \frac{q_i q_j}{\epsilon} \left[ \frac{1}{r} + S_C(r) \right]$$
+r"""$$E = 4\epsilon \left[ (\sigma/r)^{12} - (\sigma/r)^6 \right] + S_{LJ}(r) + C q_i q_j \left[ 1/r + S_C(r) \right] / \epsilon$$
 
 The sum of lj/gromacs between inner and outer and of a Coulomb part that is moved and smoothed in the same way between inner_coul and
 outer_coul.  van der Spoel et al., GROMACS manual; Marrink et al., J. Phys. Chem. B 108, 750 (2004).
