@@ -394,7 +394,7 @@ line("pair_modify keyword", "pair_modify shft yes", "shft;shift")
 line("pair_modify value", "pair_modify shift perhaps", "perhaps")
 line("pair_modify mix", "pair_modify mix mean", "mean")
 line("dielectric zero", "dielectric 0", "dielectric")
-line("kspace", "kspace_style pppm 1e-4", "pppm")
+line("kspace", "kspace_style pppm 1e-4", "kspace_style pppm needs", at=("in.scene", "run 2"))
 
 # ---- scripts: tables
 TABLE = "# table\n\nA\nN 5\n\n1 0.5 3.0 2.0\n2 0.75 2.0 2.0\n3 1.0 1.0 2.0\n4 1.25 0.5 2.0\n5 1.5 0.1 2.0\n"

@@ -95,7 +95,7 @@ def test_computes_fixes_variables(lmp):
     ("compute", "temp", True), ("atom", "full", True),
     ("atom", "nope", False), ("region", "block", True), ("command", "run", True), ("command", "nope", False), ("minimize", "cg", True),
     ("minimize", "_state", False),
-    ("dump", "custom", True), ("kspace", "pppm", False), ("integrate", "verlet", True), ("nope", "nope", False)])
+    ("dump", "custom", True), ("kspace", "pppm", True), ("integrate", "verlet", True), ("nope", "nope", False)])
 def test_has_style(lmp, category, name, there):
     assert lmp.has_style(category, name) is there
 

@@ -162,6 +162,15 @@ def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, 
             energy[i] += front * q[i] * (x[2, i] * dipole - 0.5 * (second + qsum * x[2, i] * x[2, i]) - qsum * height * height / 12.0)
 
 
+def is_same(vectors, stretch, held):
+    """Whether `held` is that box, its third vector times `stretch`."""
+    for a in range(3):
+        for d in range(3):
+            if held[a, d] != vectors[a, d] * (stretch if a == 2 else 1.0):
+                return False
+    return True
+
+
 def stretched(vectors, stretch, out, inverse):
     """The box with its third vector times `stretch`, and its inverse."""
     for a in range(3):
@@ -179,12 +188,7 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, numbers, most, waves, held
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     if tid == 0:
-        same = True
-        for a in range(3):
-            for d in range(3):
-                if held[a, d] != box[a, d] * (stretch if a == 2 else 1.0):
-                    same = False
-        if not same:
+        if not is_same(box, stretch, held):
             stretched(box, stretch, held[:3], inverse)
             held[3, 0] = weigh(numbers, held[:3], g, waves)
     barrier(meeting)
@@ -219,7 +223,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (weigh, phases, first_two, structure, fields, shares, slab):
+    for f in (weigh, phases, first_two, structure, fields, shares, is_same, slab):
         b.function(f, fast=True)
     b.function(stretched)
     b.function(ewald)

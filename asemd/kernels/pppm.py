@@ -4,9 +4,8 @@ The Fourier transforms themselves are a library's, which thread 0 calls back bet
 mesh of its own. Rows along the third direction are longer than the mesh by ORDER, so that the weights of a charge fall on neighbouring
 places; what is beyond the end is folded back when the meshes of the threads are added.
 
-Arrays: `numbers (3,)` mesh points; `green (nx, ny, nz/2 + 1, 4)` the influence function and its products with the wave vector;
-`brick (nth, nx, ny, nz + ORDER)`; `density (nx, ny, nz)`; `wave (nx, ny, nz/2 + 1)`, `waves (m, nx, ny, nz/2 + 1)` complex;
-`field (m, nx, ny, nz)`; `packed (nx, ny, (nz + ORDER) * m)`; `weight (cap, 3 * ORDER)`, `base (cap, 3)`.
+`numbers (3,)`: mesh points; `green (nx, ny, nz/2 + 1, 4)`: the influence function and its products with the wave vector; `packed (nx, ny,
+(nz + ORDER) * m)`: m meshes side by side; `base (cap, 3)`, `weight (cap, 3 * ORDER)`: first place and weights of each slot.
 """
 from __future__ import annotations
 
@@ -15,98 +14,16 @@ from functools import cache
 
 import numpy as np
 
+from asemd.kernels import pppm_ad
 from asemd.kernels.callback import call_back
-from asemd.kernels.ewald import slab, stretched
+from asemd.kernels.ewald import is_same, slab, stretched
 from asemd.kernels.generate import Builder
+from asemd.kernels.influence import denominator, folded, influence, make_green, opposite, sinc_power
 from asemd.kernels.threads import barrier
 
 ORDER = 5
-ENERGY = PER_ATOM = False
-FIELDS = 3       # meshes that are interpolated
-
-
-def denominator(b, x, y, z):
-    """The square of the sum of the squared transforms of the weights, from the sines squared of half the wave."""
-    sx = sy = sz = 0.0
-    for m in range(ORDER - 1, -1, -1):
-        sx = b[m] + sx * x
-        sy = b[m] + sy * y
-        sz = b[m] + sz * z
-    s = sx * sy * sz
-    return s * s
-
-
-def sinc_power(u):
-    """(sin u / u)^(2 ORDER)."""
-    if u == 0.0:
-        return 1.0
-    s = math.sin(u) / u
-    s *= s
-    p = 1.0
-    for _ in range(ORDER):
-        p *= s
-    return p
-
-
-def influence(n, numbers, turn, g, most, b):
-    """The optimal influence function of the waves n (3 whole numbers), for differentiation by multiplication with the wave vector.
-
-    `turn (3, 3)`: 2 pi times the inverse box; `most (3,)`: images along each direction.
-    """
-    k0 = turn[0, 0] * n[0] + turn[0, 1] * n[1] + turn[0, 2] * n[2]
-    k1 = turn[1, 0] * n[0] + turn[1, 1] * n[1] + turn[1, 2] * n[2]
-    k2 = turn[2, 0] * n[0] + turn[2, 1] * n[1] + turn[2, 2] * n[2]
-    kk = k0 * k0 + k1 * k1 + k2 * k2
-    if kk == 0.0:
-        return 0.0
-    a0, a1, a2 = math.pi * n[0] / numbers[0], math.pi * n[1] / numbers[1], math.pi * n[2] / numbers[2]
-    total = 0.0
-    for m0 in range(-most[0], most[0] + 1):
-        w0 = sinc_power(a0 + math.pi * m0)
-        for m1 in range(-most[1], most[1] + 1):
-            w1 = w0 * sinc_power(a1 + math.pi * m1)
-            for m2 in range(-most[2], most[2] + 1):
-                w2 = w1 * sinc_power(a2 + math.pi * m2)
-                u0, u1, u2 = n[0] + m0 * numbers[0], n[1] + m1 * numbers[1], n[2] + m2 * numbers[2]
-                q0 = turn[0, 0] * u0 + turn[0, 1] * u1 + turn[0, 2] * u2
-                q1 = turn[1, 0] * u0 + turn[1, 1] * u1 + turn[1, 2] * u2
-                q2 = turn[2, 0] * u0 + turn[2, 1] * u1 + turn[2, 2] * u2
-                qq = q0 * q0 + q1 * q1 + q2 * q2
-                total += (k0 * q0 + k1 * q1 + k2 * q2) / qq * math.exp(-0.25 * qq / (g * g)) * w2
-    # LAMMPS's 4 pi, to its digits
-    return 12.5663706 / kk * total / denominator(b, math.sin(a0) ** 2, math.sin(a1) ** 2, math.sin(a2) ** 2)
-
-
-def folded(i, n):
-    """The whole number of the wave at place i of n: -n/2 ... (n-1)/2."""
-    return i - n * (2 * i // n)
-
-
-def make_green(first, last, numbers, turn, g, most, b, green):
-    """`green` of the planes first..last-1.
-
-    Where a number is half of an even mesh, the wave and its opposite have the same place: of the products with the wave vector only the odd
-    part counts, and the function is the mean of the two.
-    """
-    n, o = np.empty(3, np.int64), np.empty(3, np.int64)
-    for i in range(first, last):
-        n[0] = folded(i, numbers[0])
-        o[0] = folded((numbers[0] - i) % numbers[0], numbers[0])
-        for j in range(numbers[1]):
-            n[1] = folded(j, numbers[1])
-            o[1] = folded((numbers[1] - j) % numbers[1], numbers[1])
-            for k in range(numbers[2] // 2 + 1):
-                n[2] = folded(k, numbers[2])
-                o[2] = folded((numbers[2] - k) % numbers[2], numbers[2])
-                one = influence(n, numbers, turn, g, most, b)
-                other = one
-                if n[0] != -o[0] or n[1] != -o[1] or n[2] != -o[2]:
-                    other = influence(o, numbers, turn, g, most, b)
-                green[i, j, k, 0] = 0.5 * (one + other)
-                for d in range(3):
-                    kn = turn[d, 0] * n[0] + turn[d, 1] * n[1] + turn[d, 2] * n[2]
-                    ko = turn[d, 0] * o[0] + turn[d, 1] * o[1] + turn[d, 2] * o[2]
-                    green[i, j, k, 1 + d] = 0.5 * (kn * one - ko * other)
+ENERGY = PER_ATOM = AD = False
+make_green_ad = own_force = gather_ad = None
 
 
 def spread(x, q, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, base, weight, brick):
@@ -132,6 +49,11 @@ def spread(x, q, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, bas
                 for c in range(ORDER - 2, -1, -1):
                     p = p * t + pieces[m, c]
                 weight[i, d * ORDER + m] = p
+                if AD:
+                    p = (ORDER - 1) * pieces[m, ORDER - 1]
+                    for c in range(ORDER - 2, 0, -1):
+                        p = p * t + c * pieces[m, c]
+                    weight[i, (3 + d) * ORDER + m] = p
         w = weight[i]
         charge = q[i] * density_of
         b2 = base[i, 2]
@@ -162,11 +84,15 @@ def add_bricks(first, last, brick, density):
 
 
 def multiply(first, last, nz, green, scale, wave, waves):
-    """Waves of the gradient of the potential from those of the density."""
+    """Waves of the gradient of the potential, if AD of the potential, from those of the density."""
     for i in range(first, last):
         for j in range(wave.shape[1]):
             for k in range(wave.shape[2]):
                 re, im = scale * wave[i, j, k].real, scale * wave[i, j, k].imag
+                if AD:
+                    gd = green[i, j, k, 0]
+                    waves[0, i, j, k] = complex(gd * re, gd * im)
+                    continue
                 for d in range(3):
                     gd = green[i, j, k, 1 + d]
                     waves[d, i, j, k] = complex(-gd * im, gd * re)
@@ -203,13 +129,13 @@ def energies(first, last, numbers, turn, g, most, b, green, scale, wave, out):
     nz = numbers[2]
     for i in range(first, last):
         n[0] = folded(i, numbers[0])
-        o[0] = folded((numbers[0] - i) % numbers[0], numbers[0])
+        o[0] = opposite(i, numbers[0])
         for j in range(numbers[1]):
             n[1] = folded(j, numbers[1])
-            o[1] = folded((numbers[1] - j) % numbers[1], numbers[1])
+            o[1] = opposite(j, numbers[1])
             for k in range(nz // 2 + 1):
                 n[2] = folded(k, nz)
-                o[2] = folded((nz - k) % nz, nz)
+                o[2] = opposite(k, nz)
                 times = 1.0 if k == 0 or 2 * k == nz else 2.0
                 c = wave[i, j, k]
                 e = times * scale * scale * green[i, j, k, 0] * (c.real * c.real + c.imag * c.imag)
@@ -225,13 +151,13 @@ def multiply_shares(first, last, numbers, turn, g, most, b, green, scale, wave, 
     v, u = np.empty(6), np.empty(6)
     for i in range(first, last):
         n[0] = folded(i, numbers[0])
-        o[0] = folded((numbers[0] - i) % numbers[0], numbers[0])
+        o[0] = opposite(i, numbers[0])
         for j in range(numbers[1]):
             n[1] = folded(j, numbers[1])
-            o[1] = folded((numbers[1] - j) % numbers[1], numbers[1])
+            o[1] = opposite(j, numbers[1])
             for k in range(numbers[2] // 2 + 1):
                 n[2] = folded(k, numbers[2])
-                o[2] = folded((numbers[2] - k) % numbers[2], numbers[2])
+                o[2] = opposite(k, numbers[2])
                 mean_shape(n, o, numbers, turn, g, most, b, v, u)
                 c = scale * green[i, j, k, 0] * wave[i, j, k]
                 waves[0, i, j, k] = c
@@ -302,8 +228,9 @@ def gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, field, 
                 virial[c - 1, i] += 0.5 * scale * q[i] * total
 
 
-def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap, images, held, inverse, green, brick, density, wave, waves,
-         field, packed, shares, share_field, base, weight, sums, constants, forward, backward, backward_shares, acc, energy, virial):
+def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap, images, held, lengths, own, inverse, green, brick, density,
+         wave, waves, field, packed, shares, share_field, base, weight, sums, constants, forward, backward, backward_shares, acc, energy,
+         virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
     `constants` as in `asemd.kernels.ewald.ewald`; `held (4, 3)`: the box that `green` is for, and its volume; `forward`, `backward`,
@@ -312,18 +239,23 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     nth, nx = meeting.nth, numbers[0]
     first, last = nx * tid // nth, nx * (tid + 1) // nth
-    same = True
-    for a in range(3):
-        for d in range(3):
-            if held[a, d] != box[a, d] * (stretch if a == 2 else 1.0):
-                same = False
+    same = is_same(box, stretch, held)
     barrier(meeting)
     if not same:
         if tid == 0:
             stretched(box, stretch, held[:3], inverse)
             held[3, 0] = abs(np.linalg.det(held[:3]))
+            if AD:
+                for d in range(3):
+                    lengths[d] = held[d, d]
         barrier(meeting)
-        make_green(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green)
+        if AD:
+            make_green_ad(first, last, numbers, lengths, g, gfb, green)
+            barrier(meeting)
+            if tid == 0:
+                own_force(numbers, lengths, held[3, 0], green, own)
+        else:
+            make_green(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green)
     volume = held[3, 0]
     points = numbers[0] * numbers[1] * numbers[2]
     spread(x, q, lo, hi, origin, inverse, numbers, points / volume, pieces, wrap, base, weight, brick[tid])
@@ -348,7 +280,10 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
     barrier(meeting)
     interleave(first, last, field, packed)
     barrier(meeting)
-    gather(f, q, lo, hi, scale, wrap, base, weight, packed, slabs == 2.0)
+    if AD:
+        gather_ad(x, f, q, lo, hi, numbers, lengths, scale, own, wrap, base, weight, packed, slabs == 2.0)
+    else:
+        gather(f, q, lo, hi, scale, wrap, base, weight, packed, slabs == 2.0)
     if ENERGY and tid == 0:
         for t in range(nth):
             acc[0] += 0.5 * scale * volume * sums[t, 0]
@@ -365,16 +300,17 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
 
 
 @cache
-def kernel(level: int, order: int):
-    """`pppm` for weights of that order; `level`: see `asemd.kspace.term.KSpaceTerm`."""
+def kernel(level: int, order: int, ad: bool):
+    """`pppm` for weights of that order, differentiated if `ad`; `level`: see `asemd.kspace.term.KSpaceTerm`."""
     b = Builder(f"particle-particle particle-mesh, order {order}")
     b.line("from asemd.kernels.threads import barrier")
     b.line("from asemd.kernels.callback import call_back")
     b.constant("ORDER", order)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (denominator, sinc_power, influence, folded, make_green, spread, add_bricks, multiply, shape, mean_shape, energies, multiply_shares,
-              interleave, gather, gather_shares, slab):
+    b.constant("AD", ad)
+    for f in (denominator, sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
+              multiply_shares, interleave, gather, gather_shares, is_same, slab, *(pppm_ad.FUNCTIONS if ad else ())):
         b.function(f, fast=True)
     b.function(stretched)
     b.function(pppm)

@@ -51,7 +51,8 @@ class Ewald(KSpace):
         lpr = math.sqrt(sum(self.error(m, length) ** 2 for m, length in zip(self.most_upright, self.prd)) / 3.0)
         total = math.hypot(lpr, self.real_error)
         most = max(self.most)
-        return ["Ewald initialization ...", f"  G vector (1/distance) = {self.g_ewald:.8g}",
+        return ["Ewald initialization ...", "  using polynomial approximation for long-range coulomb",
+                f"  G vector (1/distance) = {self.g_ewald:.8g}",
                 f"  estimated absolute RMS force accuracy = {total:.8g}",
                 f"  estimated relative force accuracy = {total / self.two_charges:.8g}",
                 f"  KSpace vectors: actual max1d max3d = {len(self.numbers)} {most} {4 * most**3 + 6 * most**2 + 3 * most}",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from asemd.errors import InputError
-from asemd.kernels import pppm
+from asemd.kernels import pppm, pppm_ad
 from asemd.kernels.callback import Callback
 from asemd.kspace import KSpace
 from asemd.kspace.term import KSpaceTerm
@@ -62,12 +62,13 @@ class PPPM(KSpace):
         self.order = self.modify["order"] or 5
         if not 2 <= self.order <= 7:
             raise InputError(f"kspace_style {self.style}: order must be 2 to 7, not {self.order}")
-        if self.modify["diff"] == "ad":
-            raise InputError(f"kspace_modify diff ad is not supported for kspace_style {self.style}: leave it out (diff ik)")
+        self.ad = self.modify["diff"] == "ad"
+        if self.ad and self._tilted(system):
+            raise InputError(f"kspace_style {self.style}: kspace_modify diff ad needs a box that is not triclinic")
         upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell
         mesh = list(self.modify["mesh"])
         if not any(mesh):
-            mesh = self.fine_enough()
+            mesh = self.fine_enough_ad() if self.ad else self.fine_enough()
             if self._tilted(system):
                 mesh = [int(m) + 1 for m in np.abs(upright) @ (np.array(mesh) / self.prd)]
             mesh = [with_small_factors(m) for m in mesh]
@@ -90,6 +91,22 @@ class PPPM(KSpace):
             mesh.append(n + (spacing != 1.0 / self.g_ewald))
         return mesh
 
+    def fine_enough_ad(self) -> list[int]:
+        """The same by the error of the whole mesh, for differentiated weights.
+
+        Raises
+        ------
+        InputError
+            The accuracy is not reached.
+        """
+        spacing = 4.0 / self.g_ewald
+        for _ in range(501):
+            self.mesh = tuple(max(2, int(length / spacing)) for length in self.prd)
+            if self.mesh_error <= self.accuracy:
+                return list(self.mesh)
+            spacing *= 0.95
+        raise InputError(f"kspace_style {self.style}: no mesh reaches the accuracy {self.accuracy_relative:g}")
+
     def error(self, spacing: float, length: float) -> float:
         """Estimated error of forces along one direction."""
         h = spacing * self.g_ewald
@@ -99,6 +116,9 @@ class PPPM(KSpace):
     @property
     def mesh_error(self) -> float:
         """Estimated error of forces that the mesh makes."""
+        if self.ad:
+            quality = pppm_ad.quality_of(self.order)(np.array(self.mesh), self.prd, self.g_ewald)
+            return math.sqrt(quality / self.n) * self.q2 / self.volume
         return math.sqrt(sum(self.error(h, length) ** 2 for h, length in zip(self.spacing, self.prd)) / 3.0)
 
     def balance(self) -> None:
@@ -125,7 +145,8 @@ class PPPM(KSpace):
 
     def lines(self):
         total = math.hypot(self.mesh_error, self.real_error)
-        return ["PPPM initialization ...", f"  G vector (1/distance) = {self.g_ewald:.8g}", f"  grid = {' '.join(map(str, self.mesh))}",
+        return ["PPPM initialization ...", "  using polynomial approximation for long-range coulomb",
+                f"  G vector (1/distance) = {self.g_ewald:.8g}", f"  grid = {' '.join(map(str, self.mesh))}",
                 f"  stencil order = {self.order}", f"  estimated absolute RMS force accuracy = {total:.8g}",
                 f"  estimated relative force accuracy = {total / self.two_charges:.8g}"]
 
@@ -151,7 +172,7 @@ class PPPMTerm(KSpaceTerm):
     def make_kernel(self, level):
         if level == 2 and not self.shares.size:
             self._make_shares()
-        return pppm.kernel(level, self.solver.order)
+        return pppm.kernel(level, self.solver.order, self.solver.ad)
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads
@@ -162,12 +183,14 @@ class PPPMTerm(KSpaceTerm):
         self.images = (np.abs(s.upright) @ (s.g_ewald / (math.pi * self.numbers)) * (-math.log(1e-7)) ** 0.25).astype(np.int64)
         self.wrap = np.arange(3 * max(s.mesh) + 8)[None] % self.numbers[:, None]
         self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
+        self.lengths, self.own = np.zeros(3), np.zeros((3, 2))
         self.brick, self.density = np.zeros((nth, nx, ny, nz + s.order)), np.zeros((nx, ny, nz))
-        self.wave, self.waves = np.zeros((nx, ny, nh), complex), np.zeros((3, nx, ny, nh), complex)
-        self.field, self.packed = np.zeros((3, nx, ny, nz)), np.zeros((nx, ny, (nz + s.order) * 3))
+        m = 1 if s.ad else 3
+        self.wave, self.waves = np.zeros((nx, ny, nh), complex), np.zeros((m, nx, ny, nh), complex)
+        self.field, self.packed = np.zeros((m, nx, ny, nz)), np.zeros((nx, ny, (nz + s.order) * m))
         self.shares, self.share_field = np.zeros((0, nx, ny, nh), complex), np.zeros((0, nx, ny, nz))
         self.sums = np.zeros((nth, 8))
-        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, 3 * s.order))
+        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * s.order))
         self.forward, self.backward, self.backward_shares = map(Callback, self._transforms(nth))
 
     def _make_shares(self) -> None:
@@ -192,6 +215,7 @@ class PPPMTerm(KSpaceTerm):
             self.base, self.weight = np.zeros((slots, 3), np.int64), np.zeros((slots, self.weight.shape[1]))
 
     def of_solver(self, engine, tid):
-        return (self.numbers, self.pieces, self.aliases, self.wrap, self.images, self.held, self.inverse, self.green, self.brick,
-                self.density, self.wave, self.waves, self.field, self.packed, self.shares, self.share_field, self.base, self.weight,
-                self.sums, self.constants, self.forward.address, self.backward.address, self.backward_shares.address)
+        return (self.numbers, self.pieces, self.aliases, self.wrap, self.images, self.held, self.lengths, self.own, self.inverse,
+                self.green, self.brick, self.density, self.wave, self.waves, self.field, self.packed, self.shares, self.share_field,
+                self.base, self.weight, self.sums, self.constants, self.forward.address, self.backward.address,
+                self.backward_shares.address)

@@ -179,6 +179,8 @@ def _list(e: Engine) -> list[Item]:
 
 
 def _term(e: Engine, t) -> Item:
+    if t.category == "kspace":
+        return Item(f"k-space {t.solver.style}", "; ".join(line.strip() for line in t.solver.lines()[2:]), "kspace_style")
     style = t.style
     if isinstance(t, BondedTerm):
         function = "minimum image" if e.periodic.any() else "no images: nothing is periodic"
@@ -239,7 +241,8 @@ def _absent(e: Engine) -> list[Item]:
     elif not any(t.style.charged for t in e.pair_terms + e.many_terms):
         why = "no pair style in use has one" + (", the charges act on nothing" if s.has_charge else "")
         out.append(Item("Coulomb part", "", why, "a pair_style with coul in its name"))
-    out.append(Item("k-space", "", "no style has a long-range part", "kspace_style"))
+    if e.solver is None:
+        out.append(Item("k-space", "", "no style has a long-range part", "kspace_style and a pair_style with coul/long in its name"))
     for category, n in s.topology.counts().items():
         if not any(isinstance(t, BondedTerm) and t.category == category for t in e.terms):
             plural, style = f"{category}s", inter.style_name(category)

@@ -8,7 +8,9 @@ import time
 
 import numpy as np
 
+from asemd import units as unit_styles
 from asemd.errors import InputError
+from asemd.kspace import solve
 from asemd.pairing import complete
 from asemd.topology import Topology
 
@@ -87,8 +89,11 @@ def report_mixing(session, command: str = "") -> None:
         return
     try:
         terms = complete(scene.interactions, n)
+        solver = solve(scene.system, scene.interactions, unit_styles.get(scene.system.units))
     except InputError:      # what is missing is told when a run needs it
         return
+    if solver is not None and (lines := solver.lines()):
+        session.print("\n".join(lines))
     if not scene.interactions.hybrid["pair"] and uses[0].style.many:
         return
     mixed = sum(pair not in use.coeff for use, filled in terms if _mixes_energies(use.style) for pair in filled)
