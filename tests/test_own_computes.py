@@ -45,6 +45,8 @@ CASES = {
     "atoms leave, press": ([f"fix 1 all npt {T} iso {P}", COUNTED, *LEAVE], BOTH),
     "atoms leave, berendsen": ([NVE, "fix 1 some temp/berendsen 300 400 20", COUNTED, *LEAVE], TEMP),
     "atoms leave, csvr": ([NVE, "fix 1 some temp/csvr 300 400 20 77", COUNTED, *LEAVE], TEMP),
+    "atoms leave, csld": (["group last id 61:64", "delete_bonds last bond 1 remove", NVE, "fix 1 some temp/csld 300 400 20 77", COUNTED,
+                           "region every block INF INF INF INF INF INF", "fix 4 last evaporate 5 1 every 77"], TEMP),
     "dynamic group": ([*MOVING, f"fix 1 in nvt {T}", COUNTED], TEMP),
     "dynamic group, berendsen": ([*MOVING, NVE, "fix 1 in temp/berendsen 300 400 20", COUNTED], TEMP),
     "dynamic group, csvr": ([*MOVING, NVE, "fix 1 in temp/csvr 300 400 20 77", COUNTED], TEMP),

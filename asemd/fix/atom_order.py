@@ -29,13 +29,15 @@ class AtomOrder:
         self.ids = np.zeros(0, np.int64) if order is None else np.array(order, np.int64)
 
     def rows(self, system) -> np.ndarray:
-        """Rows of the atoms in this order; atoms that came otherwise are the last ones."""
-        ids = self.ids[np.isin(self.ids, system.id)]
-        self.ids = np.concatenate([ids, system.id[~np.isin(system.id, ids)]])
+        """Rows of the atoms in this order; atoms that came otherwise are the last ones, and those that went have left their places."""
+        self.remove(self.ids[~np.isin(self.ids, system.id)])
+        self.ids = np.concatenate([self.ids, system.id[~np.isin(system.id, self.ids)]])
         return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
 
     def remove(self, gone) -> None:
         """Atoms of these IDs leave; the last ones take their places, as in LAMMPS."""
+        if not len(gone):
+            return
         left = self.ids.tolist()
         for k in np.flatnonzero(np.isin(self.ids, gone))[::-1].tolist():
             left[k] = left[-1]
@@ -110,7 +112,7 @@ class ListOrder(AtomOrder):
         self.place = np.zeros(0, np.int64)
 
     def begin(self, loop) -> None:
-        """A run begins, or atoms left or joined."""
+        """A run begins."""
         self.due = loop.step
         self.listed(loop)
 

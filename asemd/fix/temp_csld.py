@@ -76,7 +76,7 @@ class TempCSLD(Thermostat):
 
     def resize(self, loop) -> None:
         if len(self.storage.place) != loop.system.n:
-            self.storage.begin(loop)
+            self.storage.listed(loop)
 
     def post_neighbor(self, loop) -> None:
         self.storage.listed(loop)
