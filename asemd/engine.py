@@ -57,7 +57,7 @@ class Engine:
         self.bits: dict[str, int] = {"all": 1}
         self.result: Result | None = None
         self.units = unit_styles.get(system.units)
-        self.qqr2e = self.units.qqr2e / interactions.dielectric
+        self.qqr2e, self.shares = self.units.qqr2e / interactions.dielectric, None      # shares: room of `asemd.atom_shares`
         self.update(system)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
@@ -363,9 +363,9 @@ class Engine:
         store_torques(s, self.ns, y)
         self.bonds.carry_back()
 
-    def per_atom(self, result: Result) -> Result:
-        """Add each atom's share of energy and virial to `result`; runs the per-atom kernels, once."""
-        return atom_shares.add(self, result)
+    def per_atom(self, result: Result, needs=("energies", "virials")) -> Result:
+        """Add each atom's share of energy and virial to `result`, those of them that `needs` names; runs kernels for what is not there."""
+        return atom_shares.add(self, result, "energies" in needs, "virials" in needs)
 
     def move(self, x: np.ndarray) -> None:
         """Forces at other positions of the same atoms in the same cell; keeps the list while nobody has moved by half the skin.
@@ -393,7 +393,7 @@ class Engine:
         self.load()
         self.forces(True)
         result = self.collect()
-        return self.per_atom(result) if energies or virials else result
+        return self.per_atom(result, ["energies"] * energies + ["virials"] * virials)
 
 
 __all__ = ["Engine", "Result", "Settings", "Snapshot"]

@@ -61,7 +61,7 @@ class Loop:
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
         self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
-        self._chunk, self.halted = 100, False
+        self._chunk, self.halted, self._in_sync = 100, False, None       # whether the system has what the slots have; None: not known
         self.watchdog = Watchdog(self)
 
     def group_bit(self, name: str) -> int:
@@ -203,7 +203,7 @@ class Loop:
             result = self._collect()
             watchdog.energy(result)
         if energies or virials:
-            self.engine.per_atom(result)
+            self.engine.per_atom(result, ["energies"] * energies + ["virials"] * virials)
         return result
 
     def _end(self, needs: set[str]) -> None:
@@ -211,11 +211,13 @@ class Loop:
         began = time.perf_counter()
         if needs:
             self._collect()
-            if needs & {"energies", "virials"}:
-                self.engine.per_atom(self.result)
+            self.engine.per_atom(self.result, needs)
+            self._in_sync = True
         for n in self._ends:
             if self.fixes[n].next_end(self.step - 1) == self.step:
+                self._in_sync = bool(self._in_sync) if self.fixes[n].observes else None
                 self.fixes[n].end_of_step(self)
+        self._in_sync = None
         self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _segment(self, last: int, energy: bool) -> None:
@@ -353,16 +355,17 @@ class Loop:
         began = time.perf_counter()
         if needs:
             self._collect()
-            if needs & {"energies", "virials"}:
-                e.per_atom(self.result)
+            e.per_atom(self.result, needs)
         for name in ("post_force", "final_integrate", "end_of_step"):
             self._hook(name)
         e.timings["Modify"] += time.perf_counter() - began
 
     # ---- exchange with the system -------------------------------------------------------------------------------------------------------
     def sync_out(self) -> None:
-        """Positions, velocities and forces of the slots into the system."""
-        self.engine.store()
+        """Positions, velocities and forces of the slots into the system; observers of a step one after the other share them."""
+        if not self._in_sync:
+            self.engine.store()
+            self._in_sync = self._in_sync is not None or None
 
     def evaluate(self) -> Result:
         """Energy, forces and virial at the system's positions, with what the fixes do to forces; the list stays while it serves."""

@@ -261,8 +261,7 @@ class RespaLoop(Loop):
         self._total()
         if needs:
             self._collect()
-            if needs & {"energies", "virials"}:
-                self.engine.per_atom(self.result)
+            self.engine.per_atom(self.result, needs)
         self._hook("end_of_step")
 
     def _recurse(self, level: int, energy: bool) -> None:

@@ -243,7 +243,7 @@ class System:
 
     def atom_masses(self) -> np.ndarray:
         """(n,) masses; nan where none is set."""
-        return self.rmass if self.rmass is not None else self.mass[self.type]
+        return self.rmass if self.rmass is not None else self.mass.take(self.type)
 
     def check_masses(self) -> None:
         """Make sure that every atom type has a mass.

@@ -143,6 +143,7 @@ class PairTerm(FactorTerm):
 
     category = "pair"
     piece = ""
+    share_room: tuple[np.ndarray, np.ndarray] | None = None      # see `asemd.atom_shares`
 
     def __init__(self, term, single: bool):
         self.owner, self.style, self.tables, self.single = term, term.style, term.tables, single
@@ -153,7 +154,8 @@ class PairTerm(FactorTerm):
 
     def kernel(self, energy, per_atom, virial=False):
         return self._scaled(pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude,
-                                                        single=self.single, outdated=self.outdated, piece=self.piece, virial=virial)[0],
+                                                        single=self.single, outdated=self.outdated, piece=self.piece,
+                                                        virial=virial or energy and not self.single)[0],
                             energy or virial)
 
     def virial_kernel(self):

@@ -145,6 +145,12 @@ def test_per_atom_shares_add_up(name, mode):
         for category, v in result.virials_of.items():
             assert np.allclose(v.sum(0), result.virial_of[category], rtol=0, atol=1e-10), category
         assert np.array_equal(engine.collect().forces, forces)        # the forces are untouched
+        for first, second in (("energies", "virials"), ("virials", "energies")):
+            alone = engine.per_atom(engine.collect(), [first])
+            assert getattr(alone, second) is None
+            engine.per_atom(alone, [second])
+            for name in ("energies", "virials"):
+                np.testing.assert_allclose(getattr(alone, name), getattr(result, name), rtol=0, atol=1e-12 * np.abs(virial).max())
 
 
 @BOTH

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.kernels import observe
 
 DISCARD = ("yes", "no", "mixed")
 
@@ -95,19 +96,26 @@ class Layers:
 
     def assign(self, frame: Frame, bound, discard: str) -> tuple[np.ndarray, np.ndarray, int]:
         """(n,) layer of each atom from 0, (n,) whether it has one, and how many layers there are."""
-        lo, count = self.fit(frame, bound)
-        at = np.floor((frame.x[:, self.axis] - lo) / self.delta).astype(int)
-        known = np.ones(len(at), bool)
-        keep_below, keep_above = (discard == "no" or discard == "mixed" and not isinstance(b, float) for b in bound)
-        if not keep_below:
-            known &= at >= 0
-        if not keep_above:
-            known &= at < count
-        return np.clip(at, 0, max(count - 1, 0)), known, count
+        return numbers([self], frame, [bound], discard)
 
     def middles(self, frame: Frame, bound) -> np.ndarray:
         lo, count = self.fit(frame, bound)
         return lo + (np.arange(count) + 0.5) * self.delta
+
+
+def numbers(layers: list[Layers], frame: Frame, bounds: list, discard: str) -> tuple[np.ndarray, np.ndarray, int]:
+    """(n,) bin of each atom in layers along several axes, the last one varies fastest; (n,) whether it has one; how many there are."""
+    found = [layer.fit(frame, bound) for layer, bound in zip(layers, bounds)]
+    counts = np.array([count for _, count in found])
+    keep = np.array([[discard == "no" or discard == "mixed" and not isinstance(b, float) for b in bound] for bound in bounds])
+    system, box = frame.system, frame.system.box
+    aligned = not (frame.reduced and box.triclinic)
+    x, edges = system.x if aligned else box.fractional(system.x), np.diag(box.cell).copy()
+    at, known = np.empty(len(x), np.int64), np.empty(len(x), bool)
+    observe.grid(x, box.origin, edges, frame.reduced and aligned, np.asarray(frame.periodic), frame.lo, frame.hi,
+                 np.array([layer.axis for layer in layers]), np.array([first for first, _ in found], float),
+                 np.array([layer.delta for layer in layers], float), counts, keep, at, known)
+    return at, known, int(np.prod(counts))
 
 
 class Grid:
@@ -117,11 +125,7 @@ class Grid:
         self.layers, self.directions = layers, len(layers)
 
     def assign(self, frame: Frame, bounds, discard: str, pbc: bool) -> tuple[np.ndarray, np.ndarray, int]:
-        at, known, total = np.zeros(len(frame.x), int), np.ones(len(frame.x), bool), 1
-        for layer in self.layers:
-            k, inside, count = layer.assign(frame, bounds[layer.axis], discard)
-            at, known, total = at * count + k, known & inside, total * count
-        return at, known, total
+        return numbers(self.layers, frame, [bounds[layer.axis] for layer in self.layers], discard)
 
     def middles(self, frame: Frame, bounds) -> np.ndarray:
         """(bins, directions)."""

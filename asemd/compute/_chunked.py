@@ -60,7 +60,8 @@ class Chunked(Compute):
     def index(self, state) -> tuple[np.ndarray, int]:
         """(n,) the chunk of each atom of the group, 0 for none, and how many there are."""
         at, count = self.chunks.assign(state)
-        return np.where(state.mask(self.group), at, 0), count
+        mask = state.mask(self.group)
+        return at if mask.all() else np.where(mask, at, 0), count
 
     def pieces(self, state) -> Pieces:
         return Pieces(state.system, *self.index(state))

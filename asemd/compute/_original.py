@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.kernels import observe
+
 
 class Original:
     """Values (n, ...) of the atoms of a system at some time.
@@ -23,9 +25,13 @@ class Original:
         at = np.minimum(np.searchsorted(self.id, system.id), max(len(self.id) - 1, 0))
         return at, self.id[at] == system.id if len(self.id) else np.zeros(system.n, bool)
 
+    def holds(self, system) -> bool:
+        """Whether the atoms are those of then, in the same order: then `rows` are theirs."""
+        return np.array_equal(system.id, self.given)
+
     def of(self, system, fresh: np.ndarray) -> np.ndarray:
         """By atom row now, not to be written to; atoms that were not there then have what `fresh` says."""
-        if np.array_equal(system.id, self.given):
+        if self.holds(system):
             return self.rows
         at, known = self._places(system)
         out = np.array(fresh)
@@ -39,4 +45,6 @@ class Original:
 
 def unwrapped(system) -> np.ndarray:
     """(n, 3) positions without periodic boundaries."""
-    return system.box.unwrap(system.x, system.image)
+    out = np.empty((system.n, 3))
+    observe.unwrap(system.x, system.image, system.box.cell, out)
+    return out

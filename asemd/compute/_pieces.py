@@ -5,6 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
+from asemd.compute._original import unwrapped
+from asemd.kernels import observe
+
 SINGULAR = 1e-6     # determinants and relative moments of inertia below: about that axis nothing turns
 
 
@@ -22,20 +25,35 @@ class Pieces:
 
     def __init__(self, system, index: np.ndarray, count: int = 1):
         self.system, self.count = system, count
-        self.rows = np.flatnonzero(index)
-        self.at = np.asarray(index)[self.rows].astype(int) - 1
-        self.m = system.atom_masses()[self.rows]
+        self._index, self._whole = index, np.count_nonzero(index) == len(index)
+        self.at = self._mine(np.asarray(index)).astype(np.int64, copy=False) - 1
+        self.m = self._mine(system.atom_masses())
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """(m,) the atoms of all pieces."""
+        return np.flatnonzero(self._index)
+
+    def _mine(self, values: np.ndarray) -> np.ndarray:
+        """Those of the atoms `rows`."""
+        return values if self._whole else values[self.rows]
 
     def sum(self, values: np.ndarray) -> np.ndarray:
         """(m,) or (m, k) values of the atoms `rows`, added up for each piece."""
-        if values.ndim == 1:
-            return np.bincount(self.at, values, self.count)
-        return np.stack([np.bincount(self.at, column, self.count) for column in values.T], axis=1)
+        out = np.zeros((self.count, *values.shape[1:]))
+        (observe.total if values.ndim == 1 else observe.totals)(self.at, np.ascontiguousarray(values, float), out)
+        return out
 
     def mean(self, values: np.ndarray) -> np.ndarray:
-        """Averages weighted by mass; 0 for pieces without atoms."""
-        total = self.mass[:, None]
-        return np.divide(self.sum(self.m[:, None] * values), total, out=np.zeros((self.count, values.shape[1])), where=total > 0.0)
+        """Averages (count, 3) of vectors weighted by mass; 0 for pieces without atoms."""
+        out = np.zeros((self.count, 3))
+        observe.weighted(self.at, self.m, np.ascontiguousarray(values), out)
+        return self._by_mass(out)
+
+    def _by_mass(self, sums: np.ndarray) -> np.ndarray:
+        """Sums of each piece divided by its mass."""
+        mass = self.mass.reshape(-1, *(1,) * (sums.ndim - 1))
+        return np.divide(sums, mass, out=np.zeros_like(sums), where=mass > 0.0)
 
     @cached_property
     def mass(self) -> np.ndarray:
@@ -48,12 +66,11 @@ class Pieces:
 
     @cached_property
     def x(self) -> np.ndarray:
-        system = self.system
-        return system.box.unwrap(system.x[self.rows], system.image[self.rows])
+        return self._mine(unwrapped(self.system))
 
     @property
     def v(self) -> np.ndarray:
-        return self.system.v[self.rows]
+        return self._mine(self.system.v)
 
     @cached_property
     def com(self) -> np.ndarray:
@@ -71,8 +88,9 @@ class Pieces:
 
     def gyration(self) -> np.ndarray:
         """(count, 3, 3) tensors of the squared radius of gyration."""
-        d = self.d
-        return self.mean((d[:, :, None] * d[:, None, :]).reshape(-1, 9)).reshape(-1, 3, 3)
+        out = np.zeros((self.count, 3, 3))
+        observe.moments(self.at, self.m, self.x, self.com, out)
+        return self._by_mass(out)
 
     def inertia(self) -> np.ndarray:
         """(count, 3, 3) tensors of inertia."""
@@ -85,7 +103,7 @@ class Pieces:
         return self.sum(self.m[:, None] * np.cross(self.d, self.v))
 
     def torque(self) -> np.ndarray:
-        return self.sum(np.cross(self.d, self.system.f[self.rows]))
+        return self.sum(np.cross(self.d, self._mine(self.system.f)))
 
     def omega(self) -> np.ndarray:
         """(count, 3) angular velocities; zero about axes without inertia."""

@@ -17,7 +17,6 @@ from asemd.compute.stress_atom import StressAtom
 from asemd.errors import InputError
 
 NINE = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2), (1, 0), (2, 0), (2, 1))      # xx yy zz xy xz yz yx zx zy
-WITHIN_SIX = [0, 1, 2, 3, 4, 5, 3, 4, 5]
 
 
 class CentroidStressAtom(StressAtom):
@@ -41,16 +40,14 @@ class CentroidStressAtom(StressAtom):
 
     def per_atom(self, state) -> np.ndarray:
         """(n, 9) xx yy zz xy xz yz yx zx zy; zero outside the group."""
-        six = StressAtom("all", self.temperature, [t for t in self.terms if t in ("ke", "pair", "bond", "fix")] or ["ke"])
-        total = np.zeros((state.system.n, 9))
-        if {"ke", "pair", "bond", "fix"} & set(self.terms):
-            total += six.per_atom(state)[:, WITHIN_SIX]
+        total = super()._of(state, [t for t in self.terms if t in ("ke", "pair", "bond", "fix")], 9)
         for category in ("angle", "dihedral", "improper"):
             if category in self.terms:
-                total -= state.units.nktv2p * self._of(state, category)
-        return np.where(state.mask(self.group)[:, None], total, 0.0)
+                total -= state.units.nktv2p * self._of_items(state, category)
+        mask = state.mask(self.group)
+        return total if mask.all() else np.where(mask[:, None], total, 0.0)
 
-    def _of(self, state, category: str) -> np.ndarray:
+    def _of_items(self, state, category: str) -> np.ndarray:
         """(n, 9) virials of all items of a category."""
         system, n = state.system, state.system.n
         interactions = state.engine.interactions

@@ -19,6 +19,7 @@ from asemd.compute._bins import Frame
 from asemd.compute._chunk_words import Settings, read, write
 from asemd.compute._original import Original
 from asemd.errors import InputError
+from asemd.kernels import observe
 
 
 class ChunkAtom(Compute):
@@ -87,19 +88,21 @@ class ChunkAtom(Compute):
     def numbers(self, state) -> tuple[np.ndarray, np.ndarray, int]:
         """(n,) number of each atom as its style has it, (n,) whether it can be in a chunk, and how many numbers there are."""
         s, system = self.settings, state.system
-        known = state.mask(self.group).copy()
+        known = state.mask(self.group)
         if s.region is not None:
-            known &= s.region.inside(system.x)
+            known = known & s.region.inside(system.x)
         if s.bins:
             at, inside, total = s.bins.assign(Frame(system, s.units == "reduced"), s.bounds, s.discard, s.pbc)
-            return at + 1, known & inside, total
+            at += 1
+            inside &= known
+            return at, inside, total
         if s.style == "type":
-            return system.type.astype(int), known, system.counts["ntypes"]
+            return system.type.astype(np.int64), known, system.counts["ntypes"]
         if s.style == "molecule":
-            at = system.molecule.astype(int)
+            at = system.molecule.astype(np.int64, copy=False)
         else:
-            at = np.trunc(s.source.per_atom(state)).astype(int)
-        return at, known, max(int(at[known].max(initial=0)), 0)
+            at = np.trunc(s.source.per_atom(state)).astype(np.int64)
+        return at, known, max(int((at if known.all() else at[known]).max(initial=0)), 0)
 
     def _count(self, at: np.ndarray, known: np.ndarray, total: int) -> tuple[int, np.ndarray | None]:
         """How many chunks there are, and the numbers that they are if some are left out."""
@@ -134,7 +137,9 @@ class ChunkAtom(Compute):
             at = np.where(found, place + 1, count if s.discard == "no" and not s.bins else 0)
         elif s.discard == "no" and not s.bins:
             at = np.where((at < 1) | (at > count), count, at)
-        at = np.where(known & (at >= 1) & (at <= count), at, 0)
+        chunk = np.empty(len(at), np.int64)
+        observe.within(at, known, count, chunk)
+        at = chunk
         if s.ids in ("once", "nfreq"):
             self.assigned = Original(state.system, at)
         return at, count

@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute.centroid_stress_atom import NINE
 from asemd.compute.ke_atom import KEAtom
 from asemd.compute.pe_atom import PEAtom
 from asemd.compute.stress_atom import StressAtom
 from asemd.errors import InputError, nearest
+from asemd.kernels import observe
 from asemd.words import exactly
 
 ROLES = (("ke/atom", KEAtom), ("pe/atom", PEAtom), ("stress/atom", StressAtom))
@@ -61,12 +61,7 @@ class HeatFlux(Compute):
     def vector(self, state) -> np.ndarray:
         """(6,) flux, then its part of carried energy."""
         mask, v = state.mask(self.group), state.system.v
-        energy, stress = self.ke.per_atom(state) + self.pe.per_atom(state), self.stress.per_atom(state)
-        carried = (energy[mask, None] * v[mask]).sum(axis=0)
-        full = np.zeros((state.system.n, 3, 3))
-        for c, (a, b) in enumerate(NINE[:stress.shape[1]]):
-            full[:, a, b] = stress[:, c]
-            if stress.shape[1] == 6:
-                full[:, b, a] = stress[:, c]
-        pushed = np.einsum("iab,ib->a", full[mask], v[mask]) / state.units.nktv2p
-        return np.concatenate([carried - pushed, carried])
+        stress, sums = self.stress.per_atom(state), np.empty(6)
+        lower = (3, 4, 5) if stress.shape[1] == 6 else (6, 7, 8)        # yx zx zy
+        observe.flux(v, self.ke.per_atom(state), self.pe.per_atom(state), stress, lower, mask, sums)
+        return np.concatenate([sums[:3] - sums[3:] / state.units.nktv2p, sums[:3]])

@@ -15,6 +15,7 @@ from asemd.compute import Compute
 from asemd.compute._original import Original, unwrapped
 from asemd.compute._pieces import Pieces
 from asemd.errors import InputError, nearest
+from asemd.kernels import observe
 from asemd.words import take, yes_no
 
 
@@ -81,6 +82,12 @@ class MSD(Compute):
 
     def vector(self, state) -> np.ndarray:
         """(4,) mean squares along x, y, z and in all."""
-        d = self.displacements(state)
-        squares = np.einsum("ia,ia->a", d, d) / max(len(d), 1)
+        system, mask = state.system, state.mask(self.group)
+        if self.average or self.original is None or not self.original.holds(system):
+            d = self.displacements(state)
+            squares, n = np.einsum("ia,ia->a", d, d), len(d)
+        else:
+            squares, n, drift = np.empty(3), np.count_nonzero(mask), Pieces(system, mask).com[0] if self.com else np.zeros(3)
+            observe.displacement(system.x, system.image, system.box.cell, drift, self.original.rows, mask, squares)
+        squares /= max(n, 1)
         return np.array([*squares, squares.sum()])

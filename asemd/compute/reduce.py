@@ -113,7 +113,8 @@ class Reduce(Compute):
         if self.of == "local":
             return [np.asarray(i.local(state)) for i in self.inputs]
         mask = self.chosen(state)
-        return [i.per_atom(state)[mask] for i in self.inputs]
+        values = [i.per_atom(state) for i in self.inputs]
+        return values if mask.all() else [v[mask] for v in values]
 
     def _all(self, state) -> np.ndarray:
         columns = self._values(state)

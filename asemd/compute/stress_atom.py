@@ -14,8 +14,9 @@ import numpy as np
 
 from asemd.compute import Compute
 from asemd.compute.pressure import VIRIAL, find_temperature, read_terms
-from asemd.compute.temp import COMPONENTS, Temp
+from asemd.compute.temp import Temp
 from asemd.errors import InputError
+from asemd.kernels import observe
 
 
 class StressAtom(Compute):
@@ -40,7 +41,7 @@ class StressAtom(Compute):
 
     def __init__(self, group: str = "all", temperature: Temp | None = None, terms=None):
         super().__init__(group)
-        self.words, self.terms = tuple(terms or ()), read_terms(terms, f"compute {self.style}")
+        self.words, self.terms = tuple(terms or ()), read_terms(terms or (), f"compute {self.style}")
         self.temperature = temperature
         self.needs = frozenset({"virial", "virials"}) if set(self.terms) - {"ke"} else frozenset()
 
@@ -58,17 +59,20 @@ class StressAtom(Compute):
 
     def per_atom(self, state) -> np.ndarray:
         """(n, 6) xx yy zz xy xz yz; zero outside the group."""
-        total = np.zeros((state.system.n, 6))
-        if "ke" in self.terms:
-            mass, v = state.system.atom_masses(), state.system.v if self.temperature is None else self.temperature.remove_bias(state)
-            total += state.units.mvv2e * np.stack([mass * v[:, i] * v[:, j] for i, j in COMPONENTS], axis=1)
-        if set(VIRIAL) <= set(self.terms):
-            total += state.result.virials
+        return self._of(state, self.terms, 6)
+
+    def _of(self, state, terms, columns: int) -> np.ndarray:
+        """(n, columns): the sixth column is followed by yx zx zy if there are nine."""
+        system, u, out = state.system, state.units, np.empty((state.system.n, columns))
+        parts = [state.result.virials_of[term] for term in terms if term in state.result.virials_of]
+        if set(VIRIAL) <= set(terms):
+            total = state.result.virials
         else:
-            of = state.result.virials_of
-            total += sum((of[term] for term in self.terms if term in of), np.zeros_like(total))
-        if "fix" in self.terms:
+            total = parts[0] if len(parts) == 1 else sum(parts, np.zeros((system.n, 6)))
+        if "fix" in terms:
             for fix in state.fixes:
                 if fix.thermo_virial:
-                    total += fix.virials(state)
-        return np.where(state.mask(self.group)[:, None], -state.units.nktv2p * total, 0.0)
+                    total = total + fix.virials(state)
+        v = system.v if self.temperature is None else self.temperature.remove_bias(state)
+        observe.stress(v, system.atom_masses(), total, state.mask(self.group), u.mvv2e if "ke" in terms else 0.0, u.nktv2p, out)
+        return out

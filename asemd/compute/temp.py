@@ -18,7 +18,7 @@ import numpy as np
 
 from asemd.compute import Compute
 from asemd.errors import InputError
-from asemd.result import COMPONENTS
+from asemd.kernels import observe
 
 
 class Temp(Compute):
@@ -74,16 +74,19 @@ class Temp(Compute):
         dof = self.dof(state)
         if dof <= 0.0:
             return 0.0
-        # einsum, not BLAS: its threads take longer to start than the sum
-        v = self.remove_bias(state)
-        twice = np.einsum("i,ij,ij->", self._weights(state), v, v)
-        return float(state.units.mvv2e / (dof * state.units.boltz) * twice)
+        return float(state.units.mvv2e / (dof * state.units.boltz) * self._sums(state)[:3].sum())
 
     def _weights(self, state) -> np.ndarray:
         """(n,) masses, 0 outside the group."""
-        return np.where(state.mask(self.group), state.system.atom_masses(), 0.0)
+        mask, masses = state.mask(self.group), state.system.atom_masses()
+        return masses if mask.all() else np.where(mask, masses, 0.0)
+
+    def _sums(self, state) -> np.ndarray:
+        """(6,) sum of m v v: xx yy zz xy xz yz."""
+        out = np.empty(6)
+        observe.kinetic(self.remove_bias(state), self._weights(state), out)
+        return out
 
     def vector(self, state) -> np.ndarray:
         """(6,) sum of m v v in energy units: xx yy zz xy xz yz."""
-        w, v = self._weights(state), self.remove_bias(state)
-        return state.units.mvv2e * np.array([np.einsum("i,i,i->", w, v[:, i], v[:, j]) for i, j in COMPONENTS])
+        return state.units.mvv2e * self._sums(state)

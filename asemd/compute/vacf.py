@@ -12,6 +12,7 @@ import numpy as np
 
 from asemd.compute import Compute
 from asemd.compute._original import Original
+from asemd.kernels import observe
 
 
 class VACF(Compute):
@@ -36,5 +37,7 @@ class VACF(Compute):
         system, mask = state.system, state.mask(self.group)
         if self.original is None:
             self.original = Original(system, system.v)
-        products = (self.original.of(system, system.v) * system.v)[mask].sum(axis=0) / max(np.count_nonzero(mask), 1)
+        products = np.empty(3)
+        observe.product(self.original.of(system, system.v), system.v, mask, products)
+        products /= max(np.count_nonzero(mask), 1)
         return np.array([*products, products.sum()])

@@ -72,6 +72,8 @@ class Fix:
         True if it moves atoms (two of these on one atom are warned about).
     needs_atoms : bool
         True if a run must not begin with a group that is empty.
+    observes : bool
+        True if it changes nothing of the system.
     minimizes : bool
         True if its post_force acts during minimisation too.
     ecouple : bool
@@ -116,6 +118,7 @@ class Fix:
     integrates: ClassVar[bool] = False
     needs_atoms: ClassVar[bool] = False
     minimizes: ClassVar[bool] = False
+    observes: ClassVar[bool] = False
     ecouple: ClassVar[bool] = False
     restarts: ClassVar[tuple[str, ...]] = ("global",)
     levels: ClassVar[str] = ""

@@ -73,7 +73,7 @@ class AveAtom(Sampled):
             self._sum[:] = 0.0
         mask = snapshot.mask(self.group)
         for k, value in enumerate(self.values):
-            self._sum[mask, k] += value.per_atom(snapshot)[mask]
+            np.add(self._sum[:, k], value.per_atom(snapshot), out=self._sum[:, k], where=mask)
 
     def conclude(self, step: int) -> None:
         self._mean[:] = self._sum / self.repeat

@@ -21,6 +21,7 @@ from asemd.fix import sampled
 from asemd.fix.output_file import OutputFile
 from asemd.fix.sampled import Sampled, Window
 from asemd.fix.values import Value, expand, given, read
+from asemd.kernels import observe
 from asemd.words import choice, number, take, whole
 
 WORDS = ("vx", "vy", "vz", "fx", "fy", "fz")
@@ -122,29 +123,31 @@ class AveChunk(Sampled):
             self.chunks.hold(snapshot)
             self.holding = True
         at, chunks = self.chunks.assign(snapshot)
-        rows = np.flatnonzero((at > 0) & snapshot.mask(self.group))
-        at = at[rows] - 1
-        atoms = np.bincount(at, minlength=chunks).astype(float)
-        now = np.stack([atoms if v.word == "density/number" else np.bincount(at, self._atoms(v, snapshot, rows), chunks)
-                        for v in self.values], axis=1)
+        mask = snapshot.mask(self.group)
+        at = at - 1 if mask.all() else np.where(mask, at, 0) - 1
+        atoms = np.zeros(chunks)
+        observe.count(at, atoms)
+        now = np.stack([atoms if v.word == "density/number" else self._of_chunks(v, snapshot, at, chunks) for v in self.values], axis=1)
         now = np.stack([self._per_sample(v, column, atoms, snapshot) for v, column in zip(self.values, now.T)], axis=1)
         if self.count == 0:
             self._atoms_sum, self._sum = np.zeros(chunks), np.zeros((chunks, len(self.values)))
         self._atoms_sum, self._sum = self._atoms_sum + atoms, self._sum + now
         self._last = snapshot
 
-    def _atoms(self, value: Value, snapshot, rows: np.ndarray) -> np.ndarray:
-        """What each atom adds."""
-        system, u = snapshot.system, snapshot.units
+    def _of_chunks(self, value: Value, snapshot, at: np.ndarray, chunks: int) -> np.ndarray:
+        """(chunks,) the sum of a value over the atoms of each chunk."""
+        system, u, out = snapshot.system, snapshot.units, np.zeros(chunks)
         if value.kind != "special":
-            return value.per_atom(snapshot)[rows]
-        mass = system.atom_masses()[rows]
-        if value.id == "temp":
+            observe.total(at, np.ascontiguousarray(value.per_atom(snapshot)), out)
+        elif value.id == "temp":
             v = system.v
             if self.flow is not None:
                 v = np.where(snapshot.mask(self.flow.group)[:, None], self.flow.remove_bias(snapshot), v)
-            return u.mvv2e / u.boltz * mass * np.einsum("ia,ia->i", v, v)[rows]
-        return mass
+            observe.heat(at, system.atom_masses(), v, out)
+            out *= u.mvv2e / u.boltz
+        else:
+            observe.total(at, system.atom_masses(), out)
+        return out
 
     def _degrees(self, atoms: np.ndarray, samples: int, snapshot) -> np.ndarray:
         return self.cdof * samples + (snapshot.dimension if self.adof is None else self.adof) * atoms
@@ -226,9 +229,14 @@ class AveChunk(Sampled):
             self.file.rewind()
         text = f"{step} {len(self.result)}{self._total()}\n"
         integers = bool(self.chunks.settings.compress)
-        for k, (label, row) in enumerate(zip(self.labels, self.result), 1):
-            shown = "".join(f" {int(x)}" if integers and j == 0 else f" {x:g}" for j, x in enumerate(label))
-            text += f"  {k}{shown} {row[0]:g}" + "".join(self.format % x for x in row[1:]) + "\n"
+        width = self.labels.shape[1]
+        line = "  %d" + "".join(" %d" if integers and j == 0 else " %g" for j in range(width)) + " %g"
+        rows, columns = np.hstack([self.labels, self.result]).tolist(), len(self.values)
+        try:
+            line += self.format * columns + "\n"
+            text += "".join([line % (k, *row) for k, row in enumerate(rows, 1)])
+        except (TypeError, ValueError):
+            raise InputError(f"fix {self.id} (style {self.style}): format {self.format!r} does not show one number") from None
         self.file.write(text)
 
     def _total(self) -> str:

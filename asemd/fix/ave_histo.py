@@ -16,11 +16,13 @@ from asemd.fix import sampled
 from asemd.fix.output_file import OutputFile, plain
 from asemd.fix.sampled import Sampled, Window
 from asemd.fix.values import ATOM_WORDS, expand, read
+from asemd.kernels import observe
 from asemd.words import choice, number, take, whole
 
 KEYWORDS = {"mode": 1, "file": 1, "append": 1, "ave": sampled.ave_count, "start": 1, "beyond": 1, "overwrite": 0, "kind": 1,
             "title1": 1, "title2": 1, "title3": 1}
 BIG = 1.0e20
+BEYOND = ("ignore", "end", "extra")
 KINDS = {"global": "vector", "peratom": "per_atom", "local": "local"}
 
 
@@ -71,7 +73,7 @@ class AveHisto(Sampled):
         if self.weighted and len(self.values) != 2:
             raise InputError(f"{what} needs two values, what is counted and its weights, got {len(self.values)}")
         self.mode, self.kind = choice(mode, ("scalar", "vector"), f"{what} mode"), choice(kind, KINDS, f"{what} kind")
-        self.beyond = choice(beyond, ("ignore", "end", "extra"), f"{what} beyond")
+        self.beyond = choice(beyond, BEYOND, f"{what} beyond")
         self.lo, self.hi, self.inner = lo, hi, bins
         width = (hi - lo) / bins
         self.bins = bins + 2 * (beyond == "extra")
@@ -150,33 +152,19 @@ class AveHisto(Sampled):
             return value.vector(snapshot)
         if self.kind == "local":
             return value.local(snapshot)
-        return value.per_atom(snapshot)[snapshot.mask(self.group)]
+        mask = snapshot.mask(self.group)
+        return value.per_atom(snapshot) if mask.all() else value.per_atom(snapshot)[mask]
 
     def sample(self, snapshot) -> None:
         if self.count == 0:
             self._counts[:], self._stats[:] = 0.0, (0.0, 0.0, BIG, -BIG)
-        columns = [self._numbers(v, snapshot) for v in self.values]
+        columns = [np.ascontiguousarray(self._numbers(v, snapshot)) for v in self.values]
         if self.weighted and len(columns[0]) != len(columns[1]):
             raise InputError(f"fix {self.id} (style {self.style}): {len(columns[0])} values but {len(columns[1])} weights")
+        weights = columns[1] if self.weighted else np.zeros(0)
         for values in columns[:1] if self.weighted else columns:
-            self._bin(values, columns[1] if self.weighted else np.ones(len(values)))
-
-    def _bin(self, values: np.ndarray, weights: np.ndarray) -> None:
-        if not len(values):
-            return
-        self._stats[2], self._stats[3] = min(self._stats[2], values.min()), max(self._stats[3], values.max())
-        low, high = values < self.lo, values > self.hi
-        at = np.clip(((np.where(low | high, self.lo, values) - self.lo) * (1.0 / self.width)).astype(np.int64), 0, self.inner - 1)
-        if self.beyond == "ignore":
-            inside = ~(low | high)
-            self._stats[1] += weights[~inside].sum()
-            at, weights = at[inside], weights[inside]
-        elif self.beyond == "end":
-            at = np.where(low, 0, np.where(high, self.inner - 1, at))
-        else:
-            at = np.where(low, 0, np.where(high, self.bins - 1, at + 1))
-        self._stats[0] += weights.sum()
-        self._counts += np.bincount(at, weights, self.bins)
+            observe.histogram(values, weights, self.lo, self.hi, 1.0 / self.width, self.inner, BEYOND.index(self.beyond), self._counts,
+                              self._stats)
 
     def conclude(self, step: int) -> None:
         now = np.concatenate([self._stats[:2], self._counts])

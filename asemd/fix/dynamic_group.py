@@ -10,6 +10,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.fix import Fix
+from asemd.kernels import rows
 
 
 class DynamicGroup(Fix):
@@ -55,23 +56,33 @@ class DynamicGroup(Fix):
             mask &= np.asarray(system.extra[self.property]).reshape(system.n) != 0
         return mask
 
+    def next_step(self, step: int) -> int:
+        return (step // self.every + 1) * self.every
+
     def setup(self, loop):
-        self.choose(loop)
+        self.choose(loop, False)
 
     def post_integrate(self, loop):
         if loop.step % self.every == 0:
-            loop.sync_out()
-            self.session.look(loop)
             self.choose(loop)
 
-    def choose(self, loop) -> None:
-        """Set the group, here and in the loop."""
+    def choose(self, loop, moved: bool = True) -> None:
+        """Set the group, here and in the loop; `moved`: the system and what formulas see are not of this step yet."""
+        engine, s, slots = loop.engine, loop.state, loop.nslots
+        region = None if self.region is None else self.session.scene.region(self.region, f"group {self.name} dynamic")
+        if region is not None and not region.varies and self.variable is None and self.property is None:
+            parent, chosen = self.session.scene.groups.mask(self.group, f"group {self.name} dynamic"), region.inside(s.x.T)[:slots]
+        else:
+            if moved:
+                loop.sync_out()
+                self.session.look(loop)
+            parent = self.members()
+            chosen = np.ones(slots, bool)
+        members = np.zeros(len(parent), bool)
         before = loop.groups[self.name]
-        loop.groups[self.name] = self.members()
-        engine, state = loop.engine, loop.state
-        engine.set_groups(loop.groups, engine.bits)
-        slots = np.flatnonzero(state.row >= 0)
-        state.mask[slots] = engine.mask_row[state.row[slots]]
-        if loop.step > loop.begin and not np.array_equal(before, loop.groups[self.name]):
+        differ = rows.regroup(s.row, chosen, parent, np.int32(loop.group_bit(self.name)), engine.mask_row, s.mask, members)
+        loop.groups[self.name] = engine.groups[self.name] = members
+        engine.varies[3] = differ        # masks
+        if loop.step > loop.begin and not np.array_equal(before, members):
             for fix in loop.fixes:      # degrees of freedom
                 fix.resize(loop)

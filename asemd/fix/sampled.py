@@ -31,6 +31,7 @@ class Sampled(Fix):
         Nfreq is not a multiple of Nevery, or Nrepeat samples do not fit.
     """
 
+    observes: ClassVar[bool] = True
     overlaps: ClassVar[bool] = False        # whether results may have samples in common
     session: Any = None
     file: OutputFile | None = None

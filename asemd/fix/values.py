@@ -269,8 +269,7 @@ def snapshot_of(loop, session, needs=()):
     """The present step as computes and variables see it; `session` sees it too."""
     loop.sync_out()
     loop.system.step = loop.step
-    if ("energies" in needs and loop.result.energies is None) or ("virials" in needs and loop.result.virials is None):
-        loop.engine.per_atom(loop.result)
+    loop.engine.per_atom(loop.result, needs)
     if session is not None:
         session.look(loop)
         return session.moment.snapshot

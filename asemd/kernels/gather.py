@@ -4,8 +4,8 @@ A pair kernel wants the positions of a cluster's neighbours as vectors of x, of 
 ``(n, 4)`` of x, y, z and charge one load brings an atom, and a handful of shuffles turn eight atoms into vectors; forces go back the same
 way. Compilers make a load and a store per number of such loops, or the processor's gather, which costs a third of the kernel's time.
 
-`mask` are the low bits of a list entry, which name a row of the table; the bits above name a row of `shifts`. It and the last two
-arguments of `gather8` must be constants when compiled.
+`mask` are the low bits of a list entry, which name a row of the table; the bits above name a row of `shifts`. It, the last two
+arguments of `gather8` and the last one of `scatter8` must be constants when compiled.
 """
 from __future__ import annotations
 
@@ -36,11 +36,12 @@ if config.DISABLE_JIT:
             if charge:
                 b[at + k + charge * row] = one[3]
 
-    def scatter8(b, at, row, table, entries, first, mask):
-        """Add ``b[at:at + 8]`` and the same places `row` and 2 `row` on to the rows of `table (n, 4)` named by ``entries[first:]``."""
+    def scatter8(b, at, row, table, entries, first, mask, columns):
+        """Add ``b[at:at + 8]`` and the same places `row`, 2 `row` ... on to the first `columns` columns of the rows of `table (n, 4)` named
+        by ``entries[first:]``."""
         for k in range(8):
             j = int(entries[first + k]) & mask
-            for d in range(3):
+            for d in range(columns):
                 table[j, d] += b[at + k + d * row]
 else:
     from llvmlite import ir
@@ -166,23 +167,24 @@ else:
         return types.void(b, at, row, table, entries, first, ox, oy, oz, shifts, mask, shifted, charge), generate
 
     @intrinsic(prefer_literal=True)
-    def scatter8(typing, b, at, row, table, entries, first, mask):
-        """Add ``b[at:at + 8]`` and the same places `row` and 2 `row` on to the rows of `table (n, 4)` named by ``entries[first:]``."""
-        if not _known(mask):
+    def scatter8(typing, b, at, row, table, entries, first, mask, columns):
+        """Add ``b[at:at + 8]`` and the same places `row`, 2 `row` ... on to the first `columns` columns of the rows of `table (n, 4)` named
+        by ``entries[first:]``."""
+        if not _known(mask, columns):
             return None
-        low, kind = mask.literal_value, b.dtype
+        low, kind, count = mask.literal_value, b.dtype, columns.literal_value
 
         def generate(ctx, builder, signature, arguments):
             m = _Memory(ctx, builder, signature, arguments)
-            columns = []
-            for d in range(3):
+            parts = []
+            for d in range(count):
                 vector = ir.VectorType(ir.FloatType() if kind == types.float32 else F64, 8)
                 v = builder.load(m.at(m.pointer(0), vector, m.place(1), (m.place(2), I64(d))), align=kind.bitwidth // 8)
-                columns.append(builder.fpext(v, OCT) if kind == types.float32 else v)
+                parts.append(builder.fpext(v, OCT) if kind == types.float32 else v)
             # one atom after the other: an atom may stand in the list twice, by two of its images
-            for k, one in enumerate(_rows(builder, [*columns, ir.Constant(OCT, [0.0] * 8)])):
+            for k, one in enumerate(_rows(builder, [*parts, *[ir.Constant(OCT, [0.0] * 8)] * (4 - count)])):
                 _, j = m.entry(m.pointer(4), m.place(5), k, low)
                 p = m.at(m.pointer(3), QUAD, j)
                 builder.store(builder.fadd(builder.load(p, align=8), one), p, align=8)
             return ctx.get_dummy_value()
-        return types.void(b, at, row, table, entries, first, mask), generate
+        return types.void(b, at, row, table, entries, first, mask, columns), generate

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_list, pair_sums
+from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums
 from asemd.kernels.generate import Builder, text_of
 from asemd.kernels.target import lanes
 from asemd.pairstyle import PairStyle
@@ -82,6 +82,32 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool,
     return "\n".join(lines)
 
 
+def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single: bool, energy: bool, piece: str,
+                   constants: dict) -> Builder:
+    """What kernels over cluster lists have in common: constants, the style's formulas, coefficients of the neighbours."""
+    b = Builder(f"pair {style.name}: {title}")
+    b.line("from asemd.kernels.fuse import madd")
+    b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
+    b.line("place = np.uint64")
+    b.line("real = np.float32" if single else "real = np.float64")
+    for name, value in constants.items():
+        b.constant(name, value)
+    if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
+        from asemd.kernels import vector_math
+        vector_math.paste(b, single)
+    names = _paste_style(b, style.parts, single, True)
+    b.text(_adapter(style.parts, names, uniform, energy, piece), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
+    varying = len(uniform) - sum(uniform)
+    if varying:
+        lines = ["def fill_rows(b, full, rows, t, types, base):"]
+        for block in range(-(-varying // 4)):
+            lines += [f"    table = rows[{block}, t]", "    for k in range(0, full, 8):",
+                      f"        gather8(b, base + {4 * block} * ROW + k, ROW, table, types, k, 0.0, 0.0, 0.0, table, SLOT_BITS, False, "
+                      f"{3 if varying >= 4 * block + 4 else 0})"]
+        b.text("\n".join(lines))
+    return b
+
+
 @cache
 def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool,
                    outdated: bool = False, piece: str = "", virial: bool = False):
@@ -102,28 +128,11 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     virial : bool
         The virial without the energy.
     """
-    varying = [k for k, u in enumerate(uniform) if not u]
-    b = Builder(f"pair {style.name}: cluster list")
-    b.line("from asemd.kernels.fuse import madd")
-    b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
-    b.line("place = np.uint64")
-    b.line("real = np.float32" if single else "real = np.float64")
-    for name, value in dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(len(varying)), ENERGY=energy,
+    varying = len(uniform) - sum(uniform)
+    b = _over_clusters("cluster list", style, uniform, single, energy, piece,
+                       dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(varying), ENERGY=energy,
                             VIRIAL=virial, CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying),
-                            EXCLUDE=exclude, OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS).items():
-        b.constant(name, value)
-    if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
-        from asemd.kernels import vector_math
-        vector_math.paste(b, single)
-    names = _paste_style(b, style.parts, single, True)
-    b.text(_adapter(style.parts, names, uniform, energy, piece), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
-    if varying:
-        lines = ["def fill_rows(b, full, rows, t, types, base):"]
-        for block in range(-(-len(varying) // 4)):
-            lines += [f"    table = rows[{block}, t]", "    for k in range(0, full, 8):",
-                      f"        gather8(b, base + {4 * block} * ROW + k, ROW, table, types, k, 0.0, 0.0, 0.0, table, SLOT_BITS, False, "
-                      f"{3 if len(varying) >= 4 * block + 4 else 0})"]
-        b.text("\n".join(lines))
+                            EXCLUDE=exclude, OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS))
     for f in (pair_sums.eight, pair_sums.plus, pair_sums.add):
         b.function(f, fast=True)
     b.function(pair_cluster.inner_two, fast=True)
@@ -134,6 +143,24 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     b.function(pair_cluster.cluster_forces, fast=True)
     module = b.build()
     return module.cluster_forces, module
+
+
+@cache
+def shares_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energies: bool, virials: bool, exclude: bool, outdated: bool):
+    """The kernel over cluster lists that makes each atom's share of energies, virials or both; arguments as of `cluster_kernel`."""
+    varying = len(uniform) - sum(uniform)
+    nrows = buffer_rows(varying)
+    b = _over_clusters("shares of atoms", style, uniform, False, True, "",
+                       dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(False), NROWS=nrows, SHARE=7 + 2 * nrows, ENERGIES=energies,
+                            VIRIALS=virials, CHARGED=style.charged, CHARGE_ROW=6 * style.charged, VARYING=bool(varying), EXCLUDE=exclude,
+                            OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS))
+    for f in (pair_shares.both, pair_shares.give, pair_shares.share_pair, pair_shares.shares_two):
+        b.function(f, fast=True)
+    if outdated:
+        b.constants["HIDE"] = True
+        b.function(pair_shares.shares_two, "shares_hidden", fast=True)
+    b.function(pair_shares.cluster_shares, fast=True)
+    return b.build().cluster_shares
 
 
 def cluster_tuple(rows: np.ndarray, constants: np.ndarray, uniform: Sequence[bool], single: bool) -> tuple:
@@ -225,8 +252,9 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
 
 
 @cache
-def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = ""):
-    """The kernel over rows of single atoms, for sparse systems and tables; `uniform` and `piece` as in `cluster_kernel`."""
+def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = "", shares: bool = False):
+    """The kernel over rows of single atoms, for sparse systems and tables; `uniform` and `piece` as in `cluster_kernel`; `shares`: that of
+    each atom's share of energy and virial."""
     b = Builder(f"pair {style.name}: rows of atoms")
     b.line("real = np.float64")
     for name, value in dict(ENERGY=energy, CHARGED=style.charged, CHECK=any(part.arrays for part in style.parts)).items():
@@ -255,6 +283,10 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = 
     if piece:
         cut = f"min({cut}, p[{constant + 5}])"
     b.text(f"def furthest(p, rows, ti, tj):\n    return {cut}")
+    if shares:
+        b.function(pair_shares.row_shares, fast=True)
+        module = b.build()
+        return module.row_shares, module
     for f in (pair_sums.eight, pair_sums.add):
         b.function(f, fast=True)
     b.function(pair_list.row_forces, fast=True)

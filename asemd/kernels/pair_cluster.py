@@ -9,8 +9,8 @@ A list that may be outdated (``neigh_modify check no``, or a delay) still has LA
 built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
 then on they look at a mask of the row (`hide`, bit a for atom a of the cluster).
 
-Where only the virial is wanted (VIRIAL), it is the sum over the places of the buffer of position times force: six products for a place
-instead of six for a pair.
+The virial (VIRIAL) is the sum over the places of the buffer of position times force: six products for a place instead of six for a pair.
+In single precision, where that would cost digits, energies come with a virial summed over pairs.
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, VIRIAL, CHARGED, VARYING (some
 coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working
@@ -88,12 +88,13 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
             pb, evb, ecb = pair_energy(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
             ev += eva + evb
             ec += eca + ecb
-            v0 = madd(dxa * dxa, pa, madd(dxb * dxb, pb, v0))
-            v1 = madd(dya * dya, pa, madd(dyb * dyb, pb, v1))
-            v2 = madd(dza * dza, pa, madd(dzb * dzb, pb, v2))
-            v3 = madd(dxa * dya, pa, madd(dxb * dyb, pb, v3))
-            v4 = madd(dxa * dza, pa, madd(dxb * dzb, pb, v4))
-            v5 = madd(dya * dza, pa, madd(dyb * dzb, pb, v5))
+            if not VIRIAL:
+                v0 = madd(dxa * dxa, pa, madd(dxb * dxb, pb, v0))
+                v1 = madd(dya * dya, pa, madd(dyb * dyb, pb, v1))
+                v2 = madd(dza * dza, pa, madd(dzb * dzb, pb, v2))
+                v3 = madd(dxa * dya, pa, madd(dxb * dyb, pb, v3))
+                v4 = madd(dxa * dza, pa, madd(dxb * dzb, pb, v4))
+                v5 = madd(dya * dza, pa, madd(dyb * dzb, pb, v5))
         else:
             pa = pair_force(ra, ia, qka, p, b, k + 7 * ROW, meet_a)
             pb = pair_force(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
@@ -126,6 +127,8 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     b[place(k + 3 * ROW)] -= fx
     b[place(k + 4 * ROW)] -= fy
     b[place(k + 5 * ROW)] -= fz
+    if VIRIAL:
+        dx, dy, dz = real(0), real(0), real(0)      # which is summed elsewhere
     return fx, fy, fz, eight(ev, ec, dx, dy, dz, fx, fy, fz)
 
 
@@ -271,6 +274,6 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                 v5 = madd(yk, fz, v5)
             add(acc, (real(0), real(0), v0, v1, v2, v3, v4, v5))
         for k in range(0, full, 8):
-            scatter8(b, k + 3 * ROW, ROW, push, entries, f0 + k, SLOT_BITS)
+            scatter8(b, k + 3 * ROW, ROW, push, entries, f0 + k, SLOT_BITS, 3)
     for k in range(0, cap, 8):
         give8(push, k, f)

@@ -305,9 +305,7 @@ class Driver:
         session, scene = self.session, self.scene
         loop = session.loop
         if fresh:       # the first step may have to bring per-atom values too
-            needs = self._needs(step, step)
-            if needs & {"energies", "virials"}:
-                loop.engine.per_atom(loop.result)
+            loop.engine.per_atom(loop.result, self._needs(step, step))
         session.moment = Moment(scene, loop.snapshot(), session.variables.number, self.progress, loop.engine)
         if fresh:
             for compute in scene.computes.values():

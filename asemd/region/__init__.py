@@ -219,6 +219,13 @@ def options(words: list[str], style: str, session) -> Options:
 KEYWORDS = {"side": 1, "units": 1, "move": 3, "rotate": 7, "open": 1}
 
 
+def found(kernel, x: np.ndarray, *geometry) -> np.ndarray:
+    """What a kernel of `asemd.kernels.inside` says of points (n, 3): (n,) bool."""
+    out = np.empty(len(x), bool)
+    kernel(np.ascontiguousarray(x.T, float), *geometry, out)
+    return out
+
+
 def limit(word: str, axis: int, upper: bool, spacing: float, session, what: str) -> float:
     """A face: a number times the spacing, INF or EDGE."""
     if word not in ("INF", "EDGE"):

@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.region import Region, limits
+from asemd.kernels import inside
+from asemd.region import Region, found, limits
 
 
 class Block(Region):
@@ -17,7 +18,7 @@ class Block(Region):
         self.lo, self.hi = np.array(lo, dtype=float), np.array(hi, dtype=float)
 
     def contains(self, x):
-        return ((x >= self.lo) & (x <= self.hi)).all(axis=1)
+        return found(inside.block, x, self.lo, self.hi)
 
     def faces(self, x):
         rows = np.flatnonzero(self.contains(x))

@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.region import Region, limits, radius
+from asemd.kernels import inside
+from asemd.region import Region, found, limits, radius
 from asemd.words import choice, number
 
 
@@ -32,13 +33,10 @@ class Cone(Region):
         self.axis, self.center, self.radii = axis, np.array(center, dtype=float), (float(low), float(high))
         self.lo, self.hi = float(lo), float(hi)
 
-    def radius_at(self, along):
-        return self.radii[0] + (along - self.lo) * (self.radii[1] - self.radii[0]) / (self.hi - self.lo)
-
     def contains(self, x):
-        a, b = across(self.axis)
-        along, d1, d2 = x[:, self.axis], x[:, a] - self.center[0], x[:, b] - self.center[1]
-        return (np.sqrt(d1 * d1 + d2 * d2) <= self.radius_at(along)) & (along >= self.lo) & (along <= self.hi)
+        low, high = self.radii
+        slope = (high - low, self.hi - self.lo) if high != low else (0.0, 1.0)
+        return found(inside.cone, x, self.axis, *across(self.axis), self.center, low, slope, self.lo, self.hi)
 
     def polar(self, x):
         """Distance from the axis, unit vectors away from it, and the place along it."""

@@ -1,8 +1,6 @@
 """``region ID cylinder dim c1 c2 radius lo hi``: a cylinder along an axis."""
 from __future__ import annotations
 
-import numpy as np
-
 from asemd.errors import InputError
 from asemd.region.cone import Cone
 
@@ -15,9 +13,6 @@ class Cylinder(Cone):
 
     def __init__(self, axis: int, center, radius: float, lo: float, hi: float, side: str = "in"):
         super().__init__(axis, center, radius, radius, lo, hi, side)
-
-    def radius_at(self, along):
-        return np.full_like(along, self.radii[0])
 
     @classmethod
     def parse(cls, words, spacings, side, session):

@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.region import Region
+from asemd.kernels import inside
+from asemd.region import Region, found
 from asemd.words import number
 
 
@@ -23,9 +24,7 @@ class Plane(Region):
         self.normal /= length
 
     def contains(self, x):
-        dx, dy, dz = (x - self.point).T
-        nx, ny, nz = self.normal
-        return dx * nx + dy * ny + dz * nz >= 0.0
+        return found(inside.plane, x, self.point, self.normal)
 
     def faces(self, x):
         rows = np.flatnonzero(self.contains(x))

@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.region import Region, limits
+from asemd.kernels import inside
+from asemd.region import Region, found, limits
 from asemd.words import BIG, number
 
 
@@ -27,12 +28,7 @@ class Prism(Region):
         self.cell = np.array([[length[0], 0.0, 0.0], [xy, length[1], 0.0], [xz, yz, length[2]]])
 
     def contains(self, x):
-        (a, _, _), (xy, b, _), (xz, yz, c) = self.cell
-        dx, dy, dz = (x - self.lo).T
-        s2 = dz / c
-        s1 = dy / b - yz * dz / (b * c)
-        s0 = dx / a - xy * dy / (a * b) + (xy * yz - b * xz) * dz / (a * b * c)
-        return (s0 >= 0.0) & (s0 <= 1.0) & (s1 >= 0.0) & (s1 <= 1.0) & (s2 >= 0.0) & (s2 <= 1.0)
+        return found(inside.prism, x, self.lo, self.cell)
 
     def _finite(self):
         if np.any(np.abs([self.lo, self.hi]) >= BIG):

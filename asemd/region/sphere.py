@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.region import Region, radius
+from asemd.kernels import inside
+from asemd.region import Region, found, radius
 from asemd.words import number
 
 
@@ -18,8 +19,7 @@ class Sphere(Region):
         self.center, self.radius = np.array(center, dtype=float), float(radius)
 
     def contains(self, x):
-        dx, dy, dz = (x - self.center).T
-        return np.sqrt(dx * dx + dy * dy + dz * dz) <= self.radius
+        return found(inside.sphere, x, self.center, self.radius)
 
     def faces(self, x):
         d = x - self.center

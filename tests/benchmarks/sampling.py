@@ -1,60 +1,148 @@
-"""What an evaluation of a compute costs, 32,000 Lennard-Jones atoms: processor time of steps with it less that of steps without, asemd and
-LAMMPS in turns."""
+"""What sampling costs: processor time of steps with it less that of steps without, asemd and LAMMPS in turns, 32,000 atoms that stand
+still (a Lennard-Jones melt, bead-spring chains), samples every 10 steps unless the case says otherwise.
+
+For each case the milliseconds that a sample adds, LAMMPS's in terms of asemd's (above 1: asemd is faster), and the same for all the steps
+with it. ``python -m tests.benchmarks.sampling [cases...]``: those whose names contain one of the words.
+"""
 from __future__ import annotations
 
+import json
 import tempfile
 from pathlib import Path
 
 from tests.benchmarks import compare, scenes
 
 STILL = "displace_atoms all random 0.1 0.1 0.1 4321\n"
-CASES = {
-    "msd": ["compute c all msd", "fix s all ave/time 1 1 1 c_c[4]"],
-    "rdf": ["compute c all rdf 100", "fix s all ave/time 1 1 1 c_c[*] mode vector"],
-    "chunk/atom + ave/chunk": ["compute c all chunk/atom bin/1d z lower 0.05 units reduced",
-                               "fix s all ave/chunk 1 1 1 c density/number temp vx"],
-    "reduce": ["compute c all reduce sum vx vy vz", "fix s all ave/time 1 1 1 c_c[1] c_c[2] c_c[3]"],
-    "stress/atom": ["compute p all stress/atom NULL", "compute c all reduce sum c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]",
-                    "fix s all ave/time 1 1 1 c_c[1] c_c[2] c_c[3]"],
-    "coord/atom": ["compute p all coord/atom cutoff 1.5", "compute c all reduce ave c_p", "fix s all ave/time 1 1 1 c_c"],
+FLUX = ["compute k all ke/atom", "compute e all pe/atom"]
+ONE, THREE = "c_c[1]", "c_c[1] c_c[2] c_c[3]"
+BINS = {"1d": "z lower 0.05", "2d": "x lower 0.05 y lower 0.05", "3d": "x lower 0.1 y lower 0.1 z lower 0.1"}
+REGIONS = {"block": ["block 5 15 5 15 5 15"], "sphere": ["sphere 10 10 10 8"], "cylinder": ["cylinder z 10 10 8 2 18"],
+           "cone": ["cone z 10 10 8 4 2 18"], "plane": ["plane 10 10 10 1 1 0"], "prism": ["prism 4 14 4 14 4 14 2 1 1"]}
+MOLECULES = "compute m all chunk/atom molecule"
+
+
+def averaged(compute: str, values: str = "c_c", mode: str = "scalar", before=(), every: int = 10) -> tuple[int, list[str]]:
+    """A compute under fix ave/time."""
+    return every, [*before, f"compute c all {compute}", f"fix s all ave/time {every} 1 {every} {values} mode {mode}"]
+
+
+def chunks(bins: str, values: str, *more: str, before=()) -> tuple[int, list[str]]:
+    """Averages over bins."""
+    return 10, [*before, f"compute c all chunk/atom bin/{bins} {BINS[bins]} units reduced",
+                " ".join(["fix s all ave/chunk 10 1 10 c", values, *more])]
+
+
+def region(*shapes: str) -> tuple[int, list[str]]:
+    """A group of the atoms in a region; of several shapes the last word is that of the region."""
+    names = [f"region r{k} {shape}" for k, shape in enumerate(shapes)]
+    return 10, [*names, f"group g dynamic all region r{len(shapes) - 1} every 10"]
+
+
+STRESS = ["compute p all stress/atom NULL"]
+MELT = {
+    "msd": averaged("msd", "c_c[4]"),
+    "vacf": averaged("vacf", "c_c[4]"),
+    "rdf": averaged("rdf 100", "c_c[*]", "vector"),
+    "coord/atom": averaged("reduce ave c_p", before=["compute p all coord/atom cutoff 1.5"]),
+    "reduce": averaged("reduce sum vx vy vz", THREE),
+    "ave/time of scalars": (10, ["fix s all ave/time 10 1 10 c_thermo_temp c_thermo_pe c_thermo_press"]),
+    "ave/correlate of pressures": (5, ["fix s all ave/correlate 5 100 1000 c_thermo_press[4] c_thermo_press[5] c_thermo_press[6]"]),
+    "ave/histo": (10, ["fix s all ave/histo 10 1 10 -5 5 100 vx vy vz mode vector"]),
+    "ave/chunk bin/1d": chunks("1d", "density/number temp vx"),
+    "ave/chunk bin/2d": chunks("2d", "density/number temp vx"),
+    "ave/chunk bin/3d": chunks("3d", "density/number temp vx"),
+    "ave/chunk bin/3d to a file": chunks("3d", "density/number temp vx", "file chunks"),
+    "ave/chunk of stress/atom": chunks("1d", "c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]", before=STRESS),
+    "ave/atom of stress/atom": (10, [*STRESS, "fix s all ave/atom 10 1 10 c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]"]),
+    "stress/atom": averaged("reduce sum c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]", THREE, before=STRESS),
+    "pe/atom": averaged("reduce sum c_p", before=["compute p all pe/atom"]),
+    "heat/flux": averaged("heat/flux k e p", THREE, before=[*FLUX, "compute p all stress/atom NULL virial"], every=5),
+    "heat/flux of centroids": averaged("heat/flux k e p", THREE, before=[*FLUX, "compute p all centroid/stress/atom NULL virial"], every=5),
+    **{f"region {name}": region(*shapes) for name, shapes in REGIONS.items()},
+    "region union": region("sphere 10 10 10 8", "block 5 15 5 15 5 15", "union 2 r0 r1"),
+    "region intersect": region("sphere 10 10 10 8", "block 5 15 5 15 5 15", "intersect 2 r0 r1"),
 }
+CHAINS = {
+    "gyration/chunk": averaged("gyration/chunk m", "c_c", "vector", [MOLECULES]),
+    "com/chunk": averaged("com/chunk m", "c_c[*]", "vector", [MOLECULES]),
+    "vcm/chunk": averaged("vcm/chunk m", "c_c[*]", "vector", [MOLECULES]),
+    "msd/chunk": averaged("msd/chunk m", "c_c[4]", "vector", [MOLECULES]),
+    "ave/chunk of molecules": (10, [MOLECULES, "fix s all ave/chunk 10 1 10 m temp vx"]),
+    "stress/atom of chains": averaged("reduce sum c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]", THREE, before=STRESS),
+    "reduce of bond/local": averaged("reduce ave c_b[1] c_b[2] inputs local", "c_c[1] c_c[2]",
+                                     before=["compute b all bond/local dist engpot"]),
+}
+CASES = {**MELT, **CHAINS}
 
 
-def script(cells=(20, 20, 20)) -> str:
-    """The melt, whose atoms stand still: no list is built meanwhile."""
+def melt(cells=(20, 20, 20)) -> str:
+    """The melt without an integrator: no list is built meanwhile."""
     return scenes.lj(cells).replace("fix 1 all nve\n", STILL)
 
 
-def measure(samples: int = 5, steps: int = 10, cells=(20, 20, 20), cases=tuple(CASES)) -> dict:
-    """Milliseconds per evaluation, and LAMMPS's in terms of asemd's (above 1: asemd is faster)."""
-    who = compare.contenders()
-    cost: dict[str, dict[str, list[float]]] = {name: {c.name: [] for c in who} for name in cases}
-    with tempfile.TemporaryDirectory() as tmp:
-        running = []
-        try:
-            for k, c in enumerate(who):
-                folder = Path(tmp) / str(k)
-                folder.mkdir()
-                running.append(compare.Running(c, folder))
-            for r in running:
-                r.do([*script(cells).splitlines(), "run 1"])
-            for name in cases:
-                for sample in range(samples + 1):       # the first one compiles
-                    for r in running:
-                        spent = [r.do([*more, "run 1 post no"]) and r.do([f"run {steps} pre no post no"])["cpu"]
-                                 for more in ([], CASES[name])]
-                        r.do(["unfix s", *(f"uncompute {line.split()[1]}" for line in reversed(CASES[name]) if line.startswith("compute"))])
-                        if sample:
-                            cost[name][r.contender.name].append(1e3 * (spent[1] - spent[0]) / steps)
-        finally:
-            for r in running:
-                r.stop()
-    ours, *others = (c.name for c in who)
-    return {"ms per evaluation": {name: {who: compare.spread(v) for who, v in of.items()} for name, of in cost.items()},
-            "LAMMPS / asemd": {name: compare.spread([b / max(a, 1e-6) for a, b in zip(of[ours], of[other], strict=True)])
-                               for name, of in cost.items() for other in others}}
+def polymer(chains: int = 320) -> str:
+    """The chains without one."""
+    return "\n".join(line for line in scenes.chain(chains).splitlines() if not line.startswith("fix"))
+
+
+def undone(lines: list[str]) -> list[str]:
+    """The commands that take those of a case away."""
+    by = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete", "region": "region {} delete"}
+    return [by[line.split()[0]].format(line.split()[1]) for line in reversed(lines)]
+
+
+def measure(samples: int = 5, steps: int = 100, cells=(20, 20, 20), chains: int = 320, cases=tuple(CASES), say=None) -> dict:
+    """Milliseconds per sample, and LAMMPS's processor time in terms of asemd's; `say` is told each case's name and numbers."""
+    who, out = compare.contenders(), {}
+    for scene, own in ((lambda: melt(cells), MELT), (lambda: polymer(chains), CHAINS)):
+        chosen = [name for name in cases if name in own]
+        with tempfile.TemporaryDirectory() as tmp:
+            running = []
+            try:
+                for k, c in enumerate(who if chosen else ()):
+                    folder = Path(tmp) / str(k)
+                    folder.mkdir()
+                    running.append(compare.Running(c, folder))
+                for r in running:
+                    r.do([*scene().splitlines(), "run 1"])
+                for name in chosen:
+                    out[name] = _of_case(running, *own[name], samples, steps)
+                    if say:
+                        say(name, out[name])
+            finally:
+                for r in running:
+                    r.stop()
+    return out
+
+
+def _of_case(running: list, every: int, lines: list[str], samples: int, steps: int) -> dict:
+    """Each engine's milliseconds per sample; LAMMPS's time for samples and for all steps with them in terms of asemd's."""
+    added: dict[str, list[float]] = {r.contender.name: [] for r in running}
+    total: dict[str, list[float]] = {r.contender.name: [] for r in running}
+    for sample in range(samples + 1):       # the first one compiles
+        for r in running:
+            spent = [r.do([*more, "run 1 post no"]) and r.do([f"run {steps} pre no post no"])["cpu"] for more in ([], lines)]
+            r.do(undone(lines))
+            if sample:
+                added[r.contender.name].append(1e3 * (spent[1] - spent[0]) * every / steps)
+                total[r.contender.name].append(spent[1])
+    ours, *others = added
+    return {**{f"{name} ms": compare.spread(v) for name, v in added.items()},
+            **{f"{word} {name}": compare.spread([b / max(a, 1e-6) for a, b in zip(of[ours], of[name], strict=True)])
+               for word, of in (("added", added), ("all", total)) for name in others}}
+
+
+def show(name: str, numbers: dict) -> None:
+    """A line of the table."""
+    print(f"{name:30s}" + "".join(f" {s['median']:9.3f}" if key.endswith(" ms") else
+                                  f" {s['median']:8.2f} [{s['q1']:.2f}, {s['q3']:.2f}]" for key, s in numbers.items()), flush=True)
 
 
 if __name__ == "__main__":
-    o = compare.arguments(__doc__, samples=5, steps=10).parse_args()
-    compare.show(__doc__, measure(o.samples, o.steps), o.json)
+    p = compare.arguments(__doc__, samples=5, steps=100)
+    p.add_argument("cases", nargs="*", help="words of the names of cases")
+    o = p.parse_args()
+    print(__doc__, f"{'case':30s}  asemd ms LAMMPS ms  added                 all", sep="\n", flush=True)
+    found = measure(o.samples, o.steps, cases=[name for name in CASES if not o.cases or any(w in name for w in o.cases)], say=show)
+    if o.json:
+        Path(o.json).write_text(json.dumps({"machine": compare.machine(), **found}, indent=1))

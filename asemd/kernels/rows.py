@@ -1,0 +1,56 @@
+"""Between slots and atom rows: shares that kernels gathered, added up over threads and set to zero for the next time; members of groups."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.kernels.target import njit
+
+
+@njit(cache=True, nogil=True)
+def of_tables(slot_of, front, back, scale, column, virials, energy, virial):
+    """Add `scale` times tables ``(threads, slots, 4)``, xx yy zz and xy xz yz, to `virial (n, 6)`, by atom row, and that column of the
+    first one to `energy (n,)`, unless it is below 0."""
+    for t in range(front.shape[0]):
+        for r in range(len(slot_of)):
+            s = np.uint64(slot_of[r])
+            if column >= 0:
+                energy[r] += scale * front[t, s, column]
+            if virials:
+                for c in range(3):
+                    virial[r, c] += scale * front[t, s, c]
+                    virial[r, 3 + c] += scale * back[t, s, c]
+                    back[t, s, c] = 0.0
+            for c in range(4):
+                front[t, s, c] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def of_columns(slot_of, atom_energy, atom_virial, scale, energy, virial):
+    """Add `scale` times ``atom_energy (threads, slots)`` and ``atom_virial (threads, 6, slots)`` to `energy (n,)` and `virial (n, 6)`, by
+    atom row."""
+    for t in range(atom_energy.shape[0]):
+        for r in range(len(slot_of)):
+            s = np.uint64(slot_of[r])
+            energy[r] += scale * atom_energy[t, s]
+            atom_energy[t, s] = 0.0
+            for c in range(6):
+                virial[r, c] += scale * atom_virial[t, c, s]
+                atom_virial[t, c, s] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def regroup(row, chosen, parent, bit, mask_row, slot_mask, members):
+    """A group has other members: those of `parent (n,)` whose slot is `chosen (slots,)`. Sets its bit by row and by slot, and `members`.
+
+    Returns whether not all atoms have the same bits.
+    """
+    for i in range(len(chosen)):
+        r = row[i]
+        if r >= 0:
+            members[r] = chosen[i] and parent[r]
+            mask_row[r] = mask_row[r] | bit if members[r] else mask_row[r] & ~bit
+            slot_mask[i] = mask_row[r]
+    for r in range(len(mask_row)):
+        if mask_row[r] != mask_row[0]:
+            return True
+    return False
