@@ -1,6 +1,8 @@
 """Computes that computes, fixes and thermo output go by, looked up by their IDs when a run begins: one may be gone, or made anew."""
 from __future__ import annotations
 
+import re
+
 from asemd.compute import Compute
 from asemd.errors import InputError, nearest
 
@@ -17,7 +19,8 @@ def renew(session) -> None:
     for kind, table in (("fix", scene.fixes), ("compute", scene.computes)):
         for owner in table.values():
             for name, held in list(vars(owner).items()):
-                if isinstance(held, Compute) and held.id and scene.computes.get(held.id) is not held:
+                named = isinstance(held, Compute) and re.fullmatch(r"\w+", held.id)      # others are the owner's private ones
+                if named and scene.computes.get(held.id) is not held:
                     try:
                         _replace(session, kind, owner, name, held)
                     except InputError as e:
