@@ -48,6 +48,8 @@ class PairTerm:
 
     def weights(self, lj: np.ndarray, coul: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The weights of kinds of pairs, (5,) each, as they are for this style."""
+        if self.style.all_or_nothing:
+            lj = coul = ((lj != 0.0) | (coul != 0.0)).astype(float)
         out = []
         for name, weight in (("lj", lj), ("coul", coul)):
             weight = weight.copy()

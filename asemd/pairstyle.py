@@ -109,6 +109,7 @@ class PairStyle(Style):
     solvers: frozenset[str] = frozenset()      # kinds of kspace_style that complete the parts; empty: none is needed
     many = False                     # energies of single pairs; True: `asemd.manybody`
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
+    all_or_nothing = False           # special pairs whose weight is not 0 count in full
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
 

@@ -2,7 +2,8 @@ r"""$$E = \frac{Z_i Z_j e^2}{4\pi\epsilon_0 r} \phi(r/a) + S(r), \qquad a = \fra
 $$\phi(x) = 0.18175 e^{-3.19980 x} + 0.50986 e^{-0.94229 x} + 0.28022 e^{-0.40290 x} + 0.02817 e^{-0.20162 x}$$
 
 Screened repulsion of nuclei in collisions; Zi and Zj are the atomic numbers. S takes energy, force and its derivative to zero between inner
-and outer, as in lj/gromacs. Pairs of unlike types follow from the numbers of both.
+and outer, as in lj/gromacs. Pairs of unlike types follow from the numbers of both. Special pairs whose weight (special_bonds)
+is not 0 count in full, as in LAMMPS.
 Ziegler, Biersack and Littmark, The Stopping and Range of Ions in Matter (1985).
 """
 from __future__ import annotations
@@ -20,6 +21,8 @@ DECAYS = (3.19980, 0.94229, 0.40290, 0.20162)
 
 class ZblPair(SwitchedPair):
     """Numbers of nuclei by type; lengths and energies in the units of the scene."""
+
+    all_or_nothing = True
 
     def parse_coeff(self, words, settings):
         values = super().parse_coeff(words, settings)
