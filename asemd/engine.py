@@ -67,6 +67,8 @@ class Engine:
         self.set_box()
         s, inter = self.settings, self.interactions
         self.solver = solve(system, inter, self.units) if inter.kspace != "none" or inter.needs_solver else None
+        for use in inter.uses["pair"]:
+            use.style.learn(use.settings, system)
         terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts or t.style.many]
         for kind, *pair in s.exclude:
             if kind == "type":
@@ -108,7 +110,7 @@ class Engine:
             self.mode, self.why = "plain", "a periodic cell width is below twice cutoff plus skin"
         else:
             self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
-        self.expanded = self.mode == "cluster" and any(np.ndim(t.use.factor) > 0 for t in self.pair_terms)
+        self.expanded = self.mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.sized for t in self.pair_terms)
         self.packed = (self.mode == "cluster" and not self.expanded and self.exclusions.partners is None and not len(self.exclusions.rules)
                        and all(getattr(t.style, "packable", False) for t in self.many_terms))
         volume = abs(float(np.linalg.det(self.vectors)))

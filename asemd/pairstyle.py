@@ -38,6 +38,7 @@ class Part:
     arrays: tuple[str, ...]
     coordinate: str              # "r" or "r2"
     charged: bool
+    sized: bool = False          # it takes radius_i and radius_j, the radii of both atoms
     long: bool = False           # the weight of a special pair is that of its bare Coulomb energy: a solver adds the rest of all pairs
 
 
@@ -129,10 +130,23 @@ class PairStyle(Style):
         super().__init__("pair", name, main, settings=parameters(settings), coeff=parameters(coeff), **options)
         mine = {p.name for p in self.coeff} | set(rows.split())
         self.parts = tuple(make_part(function, cut, mine) for function, cut in parts)
-        self.charged = any(p.charged for p in self.parts)
+        self.charged, self.sized = any(p.charged for p in self.parts), any(p.sized for p in self.parts)
         self.solvers = frozenset().union(*(getattr(f, "solvers", ()) for f, _ in parts))
         if self.solvers:
             self.xfail.setdefault("gradient", "LAMMPS's erfc is good to 1.5e-7, and its force is that of the exact function")
+
+    def learn(self, settings: dict[str, Any], system) -> None:
+        """Keep in `settings` what the style must know of the atoms before its coefficients become tables.
+
+        Raises
+        ------
+        InputError
+            The atoms lack what the style needs; the message says what.
+        """
+        if self.sized:
+            if "radius" not in system.extra:
+                raise InputError(f"pair style {self.name} needs atom attribute radius: use atom_style sphere")
+            settings["radii"] = largest_radii(system)
 
     def functions(self):
         return tuple(p.function for p in self.parts)
@@ -255,12 +269,13 @@ class PairStyle(Style):
 def make_part(function: Callable, cut: str, by_pair) -> Part:
     """The `Part` of one function; arguments named in `by_pair` are rows, the others constants."""
     args = units_of(function)
-    names = [n for n in args if n not in ("r", "r2", "qq")]
+    names = [n for n in args if n not in ("r", "r2", "qq", "radius_i", "radius_j")]
     return Part(function, "coul" if "qq" in args else "vdwl", cut,
                 rows=tuple(n for n in names if n in by_pair and args[n] != "array"),
                 constants=tuple(n for n in names if n not in by_pair and args[n] != "array"),
                 arrays=tuple(n for n in names if args[n] == "array"),
-                coordinate="r2" if "r2" in args else "r", charged="qq" in args, long=getattr(function, "long", False))
+                coordinate="r2" if "r2" in args else "r", charged="qq" in args, sized="radius_i" in args,
+                long=getattr(function, "long", False))
 
 
 def pack_parts(parts, constants, filled, ntypes: int, cutoffs: Callable, shift: bool, angles=frozenset(), arrays=()) -> PairTables:
@@ -290,6 +305,13 @@ def power_tail(terms, cut: float) -> tuple[float, float]:
     """
     energy = [2.0 * math.pi * c / ((n - 3.0) * cut ** (n - 3.0)) for c, n in terms]
     return sum(energy), sum(n * e / 3.0 for e, (_, n) in zip(energy, terms))
+
+
+def largest_radii(system) -> tuple[float, ...]:
+    """The largest radius of each type of atoms, from type 0 (unused) on."""
+    out = np.zeros(system.counts["ntypes"] + 1)
+    np.maximum.at(out, system.type, system.extra["radius"])
+    return tuple(out.tolist())
 
 
 def missing_pairs(pairs) -> str:

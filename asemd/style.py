@@ -49,7 +49,7 @@ COORDINATES = {
     "angle": ("theta", "r12", "r32", "r13", "gamma", *VECTORS[:6]),
     "dihedral": ("phi", "r12", "r23", "r34", "theta1", "theta2", *VECTORS),
     "improper": ("phi", "chi", *VECTORS),
-    "pair": ("r", "r2"),
+    "pair": ("r", "r2", "radius_i", "radius_j"),
 }
 RADIAN = Fraction("0.0174532925199432957692369076848861271344287188854172545609719144")
 

@@ -253,6 +253,7 @@ class PairListTerm(Term):
     def __init__(self, style, tables, parts, pairs: str, one_four=None, owner=None):
         self.style, self.tables, self.parts, self.pairs, self.owner = style, tables, parts, pairs, owner
         self.one_four, self.category = one_four, "angle" if pairs == "ends" else "pair"
+        self.sized = any(part.sized for part in parts)
         self.by_atom = owner is not None and np.ndim(owner.use.factor) > 0
 
     def kernel(self, energy, per_atom):
@@ -264,6 +265,9 @@ class PairListTerm(Term):
             self.i, self.j, self.code, self.shifts = found
             rules = engine.exclusions
             self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul)
+            if self.sized:
+                row = engine.state.row
+                self.radii = np.where(row >= 0, engine.system.extra["radius"][row], 0.0)
             if self.owner.molecules:
                 molecule = rules.molecule[engine.state.row]
                 chosen = (molecule[self.i] == molecule[self.j]) == (self.owner.molecules == "same")
@@ -288,7 +292,7 @@ class PairListTerm(Term):
 
     def arguments(self, engine, tid):
         s, m, nth = engine.state, len(self.i), engine.threads
-        arrays = (*self.tables.arrays, self.factor) if self.by_atom else self.tables.arrays
+        arrays = (*self.tables.arrays, *([self.factor] if self.by_atom else []), *([self.radii] if self.sized else []))
         return (s.x, engine.buffers[tid], s.q, s.type, self.i, self.j, self.code, self.shifts, self.lj, self.coul, m * tid // nth,
                 m * (tid + 1) // nth, self.tables.rows, self.tables.constants, arrays, engine.qqr2e,
                 engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])

@@ -217,8 +217,9 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
             same = rules.molecule[pairs.i] == rules.molecule[pairs.j]
             chosen = np.flatnonzero(same == (term.molecules == "same"))
         a, b, c = first[chosen], second[chosen], code[chosen]
+        radii = [state.system.extra["radius"][rows]] if term.style.sized else []
         _kernel(term)(x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), rows_of_tables, term.tables.constants,
-                      term.tables.arrays, engine.qqr2e, np.zeros(8), e, np.zeros((6, 2 * m)), bad)
+                      (*term.tables.arrays, *radii), engine.qqr2e, np.zeros(8), e, np.zeros((6, 2 * m)), bad)
         energy += e[:m] + e[m:]
         force += f[:, :m].T
     return energy, force

@@ -199,11 +199,13 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     """
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
-    charged = any(p.charged for p in parts)
-    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, CHARGED=charged, FACTOR=factor).items():
+    charged, sized = any(p.charged for p in parts), any(p.sized for p in parts)
+    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, CHARGED=charged, FACTOR=factor, SIZED=sized).items():
         b.constant(name, value)
     names = _paste_style(b, parts, False, False)
-    lines = ["def pair_energy_one(r2, qq, lj, coul, whole, rows, constants, arrays, ti, tj):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
+    radii = ["radius_i", "radius_j"] * sized
+    taken = ", ".join(["r2", "qq", "lj", "coul", "whole", "rows", "constants", "arrays", "ti", "tj", *radii])
+    lines = [f"def pair_energy_one({taken}):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
     if any(p.coordinate == "r" for p in parts):
         lines.append("    r = math.sqrt(r2)")
     row = constant = array = 0
@@ -211,7 +213,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         limits = sum(len(p.constants) for p in parts) + 4
         lines += [f"    if r2 <= constants[{limits}] or r2 >= constants[{limits + 1}]:", "        return fp, ev, ec"]
     for k, (part, name) in enumerate(zip(parts, names)):
-        args = [part.coordinate] + ["qq"] * part.charged
+        args = [part.coordinate] + ["qq"] * part.charged + radii * part.sized
         args += [f"rows[{row + 2 + i}, ti, tj]" for i in range(len(part.rows))]
         args += [f"constants[{constant + i}]" for i in range(len(part.constants))]
         args += [f"arrays[{array + i}]" for i in range(len(part.arrays))]

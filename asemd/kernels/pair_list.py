@@ -3,8 +3,9 @@
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
 partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
 
-Constants of the generated module: ENERGY, PER_ATOM, CHARGED, CHECK, FACTOR. From the style: `pair_energy_one(r2, qq, lj, coul, whole,
-rows, constants, arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
+Constants of the generated module: ENERGY, PER_ATOM, CHARGED, CHECK, FACTOR, SIZED (the last of `arrays` are the radii of the slots, which
+`pair_energy_one` takes as its last two arguments). From the style: `pair_energy_one(r2, qq, lj, coul, whole, rows, constants, arrays, ti,
+tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
 from tuple or table, as `uniform` says).
 """
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from asemd.kernels.pair_sums import add, eight
 
-ENERGY = PER_ATOM = CHARGED = CHECK = FACTOR = False
+ENERGY = PER_ATOM = CHARGED = CHECK = FACTOR = SIZED = False
 pair_energy_one = furthest = pair_of = None
 
 
@@ -37,8 +38,12 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         qq = 0.0
         if CHARGED:
             qq = qqr2e * q[i] * q[j]
-        fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays,
-                                     type_of[i], type_of[j])
+        if SIZED:
+            fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays,
+                                         type_of[i], type_of[j], arrays[-1][i], arrays[-1][j])
+        else:
+            fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays,
+                                         type_of[i], type_of[j])
         if FACTOR:
             ev = ec = 0.0
         if not abs(ev + ec) < np.inf or not abs(fp) < np.inf:
