@@ -67,8 +67,7 @@ class Engine:
         self.set_box()
         s, inter = self.settings, self.interactions
         self.solver = solve(system, inter, self.units) if inter.kspace != "none" or inter.needs_solver else None
-        for use in inter.uses["pair"]:
-            use.style.learn(use.settings, system)
+        inter.learn(system)
         terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts or t.style.many]
         for kind, *pair in s.exclude:
             if kind == "type":

@@ -218,6 +218,11 @@ class Interactions:
                 out[t] = use.style.rest_value(coeff)
         return out
 
+    def learn(self, system) -> None:
+        """Tell the pair styles what they must know of the atoms, see `asemd.pairstyle.PairStyle.learn`."""
+        for use in self.uses["pair"]:
+            use.style.learn(use.settings, system)
+
     def pair_terms(self, ntypes: int, units) -> list[PairTerm]:
         """The pair styles with the coefficients of all type pairs, mixed and shifted.
 

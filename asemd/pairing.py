@@ -171,8 +171,7 @@ def check_complete(interactions: Interactions, system) -> None:
                                      f"{category}_coeff: leave it out")
         for use in uses:
             use.style.check_scene(interactions, system)
-    for use in interactions.uses["pair"]:
-        use.style.learn(use.settings, system)
+    interactions.learn(system)
     complete(interactions, system.counts["ntypes"])
     modifiers.check_special(interactions)
     if interactions.hybrid["pair"] == "hybrid/molecular" and not system.molecular:
