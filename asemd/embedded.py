@@ -5,14 +5,18 @@ $$E = \sum_i F_i(\rho_i) + \sum_{i<j} \phi_{ij}(r_{ij}), \qquad \rho_i = \sum_{j
 Functions are cubic polynomials between the values of a file. Arrays of the kernels, with blocks of rows for the ordered pairs of elements
 in use (a pair of types finds its block by `offset`, pairs that do not interact find rows of zeros):
 
-- `table (blocks * rows, 8)`: coefficients of t^3, t^2, t, 1 of the density that an atom of the second element makes at one of the first,
-  then of r phi(r); interval k begins at row k. Row ``last`` holds the last values, which go on without slope, the row after it zeros.
+- `table (blocks * rows, 8 or 16)`: coefficients of t^3, t^2, t, 1 of the density that an atom of the second element makes at one of the
+  first, then of r phi(r), and in adp of u and w; interval k begins at row k, a row of zeros is behind the last one.
 - `offset (ntypes + 1, ntypes + 1)`: first row of the block of two types.
 - `functions (elements * intervals, 4)`: embedding functions; `function_of (ntypes + 1,)`: their first rows, -1 for types without one.
 - `share (ntypes + 1,)`: factors of the embedding energies (``fix adapt ... scale``).
+- constants: 1/dr, the last interval and the row of zeros of a block, 1/drho, intervals of an embedding function, the first of them that
+  counts, smallest and largest density, whether the slope goes on where the embedding energy is held.
 
-Where LAMMPS's force is not minus the gradient of its energy, which it holds constant beyond the end of a table, ours is;
-``compat="lammps"`` takes the slope that the table ends with.
+Between the last value of a table and the cutoff, which are less than one interval apart, LAMMPS holds the energy but goes on with the last
+slope as force; so do we, for what is held is what rounds off the table. Where it holds an embedding energy in the same way (funcfl files,
+and eam/cd beyond the largest density), our force is the gradient of that energy; ``compat="lammps"`` takes the slope that the table ends
+with.
 """
 from __future__ import annotations
 
@@ -31,22 +35,18 @@ from asemd.potential_file import PotentialFile
 from asemd.splines import polynomials, resampled
 
 HARTREE_BOHR = 27.2 * 0.529      # eV A, the product that funcfl files go with
-CONSTANTS = ("rdr", "last", "zero", "rdrho", "intervals", "first", "rhomin", "rhomax", "ends")
 
 
 def radial(values: np.ndarray) -> np.ndarray:
-    """Rows of one function of the distance: its intervals, the last value without slope, zeros."""
-    out = np.zeros((*values.shape[:-1], values.shape[-1] + 1, 4))
-    out[..., :-2, :] = polynomials(values)
-    out[..., -2, 3] = values[..., -1]
-    return out
+    """Rows of one function of the distance: its intervals, and zeros."""
+    return np.concatenate([polynomials(values), np.zeros((1, 4))])
 
 
 class Embedded(ManyBody):
     """A style whose file is a setfl file; `form` are options of `asemd.embedded_file.read_setfl`."""
 
     coefficients = ("scale",)      # what ``fix adapt`` may change
-    ends = False                   # whether forces go on with the last slope of a table, as in LAMMPS
+    ends = False                   # whether forces go on with the last slope of an embedding function, as in LAMMPS
 
     def __init__(self, name: str, *, forces=kernels.embedded_forces, helpers=(kernels.embedding,), shares=1, form=None, **options):
         super().__init__(name, forces=forces, helpers=helpers, shares=shares, **options)
@@ -77,6 +77,10 @@ class Embedded(ManyBody):
         data = coeff["data"]
         return float(data.masses[data.elements.index(coeff["element"][i - 1])])
 
+    def further(self, data: Setfl, factor: float) -> tuple[dict[tuple[int, int], np.ndarray], ...]:
+        """More functions of the distance than density and r phi, by pair of elements."""
+        return ()
+
     def pack_pairs(self, settings, filled, ntypes, units, shift=False) -> PairTables:
         data: Setfl = next(iter(filled.values()))["data"]
         factor = self.unit_factor(next(iter(filled.values())), units)
@@ -86,7 +90,7 @@ class Embedded(ManyBody):
         density = {(a, b): data.density[b, a] if data.density.ndim == 3 else data.density[b] for a in used for b in used}
         return tables_of(filled, ntypes, number, density, {(a, b): factor * data.pair[max(a, b), min(a, b)] for a in used for b in used},
                          factor * data.embedding, data.dr, data.drho, data.cut, data.rhomin, data.rhomax, bool(self.form.get("rhomax")),
-                         self.ends)
+                         self.ends, self.further(data, factor))
 
 
 class EmbeddedFuncfl(Embedded):
@@ -142,7 +146,7 @@ class EmbeddedFuncfl(Embedded):
 
 
 def tables_of(filled, ntypes: int, number, density, pair, embedding: np.ndarray, dr: float, drho: float, cut: float, rhomin: float,
-              rhomax: float, signed: bool, ends: bool) -> PairTables:
+              rhomax: float, signed: bool, ends: bool, further=()) -> PairTables:
     """`PairTables` of an embedded-atom potential, see the head of this module.
 
     Parameters
@@ -154,23 +158,25 @@ def tables_of(filled, ntypes: int, number, density, pair, embedding: np.ndarray,
     signed : bool
         Densities may be negative (style he): the table ends at `rhomin`, too.
     ends : bool
-        Forces go on with the last slopes of the tables.
+        Forces go on with the last slopes of embedding functions.
+    further : sequence of dict of (a, b) with a >= b
+        More functions of the distance.
     """
     nr, nrho = len(next(iter(density.values()))), embedding.shape[1]
     cut2, offset = np.zeros((1, ntypes + 1, ntypes + 1)), np.zeros((ntypes + 1, ntypes + 1), np.int64)
-    share, blocks, at = np.zeros(ntypes + 1), [np.zeros((nr + 1, 8))], {}
+    share, blocks, at = np.zeros(ntypes + 1), [np.zeros((nr, 8 + 4 * len(further)))], {}
     for (i, j), c in filled.items():
         cut2[0, i, j] = cut2[0, j, i] = cut * cut
         for s, t in ((i, j), (j, i)):
             key = number[s], number[t], c.get("scale", 1.0)
             if key not in at:
                 at[key] = len(blocks)
-                block = np.concatenate([radial(density[key[:2]]), key[2] * radial(pair[key[:2]])], axis=1)
-                blocks.append(block)
-            offset[s, t] = at[key] * (nr + 1)
+                more = [radial(table[max(key[:2]), min(key[:2])]) for table in further]
+                blocks.append(np.concatenate([radial(density[key[:2]]), key[2] * radial(pair[key[:2]]), *more], axis=1))
+            offset[s, t] = at[key] * nr
         if i == j:
             share[i] = c.get("scale", 1.0)
     function_of = np.array([k * (nrho - 1) if k >= 0 else -1 for k in number], np.int64)
-    constants = [1.0 / dr, nr - 2 if ends else nr - 1, nr, 1.0 / drho, nrho - 1, 1.0 if signed else 0.0, rhomin, rhomax, float(ends)]
+    constants = [1.0 / dr, nr - 2, nr - 1, 1.0 / drho, nrho - 1, 1.0 if signed else 0.0, rhomin, rhomax, float(ends)]
     functions = np.ascontiguousarray(polynomials(embedding).reshape(-1, 4))
     return PairTables(cut2, np.array(constants, float), (np.concatenate(blocks), offset, functions, function_of, share))
