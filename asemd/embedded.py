@@ -45,7 +45,7 @@ def radial(values: np.ndarray) -> np.ndarray:
 class Embedded(ManyBody):
     """A style whose file is a setfl file; `form` are options of `asemd.embedded_file.read_setfl`."""
 
-    coefficients = ("scale",)      # what ``fix adapt`` may change
+    coefficients: tuple[str, ...] = ("scale",)      # what ``fix adapt`` may change
     ends = False                   # whether forces go on with the last slope of an embedding function, as in LAMMPS
 
     def __init__(self, name: str, *, forces=kernels.embedded_forces, helpers=(kernels.embedding,), shares=1, form=None, **options):
@@ -94,7 +94,8 @@ class Embedded(ManyBody):
 
 
 class EmbeddedFuncfl(Embedded):
-    """Style eam: a file for each atom type, from which those for pairs of elements are mixed."""
+    """Style eam: a file for each atom type, from which those for pairs of elements are mixed. As in LAMMPS, where coefficients are given
+    for pairs of one type only, ``scale`` of such a pair does not change what it has with others."""
 
     def __init__(self, name: str, **options):
         super().__init__(name, elements=False, coeff="file", units={"file": "path"}, **options)
@@ -121,7 +122,7 @@ class EmbeddedFuncfl(Embedded):
         if missing:
             raise InputError(missing_pairs(missing))
         reach = max((coeffs[t, t]["reach"] for pair in pairs for t in pair), default=0.0)
-        return {(i, j): {"both": (coeffs[i, i], coeffs[j, j]), "reach": reach, "scale": coeffs[i, i]["scale"] if i == j else 1.0,
+        return {(i, j): {"both": (coeffs[i, i], coeffs[j, j]), "reach": reach, "scale": coeffs[i, i].get("scale", 1.0) if i == j else 1.0,
                          "units": coeffs[i, i]["units"]} for i, j in sorted(pairs)}
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):

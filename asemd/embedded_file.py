@@ -171,6 +171,8 @@ def read_setfl(file: PotentialFile, chosen, *, pairs: bool = False, rhomax: bool
     if count < 1 or len(elements) != count:
         named = " ".join(elements) or "none"
         raise InputError(f"{file.what}: {count} elements are announced, {len(elements)} named: {named}", record.where)
+    if polynomial and count != 2:
+        raise InputError(f"{file.what}: the file must have two elements, it has {count}", record.where)
     for element in chosen:
         if element not in elements:
             raise InputError(f"{file.what}: element {element} is not in the potential file, which has {' '.join(elements)}", record.where)

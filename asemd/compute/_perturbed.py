@@ -45,6 +45,7 @@ def uses_of(interactions, category: str, style: str, name: str, what: str) -> li
         known = [u.label for u in interactions.uses[category]]
         raise InputError(f"{what}: there is no {category} style {style!r} in use{nearest(style, known)}")
     known = [p.name for p in uses[0].style.coeff if p.unit not in ("word", "path", "integer") and not p.name.startswith("cut")]
+    known += getattr(uses[0].style, "coefficients", ())
     if name not in known:
         raise InputError(f"{what}: {category} style {style} has no coefficient {name!r} that can change, it has "
                          f"{' '.join(known) or 'none'}")

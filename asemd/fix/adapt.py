@@ -244,6 +244,8 @@ def _range(word: str, most: int, labels) -> tuple[int, int]:
 
 def _in_place(e: Engine, interactions, system) -> bool:
     """Put new coefficients into the running terms; False if they need other lists or kernels."""
+    if e.many_terms:
+        return False
     new = [t for t in interactions.pair_terms(system.counts["ntypes"], e.units) if t.style.parts]
     for kind, *pair in e.settings.exclude:
         if kind == "type":

@@ -14,7 +14,6 @@ import math
 import numpy as np
 
 from asemd.embedded import Embedded
-from asemd.embedded_file import read_setfl
 from asemd.kernels.embedded import embedding
 from asemd.kernels.embedded_concentration import concentration_forces, mixed, polynomial
 from asemd.manybody import element_of
@@ -33,9 +32,7 @@ class Concentration(Embedded):
         self.sites = sites
 
     def read(self, file, elements, settings):
-        data = read_setfl(file, elements, **self.form)
-        if len(data.elements) != 2:
-            raise file.error(f"the file must have two elements, it has {len(data.elements)}", 4)
+        data = super().read(file, elements, settings)
         data.rhomax = math.inf
         return data
 
