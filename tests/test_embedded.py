@@ -191,7 +191,7 @@ def test_without_compiler(tmp_path):
 
 WRONG = [("2 A B", "3 A B", r"3 elements are announced, 2 named: A B .*small:4"),
          ("100 0.5 200", "100 -0.5 200", r"drho must be positive.*small:5"),
-         ("100 0.5 200", "2 0.5 200", r"Nrho must be at least 5, got 2 .*small:5"), ("0.03 5.9", "0.03", r"the cutoff is missing .*small:5"),
+         ("100 0.5 200", "2 0.5 200", r"Nrho must be at least 5, got 2 .*small:5"), ("0.03 5.9", "0.03", "the cutoff is missing .*small:5"),
          ("1 10.0 4.0", "x 10.0 4.0", r"the atomic number must be a whole number, got 'x' .*small:6"),
          ("1 10.0 4.0", "1 -10.0 4.0", r"the mass must be positive, got -10 .*small:6"),
          ("-1.0000000000000001e-01", "zero", r"a value of F\(rho\) of A must be a number, got 'zero' .*small:7"),
