@@ -81,6 +81,10 @@ class ManyBody(PairStyle):
         """Squared cutoffs by pair of types as ``rows[0]`` (0: no interaction), constants and arrays of the kernel."""
         raise NotImplementedError
 
+    def for_some_types(self, settings: Mapping[str, Any]) -> bool:
+        """Whether ``pair_coeff`` may be given for some pairs of types, each with the whole line of elements."""
+        return False
+
     # ------------------------------------------------------------------------------- words ---
 
     def parse_coeff(self, words, settings):
@@ -92,7 +96,8 @@ class ManyBody(PairStyle):
                              f"{'s' * (len(words) != 1)} after the types")
         file, elements = PotentialFile(words[0], what), tuple(words[1:])
         chosen = tuple(dict.fromkeys(e for e in elements if e != "NULL"))
-        values = {"file": words[0], "element": elements, "data": self.read(file, chosen, settings), "units": file}
+        some = self.for_some_types(settings)
+        values = {"file": words[0], "element": elements, "some": some, "data": self.read(file, chosen, settings), "units": file}
         values["reach"] = 0.0
         n, used = len(elements), [t for t, e in enumerate(elements, 1) if e != "NULL"]
         if used:
@@ -117,6 +122,11 @@ class ManyBody(PairStyle):
         if not self.elements:
             return keys
         n, elements = max(j for _, j in keys), values["element"]
+        if values["some"]:
+            barred = [t for pair in keys for t in pair if t <= len(elements) and elements[t - 1] == "NULL"]
+            if barred:
+                raise InputError(f"pair_coeff {self.name}: type {barred[0]} is mapped to NULL, leave it out of the types of the command")
+            return keys
         if len(keys) != n * (n + 1) // 2:
             raise InputError(f"pair_coeff {self.name} must be for all types at once: pair_coeff * * {values['file']} ...")
         if len(elements) != n:
@@ -128,7 +138,8 @@ class ManyBody(PairStyle):
         if not self.elements:
             return super().lines(coeffs)
         different = {(c["file"], c["element"]): c for c in coeffs.values()}
-        return [((0, 0), ["*", "*"], self.format_coeff(c)) for c in different.values()]
+        some = [(key, [str(t) for t in key], self.format_coeff(c)) for key, c in coeffs.items() if c["some"]]
+        return some + [((0, 0), ["*", "*"], self.format_coeff(c)) for c in different.values() if not c["some"]]
 
     # ------------------------------------------------------------------------ coefficients ---
 
@@ -138,6 +149,10 @@ class ManyBody(PairStyle):
             missing = sorted(pair for pair in pairs if pair not in coeffs)
             if missing:
                 raise InputError(f"{missing_pairs(missing)}: pair_coeff * * FILE needs an element for each type")
+            for c in coeffs.values():
+                if len(c["element"]) != ntypes:
+                    raise InputError(f"pair_coeff {self.name} needs an element, or NULL, for each of {ntypes} atom types, got "
+                                     f"{len(c['element'])}: {' '.join(c['element'])}")
         return {pair: coeffs[pair] for pair in sorted(pairs) if pair in coeffs}
 
     def reset_cutoffs(self, coeffs):

@@ -130,6 +130,9 @@ class SW(ManyBody):
     def format_settings(self, settings):
         return ["threebody", "off"] if settings["threebody"] == "off" else []
 
+    def for_some_types(self, settings):
+        return settings["threebody"] == "off"
+
     def read(self, file, elements, settings):
         found = read_triples(file, elements, NAMES)
         for key, (p, where) in found.items():
@@ -150,10 +153,9 @@ class SW(ManyBody):
                 rows[0, i, j] = ends_at(p) ** 2
                 two[i, j] = [sigma, cut, p["gamma"] * sigma, 0.0, p["A"] * epsilon * p["B"], p["p"], p["q"], p["A"] * epsilon]
                 for k in range(1, n):
-                    if element[k] is not None:
+                    if element[k] is not None and settings["threebody"] == "on":
                         q = c["data"][element[i], element[j], element[k]]
-                        on = settings["threebody"] == "on"
-                        three[i, j, k] = [q["lambda"] * q["epsilon"] * unit * on, q["costheta"]]
+                        three[i, j, k] = [q["lambda"] * q["epsilon"] * unit, q["costheta"]]
         return PairTables(rows, np.array(self.numbers(settings)), (two, three))
 
     def numbers(self, settings):

@@ -25,7 +25,7 @@ def bend(delta, constants):
     u = 3.141592653589793 / (constants[1] - constants[0])
     x = u * (size - constants[0])
     f = 0.5 + 0.5 * math.cos(x)
-    return delta * f, f - constants[2] * 0.5 * u * size * math.sin(x)
+    return delta * f, f - 0.5 * u * size * math.sin(x) if constants[2] == 1.0 else 1.0
 
 
 class SWMod(SW):
@@ -61,4 +61,5 @@ class SWMod(SW):
 
 register(SWMod("sw/mod", site=sw, helpers=(power, bend, neighbours), rooms=6, doc=__doc__,
                settings="[threebody] [on|off] [maxdelcs] [delta1] [delta2]",
-               units={"threebody": "word", "on|off": "word", "maxdelcs": "word"}, example="tmd.sw.mod Mo S", see="J.-W. Jiang, Nanotechnology 26, 315706 (2015); LAMMPS manual, pair_style sw/mod"))
+               units={"threebody": "word", "on|off": "word", "maxdelcs": "word"}, example="tmd.sw.mod Mo S",
+               see="J.-W. Jiang, Nanotechnology 26, 315706 (2015); LAMMPS manual, pair_style sw/mod"))
