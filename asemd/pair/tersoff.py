@@ -12,15 +12,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from asemd import words as read
 from asemd.errors import InputError
 from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
-from asemd.manybody import ManyBody, element_of
-from asemd.pairstyle import PairTables
 from asemd.style import register
-from asemd.triples import read_triples
+from asemd.triples import TripleStyle
 
 # columns of the table of triples; variants have more of them after these
 COLUMNS = "reach inner R D A lambda1 B lambda2 lambda3 m gamma c d h n beta".split()
@@ -168,8 +164,8 @@ def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
-class Tersoff(ManyBody):
-    """Reads triples; `names` are the numbers of an entry in the file's order, `columns` those of the kernel's table, made by `row`."""
+class Tersoff(TripleStyle):
+    """Tersoff's entries and the shift of distances."""
 
     names = "m gamma lambda3 c d h n beta lambda2 B R D lambda1 A"
     columns = COLUMNS
@@ -190,17 +186,8 @@ class Tersoff(ManyBody):
     def format_settings(self, settings):
         return ["shift", repr(settings["shift"])] if settings["shift"] else []
 
-    def read(self, file, elements, settings):
-        found = read_triples(file, elements, self.names)
-        for key, (p, where) in found.items():
-            self.check_entry(p, lambda text, key=key, where=where: InputError(f"{file.what}: entry {' '.join(key)}: {text}", where))
-        return {key: p for key, (p, _) in found.items()}
-
-    def check_entry(self, p, error) -> None:
-        """Refuse numbers that make no sense."""
-        wrong = [n for n in self.positive.split() if p[n] < 0.0]
-        if wrong:
-            raise error(f"{wrong[0]} must not be negative, got {p[wrong[0]]:g}")
+    def check_entry(self, p, error):
+        super().check_entry(p, error)
         if p["D"] > p["R"]:
             raise error(f"D, {p['D']:g}, is larger than R, {p['R']:g}")
         self.check_power(p, error)
@@ -213,23 +200,11 @@ class Tersoff(ManyBody):
         """Columns that are not numbers of the file."""
         return {"reach": p["R"] + p["D"], "inner": p["R"] - p["D"]}
 
-    def pack_pairs(self, settings, filled, ntypes, units, shift=False):
-        element, n = element_of(filled, ntypes), ntypes + 1
-        rows, three = np.zeros((1, n, n)), np.zeros((n, n, n, len(self.columns)))
-        served = {t for pair in filled for t in pair}
-        for (a, b), c in filled.items():
-            unit = self.unit_factor(c, units)
-            for i, j in {(a, b), (b, a)}:
-                for k in served:
-                    p = c["data"][element[i], element[j], element[k]]
-                    p = {**p, **{name: p[name] * unit for name in self.energies}}
-                    p |= self.row(p, units)
-                    three[i, j, k] = [p[name] for name in self.columns]
-        reach = three[..., 0]
-        farthest = np.maximum(reach.max(axis=1), reach.max(axis=2)) - settings["shift"]
-        for i, j in filled:
-            rows[0, i, j] = rows[0, j, i] = max(farthest[i, j], farthest[j, i], 0.0) ** 2
-        return PairTables(rows, np.array([settings["shift"]]), (three,))
+    def shortened(self, settings):
+        return settings["shift"]
+
+    def numbers(self, settings):
+        return [settings["shift"]]
 
 
 OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)

@@ -1,0 +1,21 @@
+r"""Environment-dependent interatomic potential (EDIP) of silicon: pairs and angles that depend on the coordination of an atom.
+
+The formula is that of `pair edip/multi`, for one element. LAMMPS looks its functions up in tables with 8000 points per distance unit and
+interpolates; here they are computed, so that numbers agree to about seven digits.
+"""
+from __future__ import annotations
+
+from asemd.errors import InputError
+from asemd.pair.edip_multi import EDIP, coordination, edip
+from asemd.style import register
+
+
+class OneElement(EDIP):
+    def read(self, file, elements, settings):
+        if len(elements) > 1:
+            raise InputError(f"{file.what}: it is for one element, got {' '.join(elements)}; use edip/multi")
+        return super().read(file, elements, settings)
+
+
+register(OneElement("edip", site=edip, helpers=(coordination,), rooms=7, converts=False, example="Si.edip Si", doc=__doc__,
+                    see="J. F. Justo, M. Z. Bazant, E. Kaxiras, V. V. Bulatov, S. Yip, Phys. Rev. B 58, 2539 (1998)"))

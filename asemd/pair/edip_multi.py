@@ -1,0 +1,138 @@
+r"""Environment-dependent interatomic potential (EDIP) of several elements: pairs and angles that depend on the coordination of an atom.
+
+$$E_i=\sum_{j\ne i}A\Big[\Big(\frac Br\Big)^\rho-e^{-\beta Z_i^2}\Big]e^{\sigma/(r-a)}+
+\sum_{j<k}e^{\gamma/(r_{ij}-a)+\gamma/(r_{ik}-a)}\lambda\big[1-e^{-Q(\cos\theta+\tau)^2}+\eta Q(\cos\theta+\tau)^2\big]$$
+
+with the coordination $Z_i=\sum_jf(r_{ij})$, $f=1$ below c and $e^{\alpha/(1-x^{-3})}$, $x=(r-c)/(a-c)$, up to a;
+$Q=Q_0e^{-\mu Z}$, $\tau=u_1+u_2(u_3e^{-u_4Z}-e^{-2u_4Z})$.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.style import register
+from asemd.triples import TripleStyle
+
+COLUMNS = "a c alpha A B beta rho sigma gamma lambda eta mu Q0 u1 u2 u3 u4".split()
+
+
+def coordination(r, p):
+    """f and its derivative."""
+    if r < p[1]:
+        return 1.0, 0.0
+    if r >= p[0]:
+        return 0.0, 0.0
+    w = 1.0 / (p[0] - p[1])
+    x = (r - p[1]) * w
+    x3 = x * x * x
+    if x3 < 1e-30:
+        return 1.0, 0.0
+    q = 1.0 / (x3 - 1.0)
+    f = math.exp(p[2] * x3 * q)
+    return f, -3.0 * p[2] * f * x * x * w * q * q
+
+
+def edip(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
+    three = arrays[0]
+    energy, z = 0.0, 0.0
+    for k in range(n):
+        p = three[ti, types[k], types[k]]
+        r = math.sqrt(near[3, k])
+        ir = 1.0 / r
+        room[0, k] = near[0, k] * ir
+        room[1, k] = near[1, k] * ir
+        room[2, k] = near[2, k] * ir
+        room[3, k] = ir
+        room[4, k], room[5, k], room[6, k] = 0.0, 0.0, 0.0
+        if r < p[0]:
+            f, room[4, k] = coordination(r, p)
+            z += f
+            s = 1.0 / (r - p[0])
+            room[5, k] = math.exp(p[8] * s)
+            room[6, k] = p[8] * s * s
+    dz = 0.0       # derivative of the energy by the coordination
+    for k in range(n):
+        p = three[ti, types[k], types[k]]
+        if room[6, k] == 0.0:
+            continue
+        r = 1.0 / room[3, k]
+        s = 1.0 / (r - p[0])
+        b = math.pow(p[4] * room[3, k], p[6])
+        o = math.exp(-p[5] * z * z)
+        x = p[3] * math.exp(p[7] * s)
+        e = x * (b - o)
+        d = -x * p[6] * b * room[3, k] - e * p[7] * s * s
+        energy += e
+        dz += 2.0 * p[5] * z * o * x
+        gx = d * room[0, k]
+        gy = d * room[1, k]
+        gz = d * room[2, k]
+        grad[0, k] += gx
+        grad[1, k] += gy
+        grad[2, k] += gz
+        if PER_ATOM:
+            share_pair(shares, k, e, gx, gy, gz)
+    for j in range(n - 1):
+        if room[6, j] == 0.0:
+            continue
+        ux, uy, uz = room[0, j], room[1, j], room[2, j]
+        for k in range(j + 1, n):
+            if room[6, k] == 0.0:
+                continue
+            p = three[ti, types[j], types[k]]
+            vx, vy, vz = room[0, k], room[1, k], room[2, k]
+            c = ux * vx + uy * vy + uz * vz
+            q = p[12] * math.exp(-p[11] * z)
+            a = math.exp(-p[16] * z)
+            tau = p[13] + p[14] * (p[15] * a - a * a)
+            dtau = p[14] * p[16] * (2.0 * a * a - p[15] * a)
+            t = c + tau
+            g = math.exp(-q * t * t)
+            w = p[9] * room[5, j] * room[5, k]
+            e = w * (1.0 - g + p[10] * q * t * t)
+            slope = 2.0 * w * q * t * (g + p[10])
+            energy += e
+            dz += slope * dtau - p[11] * q * w * t * t * (g + p[10])
+            a = -e * room[6, j] - slope * c * room[3, j]
+            b = slope * room[3, j]
+            gjx = a * ux + b * vx
+            gjy = a * uy + b * vy
+            gjz = a * uz + b * vz
+            a = -e * room[6, k] - slope * c * room[3, k]
+            b = slope * room[3, k]
+            gkx = a * vx + b * ux
+            gky = a * vy + b * uy
+            gkz = a * vz + b * uz
+            grad[0, j] += gjx
+            grad[1, j] += gjy
+            grad[2, j] += gjz
+            grad[0, k] += gkx
+            grad[1, k] += gky
+            grad[2, k] += gkz
+            if PER_ATOM:
+                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
+    for k in range(n):
+        d = dz * room[4, k]
+        grad[0, k] += d * room[0, k]
+        grad[1, k] += d * room[1, k]
+        grad[2, k] += d * room[2, k]
+        if PER_ATOM:
+            share_pair(shares, k, 0.0, d * room[0, k], d * room[1, k], d * room[2, k])
+    return energy
+
+
+class EDIP(TripleStyle):
+    names = "A B a c alpha beta eta gamma lambda mu rho sigma Q0 u1 u2 u3 u4"
+    columns = COLUMNS
+    energies = ("A", "lambda")
+    positive = "A B a c alpha beta eta gamma lambda mu rho sigma"
+
+    def check_entry(self, p, error):
+        super().check_entry(p, error)
+        if p["c"] >= p["a"]:
+            raise error(f"cutoffC, {p['c']:g}, must be less than cutoffA, {p['a']:g}")
+
+
+register(EDIP("edip/multi", site=edip, helpers=(coordination,), rooms=7, converts=False, example="SiC.edip Si",
+              see="M. Z. Bazant, E. Kaxiras, J. F. Justo, Phys. Rev. B 56, 8542 (1997); C. Jiang et al., ibid. 86, 144118 (2012)"))

@@ -1,0 +1,131 @@
+r"""Vashishta potential of ceramics and glasses: steric, screened Coulomb, charge-dipole and van der Waals pairs, and bond angles.
+
+$$U_2=\frac H{r^\eta}+\frac{Z_iZ_j}re^{-r/\lambda_1}-\frac D{r^4}e^{-r/\lambda_4}-\frac W{r^6},\quad
+U_3=B\frac{(\cos\theta-\cos\theta_0)^2}{1+C(\cos\theta-\cos\theta_0)^2}e^{\gamma/(r_{ij}-r_0)+\gamma/(r_{ik}-r_0)}$$
+
+Energy and force of pairs are shifted to zero at the cutoff rc; triples end at r0. Pairs take their numbers from the entry i j j.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd import units as unit_styles
+from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.style import register
+from asemd.triples import TripleStyle
+
+COLUMNS = "rc r0 H eta zz k1 D k4 W edge slope gamma B C costheta".split()
+
+
+def two_body(r, h, eta, zz, k1, d, k4, w):
+    """Energy of a pair before it is shifted, and the derivative."""
+    ir = 1.0 / r
+    i2 = ir * ir
+    a = h * math.pow(r, -eta)
+    b = zz * math.exp(-r * k1) * ir
+    c = d * math.exp(-r * k4) * i2 * i2
+    v = w * i2 * i2 * i2
+    return a + b - c - v, -eta * a * ir - b * (ir + k1) + c * (4.0 * ir + k4) + 6.0 * v * ir
+
+
+def pairs(n, m, ti, near, types, room, grad, three, constants, arrays, shares):
+    """Energy of the first `m` pairs."""
+    energy = 0.0
+    for k in range(m):
+        p = three[ti, types[k], types[k]]
+        r = room[4, k]
+        if r >= p[0]:
+            continue
+        e, d = two_body(r, p[2], p[3], p[4], p[5], p[6], p[7], p[8])
+        e -= p[9] + (r - p[0]) * p[10]
+        d -= p[10]
+        energy += e
+        gx = d * room[0, k]
+        gy = d * room[1, k]
+        gz = d * room[2, k]
+        grad[0, k] += gx
+        grad[1, k] += gy
+        grad[2, k] += gz
+        if PER_ATOM:
+            share_pair(shares, k, e, gx, gy, gz)
+    return energy
+
+
+def vashishta(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
+    three = arrays[0]
+    inside = 0
+    for k in range(n):
+        r = math.sqrt(near[3, k])
+        ir = 1.0 / r
+        room[0, k] = near[0, k] * ir
+        room[1, k] = near[1, k] * ir
+        room[2, k] = near[2, k] * ir
+        room[3, k] = ir
+        room[4, k] = r
+        p = three[ti, types[k], types[k]]
+        if r < p[1]:
+            s = 1.0 / (r - p[1])
+            room[5, inside] = math.exp(p[11] * s)
+            room[6, inside] = p[11] * s * s
+            room[7, inside] = k
+            inside += 1
+    energy = pairs(n, m, ti, near, types, room, grad, three, constants, arrays, shares)
+    for a in range(inside - 1):
+        j = int(room[7, a])
+        ux, uy, uz = room[0, j], room[1, j], room[2, j]
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for b in range(a + 1, inside):
+            k = int(room[7, b])
+            p = three[ti, types[j], types[k]]
+            if p[12] == 0.0:
+                continue
+            vx, vy, vz = room[0, k], room[1, k], room[2, k]
+            x = ux * vx + uy * vy + uz * vz
+            d = x - p[14]
+            w = p[12] * room[5, a] * room[5, b]
+            q = 1.0 / (1.0 + p[13] * d * d)
+            e = w * d * d * q
+            slope = 2.0 * w * d * q * q
+            energy += e
+            s = -e * room[6, a] - slope * x * room[3, j]
+            t = slope * room[3, j]
+            gjx = s * ux + t * vx
+            gjy = s * uy + t * vy
+            gjz = s * uz + t * vz
+            s = -e * room[6, b] - slope * x * room[3, k]
+            t = slope * room[3, k]
+            gkx = s * vx + t * ux
+            gky = s * vy + t * uy
+            gkz = s * vz + t * uz
+            fx += gjx
+            fy += gjy
+            fz += gjz
+            grad[0, k] += gkx
+            grad[1, k] += gky
+            grad[2, k] += gkz
+            if PER_ATOM:
+                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
+        grad[0, j] += fx
+        grad[1, j] += fy
+        grad[2, j] += fz
+    return energy
+
+
+class Vashishta(TripleStyle):
+    names = "H eta Z_i Z_j lambda1 D lambda4 W rc B gamma r0 C costheta"
+    columns = COLUMNS
+    energies = ("H", "D", "W", "B")
+    positive = "B gamma r0 rc C lambda1 D lambda4 W H eta"
+
+    def row(self, p, units):
+        coulomb = (units or unit_styles.get("metal")).qqr2e
+        out = {"zz": p["Z_i"] * p["Z_j"] * coulomb, "k1": 1.0 / p["lambda1"] if p["lambda1"] > 0.0 else 0.0,
+               "k4": 1.0 / p["lambda4"] if p["lambda4"] > 0.0 else 0.0, "edge": 0.0, "slope": 0.0}
+        if p["rc"] > 0.0:
+            numbers = p["H"], p["eta"], out["zz"], out["k1"], p["D"], out["k4"], p["W"]
+            out["edge"], out["slope"] = two_body(p["rc"], *numbers)
+        return out
+
+
+register(Vashishta("vashishta", site=vashishta, helpers=(two_body, pairs), rooms=8, example="SiC.vashishta Si",
+                   see="P. Vashishta, R. K. Kalia, J. P. Rino, I. Ebbsjo, Phys. Rev. B 41, 12197 (1990)"))
