@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from asemd import modifiers
+from asemd import units as unit_styles
 from asemd import words as read
 from asemd.errors import InputError, nearest
 from asemd.pairing import PairTerm, check_complete, make_terms, reach
@@ -83,6 +84,11 @@ class Interactions:
     def needs_solver(self) -> bool:
         """Whether a pair style leaves a part to a long-range solver."""
         return any(use.style.solvers for use in self.uses["pair"])
+
+    def coulomb_constant(self, units) -> float:
+        """The energy of two unit charges at unit distance for dielectric constant 1; some styles ask for CHARMM's number."""
+        charmm = any(use.style.charmm_constant for use in self.uses["pair"]) and units == unit_styles.get("real")
+        return 332.0716 if charmm else units.qqr2e
 
     def style_name(self, category: str) -> str:
         """The name after ``*_style``: ``none``, a style or a hybrid."""

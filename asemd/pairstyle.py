@@ -112,6 +112,7 @@ class PairStyle(Style):
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
     all_or_nothing = False           # special pairs whose weight is not 0 count in full
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
+    charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),

@@ -124,7 +124,7 @@ class KSpace:
         q = np.asarray(system.q, float)
         self.n, self.cutoff = max(system.n, 1), float(cutoff)
         self.qsum, self.qsqsum = float(q.sum()), float(q @ q)
-        self.scale = units.qqr2e / interactions.dielectric
+        self.scale = interactions.coulomb_constant(units) / interactions.dielectric
         self.q2 = self.qsqsum * self.scale
         a, b, c = system.box.cell
         lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
@@ -132,7 +132,7 @@ class KSpace:
         self.inner = lengths.copy()                   # without the slab's empty volume
         self.prd = lengths * [1.0, 1.0, self.stretch]
         self.volume = float(self.prd.prod())
-        two_charges = units.qqr2e * units.qelectron**2 / units.angstrom**2
+        two_charges = interactions.coulomb_constant(units) * units.qelectron**2 / units.angstrom**2
         self.two_charges = two_charges
         self.accuracy = self.modify["force"] if self.modify["force"] >= 0.0 else self.accuracy_relative * two_charges
         self.g_ewald = self.modify["gewald"] or self.first_guess()

@@ -5,7 +5,7 @@ r"""$$E = 4\epsilon \left[ \sigma^{12} \frac{R^6}{R^6 - a^6} \left(\frac{1}{r^6}
 Lennard-Jones whose force is switched off between inner (a) and outer (R), and Coulomb with shifted force; below a the Lennard-Jones
 energy is 4 epsilon [(sigma/r)^12 - sigma^12 / (a R)^6 - (sigma/r)^6 + sigma^6 / (a R)^3]. epsilon14 and sigma14 (default: epsilon,
 sigma) are used for the ends of a dihedral: without any switch by dihedral_style charmm, with the expressions of short distances by
-charmmfsw. In units real the Coulomb constant of this style is CHARMM's, 332.0716.
+charmmfsw. In units real the Coulomb constant is CHARMM's, 332.0716, for all interactions.
 
 Between inner and outer LAMMPS's Lennard-Jones force is that of the plain potential times the switch of lj/charmm/coul/charmm, which is not
 minus the gradient of LAMMPS's energy. Here it is the gradient; ``compat="lammps"`` gives LAMMPS's force.
@@ -15,12 +15,10 @@ from __future__ import annotations
 
 import math
 
-from asemd import units as unit_styles
 from asemd.errors import InputError
+from asemd.pair.coul_cut import coul_cut
 from asemd.pair.lj_cut import lj_cut
 from asemd.pairstyle import PairStyle, make_part, pack_parts, pair_sum
-
-CHARMM_REAL = 332.0716
 
 
 def lj_shifted(r2, epsilon: "energy", sigma: "distance", shift12, shift6):
@@ -73,22 +71,18 @@ def lj_charmmfsw_lammps(r2, epsilon: "energy", sigma: "distance", shift12, shift
     return (e if inside else switched), (d if inside else slope)
 
 
-def coul_charmmfsh(r2, qq, cut_coul, constant):
+def coul_charmmfsh(r2, qq, cut_coul):
     r = math.sqrt(r2)
     rest = (cut_coul - r) / cut_coul
-    c = constant * qq / r
+    c = qq / r
     return c * rest * rest, -0.5 * c * rest * (1.0 + r / cut_coul) / r2
-
-
-def coul_charmm(r2, qq, constant):
-    c = constant * qq / math.sqrt(r2)
-    return c, -0.5 * c / r2
 
 
 class CharmmSwitchedPair(PairStyle):
     """Checks the switching distances, derives constants of the switches, and has tables of 1-4 pairs for both CHARMM dihedral styles."""
 
-    one_four_parts = (make_part(lj_cut, "", ("epsilon", "sigma")), make_part(coul_charmm, "", ()))
+    charmm_constant = True
+    one_four_parts = (make_part(lj_cut, "", ("epsilon", "sigma")), make_part(coul_cut, "", ()))
     one_four_shifted_parts = (make_part(lj_shifted, "", ("epsilon", "sigma")), make_part(coul_charmmfsh, "", ()))
 
     def parse_settings(self, words):
@@ -109,28 +103,19 @@ class CharmmSwitchedPair(PairStyle):
         a, b = settings["inner"], settings["outer"]
         a3, b3 = a**3, b**3
         out = {"inner2": a * a, "shift12": 1.0 / (a3 * b3) ** 2, "shift6": 1.0 / (a3 * b3), "factor6": b3 / (b3 - a3)}
-        return {"constant": 1.0, **settings, **out, "factor12": b3 * b3 / ((b3 - a3) * (b3 + a3))}
-
-    def pack_pairs(self, settings, filled, ntypes, units, shift=False):
-        return super().pack_pairs(with_constant(settings, units), filled, ntypes, units, shift)
+        return {**settings, **out, "factor12": b3 * b3 / ((b3 - a3) * (b3 + a3))}
 
     def one_four(self, settings, filled, ntypes, units):
         """`PairTables` of `one_four_parts`: epsilon14 and sigma14 of every pair of types, without cutoff."""
-        return self.ends(self.one_four_parts, settings, filled, ntypes, units)
+        return self.ends(self.one_four_parts, settings, filled, ntypes)
 
     def one_four_shifted(self, settings, filled, ntypes, units):
         """The same for `one_four_shifted_parts`."""
-        return self.ends(self.one_four_shifted_parts, settings, filled, ntypes, units)
+        return self.ends(self.one_four_shifted_parts, settings, filled, ntypes)
 
-    def ends(self, parts, settings, filled, ntypes, units):
+    def ends(self, parts, settings, filled, ntypes):
         ends = {pair: {"epsilon": c["epsilon14"], "sigma": c["sigma14"]} for pair, c in filled.items()}
-        return pack_parts(parts, self.constants(with_constant(settings, units)), ends, ntypes, lambda c: (math.inf, math.inf), shift=False)
-
-
-def with_constant(settings, units):
-    """The settings and what the Coulomb constant must be multiplied with."""
-    real = units is not None and units == unit_styles.get("real")
-    return {**settings, "constant": CHARMM_REAL / units.qqr2e if real else 1.0}
+        return pack_parts(parts, self.constants(settings), ends, ntypes, lambda c: (math.inf, math.inf), shift=False)
 
 
 OPTIONS = dict(

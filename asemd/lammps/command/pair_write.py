@@ -83,7 +83,7 @@ def run(session, args):
         raise InputError(f"{what} command before pair_style is defined")
     units = unit_styles.get(system.units)
     terms = chosen(session, system.counts["ntypes"], units)
-    qq = units.qqr2e / scene.interactions.dielectric * qi * qj
+    qq = scene.interactions.coulomb_constant(units) / scene.interactions.dielectric * qi * qj
     r2 = squares(style, n, inner, outer)
     values = np.array([pair_value(terms, i, j, s, qq) for s in r2.tolist()])
     r = np.sqrt(r2)
