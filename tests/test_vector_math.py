@@ -145,6 +145,37 @@ def test_bits():
     assert bits.upper_half(1.0 + 2.0**-50) == 1.0
 
 
+def test_roots_and_inverses():
+    b = Builder("roots in loops")
+    b.line("from asemd.kernels.fuse import madd")
+    vector_math.paste_roots(b)
+    for name in ("root", "inverse"):
+        b.text(LOOPS.format(name=name).strip())
+    module = b.build()
+    x = 10.0 ** np.random.default_rng(5).uniform(-37, 37, 3000)
+    for name, exact in (("root", lambda v: 1 / mp.sqrt(v)), ("inverse", lambda v: 1 / v)):
+        out = np.empty_like(x)
+        getattr(module, f"loop_{name}")(x, out)
+        want = [exact(mp.mpf(float(v))) for v in x]
+        worst = max(abs(mp.mpf(float(got)) - w) / np.spacing(float(w)) for got, w in zip(out, want))
+        assert worst < 1.5, name
+
+
+@pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
+@pytest.mark.parametrize("argument", ["-x[k] * x[k]", "-abs(x[k])", "x[k] + 1.0"])
+def test_exp_of_what_has_a_sign_is_vectorised(argument):
+    """Where the compiler knows that an end of the interval is never reached, it must not make branches."""
+    b = Builder("exp of a square")
+    vector_math.paste(b)
+    b.text(f"def loop(x, out):\n    for k in range(x.size):\n        out[k] = vector_exp({argument})")
+    loop = numba.njit(error_model="numpy")(b.build().loop.py_func)
+    loop(np.ones(64), np.ones(64))
+    if platform.machine() not in ("x86_64", "AMD64"):
+        pytest.skip("looks at x86 registers only")
+    code = "".join(loop.inspect_asm().values())
+    assert re.search(r"mulpd|fmadd\d+pd", code), "no packed arithmetic"
+
+
 @pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
 @pytest.mark.parametrize("name", ["exp", "log", "erfc"])
 def test_loops_are_vectorised(name, double):

@@ -19,6 +19,14 @@ def nearest_integer(x):
     return np.rint(x)
 
 
+def within(x, low, high):
+    """`x`, or the end of the interval that it is beyond; what is not a number stays so.
+
+    As conditional expressions the two steps become branches, for the compiler follows the constants, and loops are no vector code.
+    """
+    return low if x < low else high if x > high else x
+
+
 def power_of_two(k):
     """2^k for a whole number `k` within the range of normal numbers."""
     return math.ldexp(1.0, int(k)) if k == k else k
@@ -85,6 +93,22 @@ def _significand(b, x, real, whole, digits, bias, half):
 
 def _upper(b, x, real, whole, digits, bias, half):
     return b.bitcast(b.and_(b.bitcast(x, whole), whole(~((1 << (digits + 2) // 2) - 1))), real)
+
+
+@intrinsic
+def _within(typingctx, x, low, high):
+    kind = types.float32 if x == types.float32 else types.float64
+
+    def generate(context, builder, signature, values):
+        x, low, high = values
+        x = builder.select(builder.fcmp_ordered("<", x, low), low, x)
+        return builder.select(builder.fcmp_ordered(">", x, high), high, x)
+    return kind(kind, kind, kind), generate
+
+
+@overload(within, inline="always")
+def _use_within(x, low, high):
+    return lambda x, low, high: _within(x, low, high)
 
 
 for _python, _emit in ((nearest_integer, _nearest), (power_of_two, _power), (exponent, _exponent), (significand, _significand),

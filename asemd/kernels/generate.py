@@ -95,7 +95,7 @@ class _Plain(ast.NodeTransformer):
             node.body = node.body[1:]
         self.generic_visit(node)
         if self.vector and node.args.args and node.args.args[0].arg == "r2":
-            node.args.args.insert(1, ast.arg("ir2"))
+            node.args.args[1:1] = [ast.arg("ir2"), ast.arg("ir")]
         return node
 
     def visit_BinOp(self, node):
@@ -103,6 +103,8 @@ class _Plain(ast.NodeTransformer):
             node.left = self.visit(node.left)      # the exponent stays an integer
             return node
         self.generic_visit(node)
+        if self.vector and not self.real and isinstance(node.op, ast.Div) and _is_one(node.left) and _one_and_more(node.right):
+            return ast.Call(ast.Name("vector_inverse", ast.Load()), [node.right], [])
         if self.vector and isinstance(node.op, ast.Div) and isinstance(node.right, ast.Name) and node.right.id == "r2":
             inverse = ast.Name("ir2", ast.Load())
             one = isinstance(node.left, ast.Call) and getattr(node.left.func, "id", "") == "real" and node.left.args[0].value == 1.0
@@ -118,9 +120,21 @@ class _Plain(ast.NodeTransformer):
 
     def visit_Call(self, node):
         self.generic_visit(node)
+        if self.vector and ast.unparse(node) == "math.sqrt(r2inv)":
+            return ast.Name("ir", ast.Load())
+        if self.vector and ast.unparse(node) == "math.sqrt(r2)":
+            return ast.BinOp(ast.Name("r2", ast.Load()), ast.Mult(), ast.Name("ir", ast.Load()))
         if self.vector and isinstance(node.func, ast.Attribute) and node.func.attr in ("exp", "log", "erfc", "pow"):
             node.func = ast.Name("vector_" + node.func.attr, ast.Load())
         return node
+
+
+def _is_one(node) -> bool:
+    return isinstance(node, ast.Constant) and node.value == 1.0
+
+
+def _one_and_more(node) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) and _is_one(node.left)
 
 
 def text_of(function: Callable) -> str:
@@ -137,8 +151,9 @@ def plain_source(function: Callable, name: str | None = None, real: bool = False
     real : bool
         Wrap number literals as ``real(...)``, so that single-precision kernels stay in single precision.
     vector : bool
-        Replace ``math.exp`` and relatives by branch-free versions that vectorise (`asemd.kernels.vector_math`); a function of ``r2`` gets
-        a second argument ``ir2``, its inverse, which replaces divisions by ``r2`` (the kernel shares one division between two pairs).
+        Replace ``math.exp`` and relatives by branch-free versions that vectorise (`asemd.kernels.vector_math`), and ``1.0 / (1.0 + ...)``,
+        which is of order 1, by one that takes less time; a function of ``r2`` gets two more arguments, its inverse ``ir2``, which replaces
+        divisions by ``r2``, and the root of that, ``ir``, for ``math.sqrt(r2inv)`` and ``math.sqrt(r2)``.
     constants : mapping
         Names whose truth is known: ``if NAME:`` keeps one branch only, so that a variant holds nothing it does not need.
     """

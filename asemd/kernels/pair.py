@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums
+from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, vector_math
 from asemd.kernels.generate import Builder, text_of
 from asemd.kernels.target import lanes
 from asemd.pairstyle import PairStyle
@@ -53,19 +53,19 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool,
     for u in uniform:
         where.append(f"p[{sum(1 for w in where if w[0] == 'p')}]" if u else f"b[place(o + {sum(1 for w in where if w[0] == 'b')} * ROW)]")
     at_constant = sum(uniform)
-    lines = [f"def pair_{'energy' if energy else 'force'}(r2, ir2, qq, p, b, o, meet):"]
+    lines = [f"def pair_{'energy' if energy else 'force'}(r2, ir2, ir, qq, p, b, o, meet):"]
     if any(part.coordinate == "r" for part in parts):
-        lines.append("    r = math.sqrt(r2)")
+        lines.append("    r = r2 * ir")
     row, total, vdwl, coul = 0, [], [], []
     for k, (part, name) in enumerate(zip(parts, names)):
         cut2, offset = where[row], where[row + 1]
-        args = (["r2", "ir2"] if part.coordinate == "r2" else ["r"]) + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
+        args = (["r2", "ir2", "ir"] if part.coordinate == "r2" else ["r"]) + ["qq"] * part.charged + where[row + 2:row + 2 + len(part.rows)]
         args += [f"p[{at_constant + i}]" for i in range(len(part.constants))]
         at_constant += len(part.constants)
         row += 2 + len(part.rows)
         lines.append(f"    e{k}, d{k} = {name}({', '.join(args)})")
         lines.append(f"    m{k} = (r2 < {cut2}) & meet")
-        lines.append(f"    f{k} = " + (f"real(-2) * d{k}" if part.coordinate == "r2" else f"-d{k} / r"))
+        lines.append(f"    f{k} = " + (f"real(-2) * d{k}" if part.coordinate == "r2" else f"-d{k} * ir"))
         lines.append(f"    f{k} = f{k} if m{k} else real(0)")
         total.append(f"f{k}")
         if energy:
@@ -82,6 +82,11 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool,
     return "\n".join(lines)
 
 
+def takes_roots(style: PairStyle) -> bool:
+    """Whether formulas take the distance, not only its square."""
+    return any(part.coordinate == "r" or "math.sqrt(r2" in text_of(part.function) for part in style.parts)
+
+
 def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single: bool, energy: bool, piece: str,
                    constants: dict) -> Builder:
     """What kernels over cluster lists have in common: constants, the style's formulas, coefficients of the neighbours."""
@@ -92,8 +97,10 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in constants.items():
         b.constant(name, value)
+    b.constant("ROOT", not single and takes_roots(style))
+    if not single:
+        vector_math.paste_roots(b)
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
-        from asemd.kernels import vector_math
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)
     b.text(_adapter(style.parts, names, uniform, energy, piece), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")

@@ -13,8 +13,8 @@ The virial (VIRIAL) is the sum over the places of the buffer of position times f
 In single precision, where that would cost digits, energies come with a virial summed over pairs.
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, VIRIAL, CHARGED, VARYING (some
-coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), OUTDATED (the list may be); `real` is the working
-precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
+coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), ROOT (formulas take 1/r), OUTDATED (the list may be);
+`real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
 """
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ CLUSTER = 8
 ROW = 1048
 WIDTH = 8
 NROWS = 0
-ENERGY = VIRIAL = CHARGED = VARYING = SHARE = False
+ENERGY = VIRIAL = CHARGED = VARYING = SHARE = ROOT = False
 EXCLUDE = OUTDATED = HIDE = True
 SLOT_BITS = 0x3FFFFFF
 CHARGE_ROW = 0           # where charges stand in the buffer, 0 for nowhere
 real = np.float64
 place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
-pair_force = pair_energy = fill_rows = inner_hidden = None
+pair_force = pair_energy = fill_rows = inner_hidden = vector_root = None
 
 
 def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
@@ -69,13 +69,21 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
             hidden = hide[place(h + k)]
             meet_a = (hidden & bit_a) == 0
             meet_b = (hidden & bit_b) == 0
-        if SHARE:
+        if ROOT:
+            wa = vector_root(ra)
+            wb = vector_root(rb)
+            ia = wa * wa
+            ib = wb * wb
+        elif SHARE:
             inverse = real(1) / (ra * rb)     # one division for two pairs
             ia = inverse * rb
             ib = inverse * ra
+            wa = wb = zero
         else:
             ia = real(1) / ra
             ib = real(1) / rb
+            wa = math.sqrt(ia)
+            wb = math.sqrt(ib)
         if CHARGED:
             qk = b[place(k + 6 * ROW)]
             qka = qa * qk
@@ -84,8 +92,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
             qka = zero
             qkb = zero
         if ENERGY:
-            pa, eva, eca = pair_energy(ra, ia, qka, p, b, k + 7 * ROW, meet_a)
-            pb, evb, ecb = pair_energy(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
+            pa, eva, eca = pair_energy(ra, ia, wa, qka, p, b, k + 7 * ROW, meet_a)
+            pb, evb, ecb = pair_energy(rb, ib, wb, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
             ev += eva + evb
             ec += eca + ecb
             if not VIRIAL:
@@ -96,8 +104,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
                 v4 = madd(dxa * dza, pa, madd(dxb * dzb, pb, v4))
                 v5 = madd(dya * dza, pa, madd(dyb * dzb, pb, v5))
         else:
-            pa = pair_force(ra, ia, qka, p, b, k + 7 * ROW, meet_a)
-            pb = pair_force(rb, ib, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
+            pa = pair_force(ra, ia, wa, qka, p, b, k + 7 * ROW, meet_a)
+            pb = pair_force(rb, ib, wb, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
         fxa = madd(dxa, pa, fxa)
         fya = madd(dya, pa, fya)
         fza = madd(dza, pa, fza)
@@ -118,9 +126,9 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     r2 = dx * dx + dy * dy + dz * dz
     qq = qi * b[place(k + 6 * ROW)] if CHARGED else real(0)
     if ENERGY:
-        fp, ev, ec = pair_energy(r2, real(1) / r2, qq, p, b, k + rows, True)
+        fp, ev, ec = pair_energy(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, b, k + rows, True)
     else:
-        fp, ev, ec = pair_force(r2, real(1) / r2, qq, p, b, k + rows, True), real(0), real(0)
+        fp, ev, ec = pair_force(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, b, k + rows, True), real(0), real(0)
     fx = dx * fp
     fy = dy * fp
     fz = dz * fp

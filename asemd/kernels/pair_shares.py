@@ -61,8 +61,10 @@ def shares_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
         else:
             qka = zero
             qkb = zero
-        pa, eva, eca = pair_energy(ra, inverse * rb, qka, p, b, k + 7 * ROW, meet_a)
-        pb, evb, ecb = pair_energy(rb, inverse * ra, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
+        ia = inverse * rb
+        ib = inverse * ra
+        pa, eva, eca = pair_energy(ra, ia, math.sqrt(ia), qka, p, b, k + 7 * ROW, meet_a)
+        pb, evb, ecb = pair_energy(rb, ib, math.sqrt(ib), qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
         if VIRIALS:
             fa = dxa * pa
             fb = dxb * pb
@@ -114,7 +116,7 @@ def share_pair(b, k, x, y, z, qi, p, rows):
     dz = z - b[place(k + 2 * ROW)]
     r2 = dx * dx + dy * dy + dz * dz
     qq = qi * b[place(k + 6 * ROW)] if CHARGED else real(0)
-    fp, ev, ec = pair_energy(r2, real(1) / r2, qq, p, b, k + rows, True)
+    fp, ev, ec = pair_energy(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, b, k + rows, True)
     fx, fy, fz = dx * fp, dy * fp, dz * fp
     one = dx * fx, dy * fy, dz * fz, ev + ec, dx * fy, dx * fz, dy * fz
     give(b, k, one)

@@ -36,7 +36,7 @@ def coul_long(r2, qq, g_ewald):
     r2inv = 1.0 / r2
     rinv = math.sqrt(r2inv)
     x = g_ewald * (r2 * rinv)
-    gauss = math.exp(-x * x)
+    gauss = math.exp(-(g_ewald * g_ewald * r2))
     t = 1.0 / (1.0 + 0.3275911 * x)
     tail = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * gauss
     e = qq * rinv
