@@ -77,6 +77,7 @@ class AveChunk(Sampled):
         self.holding, self.count_chunks, self._shape = False, 0, None
         self.result: np.ndarray | None = None       # (chunks, 1 + values): atoms, values
         self.labels = np.zeros((0, 0))
+        self._page: tuple[np.ndarray, str] | None = None      # labels, and the lines of the file with room for numbers
         if file:
             self.file = OutputFile(file, what)
             self._header()
@@ -229,12 +230,12 @@ class AveChunk(Sampled):
             self.file.rewind()
         text = f"{step} {len(self.result)}{self._total()}\n"
         integers = bool(self.chunks.settings.compress)
-        width = self.labels.shape[1]
-        line = "  %d" + "".join(" %d" if integers and j == 0 else " %g" for j in range(width)) + " %g"
-        rows, columns = np.hstack([self.labels, self.result]).tolist(), len(self.values)
+        if self._page is None or not np.array_equal(self._page[0], self.labels):
+            line = "  %d" + "".join(" %d" if integers and j == 0 else " %g" for j in range(self.labels.shape[1]))
+            rest = " %g" + self.format * len(self.values) + "\n"
+            self._page = self.labels, "".join([line % (k, *row) + rest for k, row in enumerate(self.labels.tolist(), 1)])
         try:
-            line += self.format * columns + "\n"
-            text += "".join([line % (k, *row) for k, row in enumerate(rows, 1)])
+            text += self._page[1] % tuple(self.result.ravel().tolist())
         except (TypeError, ValueError):
             raise InputError(f"fix {self.id} (style {self.style}): format {self.format!r} does not show one number") from None
         self.file.write(text)
