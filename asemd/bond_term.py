@@ -90,6 +90,11 @@ class Bonds:
         self.engine, self.terms = engine, [t for t in engine.terms if isinstance(t, HistoryTerm)]
         self._broken: list[np.ndarray] = []      # pairs of rows that the next list must not leave out any more
 
+    @property
+    def pending(self) -> bool:
+        """Whether the next list must know of broken bonds."""
+        return bool(self._broken)
+
     def hold(self, on: bool) -> None:
         """See `HistoryTerm.hold`."""
         for t in self.terms:
@@ -144,6 +149,9 @@ class WeightedBondTerm(PairListTerm):
         super().__init__(term.style, term.tables, term.style.parts, "bond")
         self.category, self.items = "bond", np.ascontiguousarray(pairs, np.int32)
         self.lj, self.coul = np.full(4, lj), np.full(4, coul)
+
+    def rename(self, new):
+        self.items = new[self.items]
 
     def rebuild(self, engine):
         self.i, self.j, self.code = closest_pairs(engine, self.items)

@@ -78,7 +78,7 @@ class Engine:
         self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) for t in terms), default=0.0) ** 0.5
         self.reach = self.cutoff + s.skin
         self.exclusions = Exclusions(system, inter, s.exclude, self.has_pairs)
-        self._choose_list()
+        self.mode, self.expanded, self.sparse, self.packed, self.why = self.list_for(system.n)
         self.k = kernels(self.ortho, s.outdated or self.sparse)
         self.terms = self._make_terms()
         self.bonds = Bonds(self)
@@ -96,32 +96,28 @@ class Engine:
         self.state, self._offset, self.ns = None, None, 0
         self.listed: tuple | None = None      # the present list as plain pairs, if anything asked for it
 
-    def _choose_list(self) -> None:
-        """Which neighbour list the scene needs, and why."""
-        n = self.system.n
+    def list_for(self, n: int) -> tuple[str, bool, bool, bool, str]:
+        """The neighbour list that `n` such atoms need: mode, whether pairs are written out, in rows, packed; and why."""
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
-        widths = 1.0 / np.linalg.norm(np.linalg.inv(self.vectors), axis=0)
         if not self.has_pairs:
-            self.mode, self.why = "none", "no pair interactions"
+            mode, why = "none", "no pair interactions"
         elif n < SMALL:
-            self.mode, self.why = "plain", f"fewer than {SMALL} atoms"
-        elif (widths[self.periodic] < 2 * self.reach).any():
-            self.mode, self.why = "plain", "a periodic cell width is below twice cutoff plus skin"
+            mode, why = "plain", f"fewer than {SMALL} atoms"
+        elif (self.widths[self.periodic] < 2 * self.reach).any():
+            mode, why = "plain", "a periodic cell width is below twice cutoff plus skin"
         else:
-            self.mode, self.why = "cluster", "half list of clusters of 8 atoms"
-        self.expanded = self.mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.sized for t in self.pair_terms)
-        self.packed = (self.mode == "cluster" and not self.expanded and self.exclusions.partners is None and not len(self.exclusions.rules)
-                       and all(getattr(t.style, "packable", False) for t in self.many_terms))
-        volume = abs(float(np.linalg.det(self.vectors)))
-        few = 2.1 * self.reach**3 * n < SPARSE * volume or not (self.pair_terms or self.packed)
-        rules = bool(len(self.exclusions.rules))
-        chosen = any(t.molecules for t in self.pair_terms)
-        self.sparse = self.mode == "cluster" and not self.expanded and (few or table or rules or chosen)
-        if self.sparse:
+            mode, why = "cluster", "half list of clusters of 8 atoms"
+        expanded = mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.sized for t in self.pair_terms)
+        packed = (mode == "cluster" and not expanded and self.exclusions.partners is None and not len(self.exclusions.rules)
+                  and all(getattr(t.style, "packable", False) for t in self.many_terms))
+        few = 2.1 * self.reach**3 * n < SPARSE * self.volume or not (self.pair_terms or packed)
+        rules, chosen = bool(len(self.exclusions.rules)), any(t.molecules for t in self.pair_terms)
+        sparse = mode == "cluster" and not expanded and (few or table or rules or chosen)
+        if sparse:
             reasons = (("only many-body styles", not self.pair_terms), ("tables", table), ("neigh_modify exclude", rules),
                        ("pairs are chosen by molecule", chosen), (f"fewer than {SPARSE} neighbours per atom", True))
-            reason = next(text for text, holds in reasons if holds)
-            self.why = f"{reason}: rows of single atoms"
+            why = f"{next(text for text, holds in reasons if holds)}: rows of single atoms"
+        return mode, expanded, sparse, packed, why
 
     def _make_terms(self) -> list:
         terms: list = []
@@ -150,6 +146,7 @@ class Engine:
         off = self.vectors - np.diag(np.diag(self.vectors))
         self.ortho = not np.count_nonzero(off) and bool((np.diag(self.vectors) > 0).all()) and self.box_moves != "shape"
         self.inverse = np.ascontiguousarray(box.inverse)
+        self.widths, self.volume = 1.0 / np.linalg.norm(self.inverse, axis=0), abs(float(np.linalg.det(self.vectors)))
         self.cell = cell_arrays(self.vectors, self.periodic)
         self.shifts27 = IMAGES @ self.cell.reduced
         self.periodic27 = (IMAGES[:, ~self.periodic] == 0).all(axis=1)
@@ -165,7 +162,8 @@ class Engine:
         """Per-atom constants by row, from which slots are filled at each build."""
         s, n = self.system, self.system.n
         self.type_row = np.ascontiguousarray(s.type, np.int32)
-        self.mass_row = np.ascontiguousarray(np.nan_to_num(s.atom_masses(), nan=1.0), float)
+        mass = s.atom_masses()
+        self.mass_row = np.where(np.isnan(mass), 1.0, mass)
         self.inverse_row = self.units.ftm2v / self.mass_row
         self.q_row = np.ascontiguousarray(s.q, float) if s.q is not None else np.zeros(n)
         self.mask_row = np.ones(n, np.int32)
@@ -199,7 +197,7 @@ class Engine:
         if self.state is None or self.state.x.shape[1] < n + 8:
             self.ns = 0
             self.state = None
-            self._allocate(n + 8)
+            self._allocate(n + 8 + n // 8)
         self.ns = n
         s = self.state
         s.row[:] = -1

@@ -63,6 +63,16 @@ class Exclusions:
             kept = self.keep[kinds]
             self.weighted, self.weighted_kinds = np.ascontiguousarray(pairs[kept], np.int32), np.ascontiguousarray(kinds[kept])
 
+    def follow(self, system, exclude: list, gone: np.ndarray, more: int) -> None:
+        """Atoms without partners left (rows `gone`) and `more` joined."""
+        if self.partners is not None:
+            start, partner, kind = self.partners
+            new = np.cumsum(~np.isin(np.arange(self.n), gone), dtype=np.int32) - np.int32(1)
+            start = np.delete(start, gone)
+            self.partners = np.append(start, np.full(more, start[-1], np.int32)), new[partner], kind
+            self.n, self.pairs, self.weighted = system.n, new[self.pairs], new[self.weighted]
+        self._set_rules(system, [rule for rule in exclude if rule[0] != "type"])
+
     def release(self, pairs: np.ndarray) -> None:
         """Pairs of rows (m, 2) that interact like any other pair from the next list on: their bond broke."""
         if self.partners is not None:

@@ -22,9 +22,9 @@ from asemd.term import BondedTerm, PairListTerm
 class ListEngine(Engine):
     """An engine that lists every pair, whatever the size of the system."""
 
-    def _choose_list(self):
-        super()._choose_list()
-        self.expanded, self.sparse = self.mode == "cluster", False
+    def list_for(self, n):
+        mode, *_, why = super().list_for(n)
+        return mode, mode == "cluster", False, False, why
 
 
 def hessian_of(system, interactions, settings, numerical: bool = False):

@@ -141,8 +141,7 @@ class Loop:
 
     def _next_whole(self, step: int) -> int:
         """The next step after `step` that is made by Python, hook by hook."""
-        forced = [f.next_reneighbor for f in self.fixes if f.next_reneighbor > step]
-        return min([NEVER, *forced, *(f.next_step(step) for f in self._in_python)])
+        return min((f.next_step(step) for f in self._in_python), default=NEVER)
 
     def _next_end(self, step: int) -> int:
         """The next step after `step` with an `end_of_step` in Python."""
@@ -271,8 +270,9 @@ class Loop:
         e, s, c, x = self.engine, self.settings, self._control, self._numbers
         if last == 0:
             last = self.step
-        c[:14] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
-                  s.outdated, bool(e.box_moves)]
+        forced = min((f.next_reneighbor for f in self.fixes if f.next_reneighbor > self.step), default=NEVER)
+        c[:15] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
+                  s.outdated, bool(e.box_moves), forced]
         x[tl.DT], x[tl.TRIGGER] = self.dt, (0.5 * s.skin) ** 2
         self._sync[:] = 0
         status = [0] * e.threads

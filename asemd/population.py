@@ -6,17 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from asemd.errors import SimulationError
+from asemd import turnover
+from asemd.errors import InputError, SimulationError
 from asemd.topology import CROSSTERM
 
 if TYPE_CHECKING:
-    from asemd.fix import Fix
     from asemd.loop import Loop
     from asemd.system import System
 
 
 def remove(loop: Loop, rows, lost: bool = True, listed: bool = True) -> None:
     """Take atoms out of the system in the midst of a run: system, groups, exclusions, lists and the fixes' arrays by atom.
+
+    Positions, velocities and forces of the system are those of the loop only after its next `sync_out`.
 
     Parameters
     ----------
@@ -31,9 +33,7 @@ def remove(loop: Loop, rows, lost: bool = True, listed: bool = True) -> None:
     SimulationError
         An atom is bonded to one that stays, unless ``settings.lost_bond`` says otherwise.
     """
-    loop.engine.store()
-    gone = _take_out(loop, rows, lost)
-    _go_on(loop, lambda old, new: old[~gone] if len(old) == len(gone) else new, listed)
+    _change(loop, rows, None, (), lost, listed)
 
 
 def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = (), listed: bool = True) -> None:
@@ -53,18 +53,43 @@ def insert(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.nd
     InputError
         An id that exists.
     """
-    loop.engine.store()
-    before = loop.system.n
-    _put_in(loop, atoms, groups)
-    _go_on(loop, _joined(np.zeros(before, bool)), listed)
+    _change(loop, (), atoms, groups, False, listed)
 
 
 def exchange(loop: Loop, rows, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray] = ()) -> None:
     """Atoms go, as by `remove` on purpose, and others join, as by `insert`; in a hook `pre_exchange`, for a list follows."""
-    loop.engine.store()
-    gone = _take_out(loop, rows, False)
-    _put_in(loop, atoms, groups)
-    _go_on(loop, _joined(gone), False)
+    _change(loop, rows, atoms, groups, False, False)
+
+
+def places(loop: Loop) -> tuple[np.ndarray, np.ndarray]:
+    """Where the atoms are in the midst of a run, in no order: positions (n, 3) and rows."""
+    s, n = loop.state, loop.nslots
+    there = np.flatnonzero(s.row[:n] >= 0)
+    return np.take(s.x, there, axis=1).T, s.row[there]
+
+
+def _change(loop: Loop, rows, atoms: System | None, groups, lost: bool, listed: bool) -> None:
+    """Atoms go, others join."""
+    e, n = loop.engine, loop.system.n
+    rows = np.unique(np.asarray(rows, np.int64))
+    simple = turnover.simple(e, rows, atoms)
+    if not simple or e.mode != "cluster":
+        e.store()
+    gone = np.zeros(n, bool)
+    gone[rows] = True
+    if len(rows):
+        _take_out(loop, rows, gone, lost)
+    if atoms is not None:
+        _put_in(loop, atoms, groups)
+    e.groups = dict(loop.groups)
+    if simple:
+        turnover.follow(e, rows, loop.system.n - (n - len(rows)))
+        if listed:
+            e.rebuild()
+    else:
+        e.update(loop.system)
+        e.load(listed)
+    _resize(loop, (lambda old, new: old[~gone] if len(old) == n else new) if atoms is None else _joined(gone))
 
 
 def _joined(gone: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
@@ -78,11 +103,9 @@ def _joined(gone: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     return joined
 
 
-def _take_out(loop: Loop, rows, lost: bool) -> np.ndarray:
-    """The system, groups and exclusions without some atoms; (n,) bool which of those that were there are gone."""
+def _take_out(loop: Loop, rows: np.ndarray, gone: np.ndarray, lost: bool) -> None:
+    """The system, groups and exclusions without some atoms."""
     system, s = loop.system, loop.settings
-    gone = np.zeros(system.n, bool)
-    gone[rows] = True
     for kind, atoms, _ in system.topology.every():
         torn = np.flatnonzero(gone[atoms].any(axis=1) & ~gone[atoms].all(axis=1)) if len(atoms) else ()
         if len(torn) and kind == CROSSTERM:
@@ -93,14 +116,44 @@ def _take_out(loop: Loop, rows, lost: bool) -> np.ndarray:
                                   "to go on without them")
         if len(torn) and s.lost_bond == "warn":
             loop.warn(f"step {loop.step}: {len(torn)} {kind}{'s' * (len(torn) > 1)} lost with an atom")
-    system.keep(~gone)
-    for name in loop.groups:
-        loop.gone[name] = loop.gone.get(name, 0) + int(np.count_nonzero(loop.groups[name] & gone))
-        loop.groups[name] = loop.groups[name][~gone]
-    s.exclude = [(kind, *(m if kind == "type" else m[~gone] for m in masks)) for kind, *masks in s.exclude]
+    _drop(system, rows, gone)
+    for name, mask in loop.groups.items():
+        loop.gone[name] = loop.gone.get(name, 0) + int(np.count_nonzero(mask[rows]))
+        loop.groups[name] = np.delete(mask, rows)
+    s.exclude = [(kind, *(m if kind == "type" else np.delete(m, rows) for m in masks)) for kind, *masks in s.exclude]
     if not lost:
-        loop.natoms -= int(np.count_nonzero(gone))
-    return gone
+        loop.natoms -= len(rows)
+
+
+def _drop(system: System, rows: np.ndarray, gone: np.ndarray) -> None:
+    """The system without some atoms, in place, so that whoever holds it sees it; bonded items that lose an atom go."""
+    top = system.topology
+    if not top.is_empty:
+        if top.frozen is None and not any(gone[atoms].any() for _, atoms, _ in top.every()):
+            top.rename(np.cumsum(~gone) - 1)
+        else:
+            system.topology = top.select(~gone, system.n)
+    _take(system, {name: np.delete(a, rows, axis=0) for name, a in system.per_atom().items()})
+
+
+def _join(system: System, atoms: System) -> None:
+    """`System.append`, with the ids that the atoms have, in place."""
+    if turnover.alike(system, atoms):
+        if atoms.id.min(initial=1) <= system.id.max(initial=0) and np.isin(atoms.id, system.id).any():
+            raise InputError(f"atom ID {atoms.id[np.isin(atoms.id, system.id)][0]} exists in both systems")
+        theirs = atoms.per_atom()
+        _take(system, {name: np.concatenate([a, theirs[name]]) for name, a in system.per_atom().items()})
+    else:
+        system.__dict__.update(system.append(atoms, keep_ids=True).__dict__)
+
+
+def _take(system: System, arrays: Mapping[str, np.ndarray]) -> None:
+    """Other per-atom arrays, all of them."""
+    for name, array in arrays.items():
+        if name in system.extra:
+            system.extra[name] = array
+        else:
+            setattr(system, name, array)
 
 
 def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray]) -> None:
@@ -108,7 +161,7 @@ def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.n
     system, s, n = loop.system, loop.settings, atoms.n
     chosen = groups if isinstance(groups, Mapping) else dict.fromkeys(groups, np.ones(n, bool))
     joins = {name: np.ones(n, bool) if name == "all" else np.asarray(chosen.get(name, np.zeros(n, bool)), bool) for name in loop.groups}
-    system.__dict__.update(system.append(atoms, keep_ids=True).__dict__)
+    _join(system, atoms)
 
     def longer(mask):       # exclusions hold masks, no names of groups: that of a group beside `all`, where one fits
         join = np.zeros(n, bool)
@@ -128,23 +181,24 @@ def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.n
 
 def retie(loop: Loop) -> None:
     """Go on after bonds, types or charges of the system were changed."""
-    loop.engine.store()
-    _go_on(loop, lambda old, new: old if old.shape == new.shape else new)
-
-
-def _go_on(loop: Loop, keep: Callable[[np.ndarray, np.ndarray], np.ndarray], listed: bool = True) -> None:
-    """Lists and arrays of fixes for the system as it is now; `keep` says what becomes of the old numbers by atom."""
     e = loop.engine
-    e.set_groups(loop.groups, e.bits)
+    e.store()
+    e.groups = dict(loop.groups)
     e.update(loop.system)
-    e.load(listed)
-    loop.fix_data = tuple(_resize(loop, fix, p, old, keep) for fix, (p, old) in zip(loop.fixes, loop.fix_data))
+    e.load()
+    _resize(loop, lambda old, new: old if old.shape == new.shape else new)
 
 
-def _resize(loop: Loop, fix: Fix, p: np.ndarray, old, keep) -> tuple:
-    """The arrays of a fix for the atoms there are now."""
-    a = loop.arrays_of(fix)
-    if isinstance(a, np.ndarray) and isinstance(old, np.ndarray) and a.shape != (1, 1):
-        a[:] = keep(old, a)
-    fix.resize(loop)
-    return p, a
+def _resize(loop: Loop, keep: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
+    """The arrays of the fixes for the atoms there are now; `keep` says what becomes of the old numbers by atom."""
+    data = []
+    for fix, (p, old) in zip(loop.fixes, loop.fix_data):
+        a = loop.arrays_of(fix)
+        if isinstance(a, np.ndarray) and isinstance(old, np.ndarray):
+            if a.shape != (1, 1):
+                a[:] = keep(old, a)
+            elif old.shape == (1, 1):
+                a = old         # which is packed in memory
+        fix.resize(loop)
+        data.append((p, a))
+    loop.fix_data = tuple(data)

@@ -152,10 +152,6 @@ class System:
         rows = rows_of(index, self.n)
         return self._with({name: a[rows] for name, a in self.per_atom().items()}, topology=self.topology.select(rows, self.n))
 
-    def keep(self, index) -> None:
-        """Become `select` of these atoms, in place: whoever holds the system sees it."""
-        self.__dict__.update(self.select(index).__dict__)
-
     def append(self, other: System, keep_ids: bool = False) -> System:
         """This system with the atoms of another one behind, in this one's box.
 

@@ -32,6 +32,9 @@ class Term(Protocol):
 
     def rebuild(self, engine) -> None: ...
 
+    def rename(self, new: np.ndarray) -> None:
+        """Atoms that no item names left: the `new` number of each row."""
+
     def arguments(self, engine, tid: int) -> tuple: ...
 
     def describe(self, engine, item: int, value: float) -> SimulationError: ...
@@ -51,6 +54,9 @@ class BondedTerm(Term):
     def kernel(self, energy, per_atom):
         from asemd.kernels import bonded
         return bonded.loop(self.style, energy=energy, per_atom=per_atom, periodic=self.periodic, orthogonal=self.orthogonal)
+
+    def rename(self, new):
+        self.items, self.start = new[self.items], None
 
     def rebuild(self, engine):
         self.periodic, self.orthogonal = bool(engine.periodic.any()), engine.ortho
@@ -258,6 +264,10 @@ class PairListTerm(Term):
 
     def kernel(self, energy, per_atom):
         return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom, factor=self.by_atom, piece=self.piece)[0]
+
+    def rename(self, new):
+        if self.one_four is not None:
+            self.one_four = new[self.one_four[0]], *self.one_four[1:]
 
     def rebuild(self, engine):
         if self.pairs in ("all", "special"):

@@ -122,6 +122,10 @@ class Topology:
     def __post_init__(self):
         for kind, width in WIDTHS.items():
             atoms, types = getattr(self, kind + "s"), getattr(self, kind + "_types")
+            if isinstance(atoms, tuple) and not atoms:
+                setattr(self, kind + "s", np.zeros((0, width), np.int32))
+                setattr(self, kind + "_types", np.zeros(0, np.int32))
+                continue
             atoms = _whole(atoms, f"{kind}s must be rows of {width} atom numbers")
             if atoms.size == 0:
                 atoms = atoms.reshape(0, width)
@@ -205,6 +209,12 @@ class Topology:
             keep = (renamed >= 0).all(axis=1)
             parts[kind] = renamed[keep], types[keep]
         return Topology._made(parts, self.frozen and self.frozen.select(index, n))
+
+    def rename(self, new: np.ndarray) -> None:
+        """Other row numbers in place: `new` of each old one, for rows of items."""
+        for kind, atoms, _ in self.every():
+            if len(atoms):
+                setattr(self, kind + "s", np.ascontiguousarray(new[atoms], np.int32))
 
     def forget(self, pairs: np.ndarray) -> None:
         """Bonds (m, 2) that do not count any more."""

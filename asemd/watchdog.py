@@ -29,9 +29,13 @@ SILENT = ("ave/", "print", "store/", "vector", "halt", "property/")     # fixes 
 
 @dataclass
 class Frame:
-    """Atoms between two steps, as the slots of an engine have them; `slow`: no atom moves by more than `SLOW` of the reach per step."""
+    """Atoms between two steps, as the slots of an engine have them; `slow`: no atom moves by more than `SLOW` of the reach per step.
+
+    `id` is the very array of the system: it is another one when atoms have left or joined.
+    """
 
     step: int
+    id: np.ndarray
     x: np.ndarray
     v: np.ndarray
     row: np.ndarray
@@ -127,7 +131,7 @@ class Watchdog:
             return
         loop = self.loop
         self.first = self._built = self._since = loop.step
-        self._atoms = loop.system.n
+        self._ids = loop.system.id
         self._energies, self._warned = None, False
         self._next = self._next_energy = 0.0
         self.energy(loop.result)
@@ -161,8 +165,8 @@ class Watchdog:
         if not self.on:
             return
         self._built = self.loop.step
-        if self._atoms != self.loop.system.n:       # some left or joined, with their energy; older frames are of other atoms
-            self._atoms, self._energies, self._next = self.loop.system.n, None, 0.0
+        if self._ids is not self.loop.system.id:        # some left or joined, with their energy; older frames are of other atoms
+            self._ids, self._energies = self.loop.system.id, None
         if time.perf_counter() > self._next:
             self._timed(self._keep)
 
@@ -273,7 +277,7 @@ class Watchdog:
         loop, e = self.loop, self.loop.engine
         s, image = e.state, e.system.image
         slow = bool(self._speeds().max(initial=0.0) * loop.dt**2 <= (SLOW * self.reach) ** 2)
-        same = [f for f in self.frames if len(f.image) == len(image)]
+        same = [f for f in self.frames if f.id is e.system.id]
         old = same.pop(0 if same[-1].slow else -1) if len(same) == 2 else None
         if old is not None and old.x.shape[1] == e.ns:
             for kept, now in ((old.x, s.x[:, :e.ns]), (old.v, s.v[:, :e.ns]), (old.row, s.row[:e.ns]), (old.image, image)):
@@ -281,7 +285,7 @@ class Watchdog:
             old.step, old.box, old.slow = loop.step, e.system.box, slow
         else:
             arrays = (s.x[:, :e.ns].copy(), s.v[:, :e.ns].copy(), s.row[:e.ns].copy(), image.copy())
-            old = Frame(loop.step, *arrays, e.system.box, slow)
+            old = Frame(loop.step, e.system.id, *arrays, e.system.box, slow)
         self.frames = [*same, old]
 
     # ---- when it went wrong -------------------------------------------------------------------------------------------------------------
@@ -296,7 +300,7 @@ class Watchdog:
 
     def good_frame(self) -> Frame | None:
         """The last frame that is sound: all numbers finite, and if possible no atom too fast."""
-        sound = [f for f in self.frames if np.isfinite(f.x).all() and np.isfinite(f.v).all()]
+        sound = [f for f in self.frames if f.id is self.loop.system.id and np.isfinite(f.x).all() and np.isfinite(f.v).all()]
         return ([f for f in sound if f.slow] or sound or [None])[-1]
 
     def explain(self, error: SimulationError) -> None:

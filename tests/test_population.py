@@ -7,6 +7,7 @@ from both import asemd, lammps, lines_of
 from wheel import ask
 
 import asemd.fix as fixes
+from asemd import population
 from asemd.errors import InputError
 
 SURFACE = """
@@ -319,3 +320,33 @@ def test_semi_grand_composition():
         "pair_coeff 1 1 1 1 2.5", "pair_coeff * *") + "fix 2 all atom/swap 1 500 7 1.0 semi-grand yes mu 0 1.0 types 1 2\nrun 12")
     share = (session.scene.system.type == 2).mean()
     assert share == pytest.approx(np.e / (1 + np.e), abs=0.06)
+
+
+@pytest.mark.parametrize("more", ["", "special_bonds lj 0 0.5 1", "neigh_modify exclude type 1 4"])
+def test_engine_follows_single_atoms_as_if_it_were_made_anew(more, tmp_path, monkeypatch):
+    """Among molecules, more than a plain list is for; atoms of other masses and types come and go."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "three.mol").write_text(THREE)
+    start = WATER.split("region slab")[0].replace("0 6 0 6 0 6", "0 12 0 12 0 12").replace("cut 2.0", "cut 2.5")
+    text = f"""{start}mass 4 3.0
+region all block 0 12 0 12 0 12
+create_atoms 0 random 80 4711 all mol three 993 overlap 0.9 maxtry 1000
+create_atoms 4 random 30 4712 all overlap 0.9
+group single type 4
+{more}
+fix 1 all nve
+fix 2 single evaporate 3 2 all 4713
+fix 3 single deposit 50 4 2 4714 region all near 0.8 attempt 50 vx -1 1
+run 25
+"""
+    counted, follow = [], population.turnover.follow
+    monkeypatch.setattr(population.turnover, "follow", lambda *args: counted.append(1) or follow(*args))
+    quick = asemd(text)
+    monkeypatch.setattr(population.turnover, "simple", lambda *args: False)
+    anew = asemd(text)
+    assert len(counted) > 15 and quick.scene.system.n == anew.scene.system.n
+    assert quick.scene.system.id.tolist() == anew.scene.system.id.tolist()
+    assert quick.loop.engine.builds == anew.loop.engine.builds
+    for name in ("x", "v", "f"):
+        assert getattr(quick.scene.system, name) == pytest.approx(getattr(anew.scene.system, name), rel=1e-9, abs=1e-9)
+    assert quick.moment.potential() == pytest.approx(anew.moment.potential(), rel=1e-12)

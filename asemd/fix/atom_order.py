@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+SPREAD = 64     # the largest id over the number of atoms
+
 
 class AtomOrder:
     """The order in which LAMMPS stores atoms: as they were made, sorted by place now and then.
@@ -30,19 +32,32 @@ class AtomOrder:
 
     def rows(self, system) -> np.ndarray:
         """Rows of the atoms in this order; atoms that came otherwise are the last ones, and those that went have left their places."""
-        self.remove(self.ids[~np.isin(self.ids, system.id)])
-        self.ids = np.concatenate([self.ids, system.id[~np.isin(system.id, self.ids)]])
-        return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
+        largest = max(int(system.id.max(initial=0)), int(self.ids.max(initial=0)))
+        if largest > SPREAD * (system.n + 1000):        # a table by id would be too long
+            self.remove(self.ids[~np.isin(self.ids, system.id)])
+            self.ids = np.concatenate([self.ids, system.id[~np.isin(system.id, self.ids)]])
+            return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
+        row_of = np.full(largest + 1, -1)
+        row_of[system.id] = np.arange(system.n)
+        rows = row_of[self.ids]
+        if rows.min(initial=0) < 0:
+            self.remove(self.ids[rows < 0])
+            rows = row_of[self.ids]
+        if len(rows) < system.n:
+            new = np.ones(system.n, bool)
+            new[rows] = False
+            self.ids, rows = np.concatenate([self.ids, system.id[new]]), np.concatenate([rows, np.flatnonzero(new)])
+        return rows
 
     def remove(self, gone) -> None:
         """Atoms of these IDs leave; the last ones take their places, as in LAMMPS."""
-        if not len(gone):
-            return
-        left = self.ids.tolist()
-        for k in np.flatnonzero(np.isin(self.ids, gone))[::-1].tolist():
-            left[k] = left[-1]
-            left.pop()
-        self.ids = np.array(left, np.int64)
+        gone = np.atleast_1d(gone)
+        places = np.flatnonzero(self.ids == gone[0] if len(gone) == 1 else np.isin(self.ids, gone))
+        ids, n = self.ids.copy(), len(self.ids)
+        for k in places[::-1].tolist():
+            n -= 1
+            ids[k] = ids[n]
+        self.ids = ids[:n]
 
     def sort(self, loop, x: np.ndarray | None = None) -> None:
         """Sort by bins of the box, those of x first; within a bin the order stays.

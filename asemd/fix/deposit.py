@@ -18,6 +18,7 @@ import numpy as np
 from asemd import population
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix
+from asemd.kernels import nearest as near_atoms
 from asemd.molecule import rotation, turned
 from asemd.random import ParkMiller
 from asemd.words import bounds, choice, number, take, whole
@@ -175,9 +176,9 @@ class Deposit(Fix):
         """On its steps: find a place and put a particle there."""
         if loop.step != self.next_reneighbor:
             return
-        loop.sync_out()
+        there = population.places(loop)[0]
         for _ in range(self.attempts):
-            found = self._try(loop)
+            found = self._try(loop, there)
             if found is not None:
                 population.insert(loop, found, [self.group], listed=False)
                 self.inserted += 1
@@ -197,8 +198,8 @@ class Deposit(Fix):
             if self.region.inside(x[None])[0]:
                 return x
 
-    def _try(self, loop):
-        """One trial: the new atoms as a system, or None if an atom is too near."""
+    def _try(self, loop, there: np.ndarray):
+        """One trial: the new atoms as a system, or None if one of those `there` (n, 3) is too near."""
         system = loop.system
         up = system.dimension - 1
         place = self._place(loop)
@@ -206,18 +207,19 @@ class Deposit(Fix):
             return None
         place[up] += (loop.step - self.first + self.interval) * loop.dt * self.rate
         if self.above is not None:
-            heights = system.x[:, up]
+            heights = there[:, up]
             if self.lateral is not None:
-                d = _closest(place - system.x, system.box)
+                d = _closest(place - there, system.box)
                 heights = heights[(d[:, :up] ** 2).sum(axis=1) <= self.lateral**2]
             top = max(float(heights.max(initial=-np.inf)), float(system.box.origin[up]))
             low, high = self.above
             place[up] = top + low + self.random.uniform() * (high - low)
-        new = self._molecule(system, place) if self.molecules else self._atom(system, place)
-        for x in new.x:
-            d = _closest(x - system.x, system.box)
-            if ((d * d).sum(axis=1) < self.near**2).any():
-                return None
+        one, matrix = self._turned(system) if self.molecules else (None, None)
+        at = place[None] if one is None else turned(matrix, one.centred) + place
+        e = loop.engine
+        if near_atoms.kernel()(at, there.T, self.near**2, e.inverse, e.vectors, e.periodic):
+            return None
+        new = self._atom(system, place) if one is None else one.copies(at[None], system, self.kind, [matrix])
         v = np.array([a + self.random.uniform() * (b - a) for a, b in self.velocity])
         if self.target is not None:
             towards = np.asarray(self.target) - place
@@ -237,15 +239,15 @@ class Deposit(Fix):
         return System(box=system.box, x=x[None], type=np.array([self.kind]), id=np.array([1]), units=system.units,
                       dimension=system.dimension, counts=dict(system.counts), **fresh(system.atom_style, 1))
 
-    def _molecule(self, system, centre: np.ndarray):
+    def _turned(self, system):
+        """A molecule and how it is turned."""
         which = int(np.searchsorted(self.fractions, self.random.uniform())) if len(self.molecules) else 0
         one = self.molecules[min(which, len(self.molecules) - 1)]
         axis = [0.0, 0.0, 1.0]
         if system.dimension == 3:
             axis = self.orient if self.orient is not None else [self.random.uniform() - 0.5 for _ in range(3)]
             axis = np.asarray(axis, float) / math.sqrt(sum(a * a for a in axis))
-        matrix = rotation(axis, self.random.uniform() * (2.0 * math.pi))
-        return one.copies((turned(matrix, one.centred) + centre)[None], system, self.kind, [matrix])
+        return one, rotation(axis, self.random.uniform() * (2.0 * math.pi))
 
     def state(self) -> dict:
         return {"random": self.random.state, "inserted": self.inserted, "first": self.first, "next": self.next_reneighbor,

@@ -1,7 +1,8 @@
 """The internal fix of ``group ID dynamic``: chooses the members of a group anew, every so many steps.
 
 It is made by the group command, not by a fix command. Members are those atoms of the parent group that are in the region and for which the
-variable and the property are not zero, at the start of a run and after each move of the atoms.
+variable and the property are not zero, at the start of a run and after each move of the atoms
+and whatever joins or leaves with it.
 Source: LAMMPS manual, group.
 """
 from __future__ import annotations
@@ -62,9 +63,9 @@ class DynamicGroup(Fix):
     def setup(self, loop):
         self.choose(loop, False)
 
-    def post_integrate(self, loop):
-        if loop.step % self.every == 0:
-            self.choose(loop)
+    def pre_force(self, loop):
+        """On its steps, when atoms have come and gone."""
+        self.choose(loop)
 
     def choose(self, loop, moved: bool = True) -> None:
         """Set the group, here and in the loop; `moved`: the system and what formulas see are not of this step yet."""

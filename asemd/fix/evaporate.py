@@ -93,7 +93,6 @@ class Evaporate(Fix):
         """On its steps: choose and take."""
         if loop.step == self.next_reneighbor:
             self.next_reneighbor = self._next(loop.step)
-            loop.sync_out()
             gone = self._chosen(loop)
             if len(gone):
                 self.storage.remove(loop.system.id[gone])
@@ -104,16 +103,23 @@ class Evaporate(Fix):
     def _chosen(self, loop) -> np.ndarray:
         """Rows of those that go."""
         system = loop.system
-        inside, gone = loop.groups[self.group] & self.region.inside(system.x), np.zeros(system.n, bool)
-        candidates = [row for row in self.storage.rows(system).tolist() if inside[row]]
+        x, rows = population.places(loop)
+        inside, gone = np.zeros(system.n, bool), np.zeros(system.n, bool)
+        inside[rows[self.region.inside(x)]] = True
+        stored = self.storage.rows(system)
+        candidates = stored[(inside & loop.groups[self.group])[stored]]
+        if not self.molecules:
+            left = len(candidates)
+            while left and len(candidates) - left < self.count:
+                at = int(left * self.random.uniform())
+                left -= 1
+                candidates[at], candidates[left] = candidates[left], candidates[at]
+            return np.sort(candidates[left:])
+        candidates = candidates.tolist()
         while candidates and np.count_nonzero(gone) < self.count:
             at = int(len(candidates) * self.random.uniform())
             row = candidates[at]
             gone[row] = True
-            if not self.molecules:
-                candidates[at] = candidates[-1]
-                candidates.pop()
-                continue
             if system.molecule[row] != 0:
                 gone |= system.molecule == system.molecule[row]
             k = 0

@@ -138,11 +138,18 @@ class Calls:
         return compiled(self.hooks[n][kind], packed.text_of_arguments(data[n][1]), kind in self.strict)
 
     def _follow(self, state, data) -> None:
-        """Arguments anew where the state or the arrays of fixes are others."""
-        if state is not self._state or data is not self._data:
-            self._state, self._data, self._table = state, data, None
-            self._block = packed.block(state)
-            self._arguments = [packed.arguments(self._block, numbers) for numbers in data]
+        """Arguments anew where the state or the arrays of fixes are others; the state stays where it is in memory."""
+        if state is not self._state:
+            block, self._state = packed.block(state), state
+            if self._block is None or packed.WITHOUT_COMPILER:
+                self._block, self._data = block, None
+            else:
+                self._block[:] = block
+        if data is not self._data:
+            known, self._data = self._data, data
+            if known is None or any(a is not b for new, old in zip(data, known, strict=True) for a, b in zip(new, old)):
+                self._arguments = [packed.arguments(self._block, numbers) for numbers in data]
+                self._table = None
 
     def table(self, kinds: Sequence[str], state, data) -> tuple[np.ndarray, np.ndarray]:
         """For the time loop: (function, arguments, every) of each call, by kind; and where the calls of each kind begin."""

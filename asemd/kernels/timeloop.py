@@ -28,7 +28,7 @@ COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "f
 HALVES = ("initial_integrate", "final_integrate", "final_initial")      # strict: a run has the same digits wherever it is cut into pieces
 KINDS = (*COMPILED, "final_initial")
 # places in `control` (int64) and `numbers` (float64)
-STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL, OUTDATED, BOX_MOVES = range(14)
+STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL, OUTDATED, BOX_MOVES, FORCED = range(15)
 DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME, KSPACE_TIME = range(7)
 # places in a row of `terms`: addresses of the kernels, of their arguments, and the place of the time spent
 PLAIN, WITH_ENERGY, WITH_VIRIAL, ARGUMENTS, TIME = range(5)
@@ -145,7 +145,8 @@ def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync,
             act(1, th, calls, starts)
             ago += 1
             due = ago >= delay and ago % every == 0
-            if due or control[OUTDATED] != 0:
+            forced = step == control[FORCED]
+            if due or forced or control[OUTDATED] != 0:
                 m = 0.0
                 odd = 0.0
                 for i in range(hi - lo):
@@ -173,10 +174,10 @@ def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync,
                 t1 = now()
                 numbers[COMM_TIME] += t1 - t0
                 t0 = t1
-            if need:
+            if need or forced:
                 if tid == 0:
                     control[STEP] = step
-                    if check != 0 and ago == max(every, delay):
+                    if need and check != 0 and ago == max(every, delay):
                         control[DANGEROUS] += 1
                 return REBUILD
         else:

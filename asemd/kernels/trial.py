@@ -5,6 +5,7 @@ From the module it is pasted into: `pair_energy(r2, qq, tables, ti, tj)`, the su
 from __future__ import annotations
 
 import math
+import re
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,54 @@ import numpy as np
 OVERLAP = 1e100        # energy of a trial position that is too near to an atom
 ACCEPTABLE = 1e50       # energies beyond are refused without a random number
 pair_energy = None
+
+
+def aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables):
+    """`trial_energy` in a box along the axes: images that are too far along one of them are passed over."""
+    skip, without = int(numbers[0]), int(numbers[1])
+    overlap2, qqr2e, limited = numbers[2], numbers[3], numbers[4] != 0.0
+    i0, i1, i2, l0, l1, l2 = inverse[0, 0], inverse[1, 1], inverse[2, 2], cell[0, 0], cell[1, 1], cell[2, 2]
+    total = 0.0
+    a0, a1, b0, b1, c0, c1 = 0, 0, 0, 0, 0, 0
+    for t in range(at.shape[0]):
+        ti = types[t]
+        for j in range(n):
+            if molecule[j] == without:
+                continue
+            dx, dy, dz = at[t, 0] - x[j, 0], at[t, 1] - x[j, 1], at[t, 2] - x[j, 2]
+            if reach[0] >= 0.0:
+                a0, a1 = math.ceil(dx * i0 - reach[0]), math.floor(dx * i0 + reach[0])
+            if reach[1] >= 0.0:
+                b0, b1 = math.ceil(dy * i1 - reach[1]), math.floor(dy * i1 + reach[1])
+            if reach[2] >= 0.0:
+                c0, c1 = math.ceil(dz * i2 - reach[2]), math.floor(dz * i2 + reach[2])
+            if b0 > b1 or c0 > c1:
+                continue
+            tj = type_of[j]
+            limit = cut2[ti, tj]
+            most = max(limit, overlap2)
+            for a in range(a0, a1 + 1):
+                ex = dx - a * l0
+                rx = ex * ex
+                if rx >= most or (limited and a != 0 and not low[0] <= x[j, 0] * i0 + a <= high[0]):
+                    continue
+                for b in range(b0, b1 + 1):
+                    ey = dy - b * l1
+                    ry = rx + ey * ey
+                    if ry >= most or (limited and b != 0 and not low[1] <= x[j, 1] * i1 + b <= high[1]):
+                        continue
+                    for c in range(c0, c1 + 1):
+                        ez = dz - c * l2
+                        r2 = ry + ez * ez
+                        if r2 >= most or (limited and c != 0 and not low[2] <= x[j, 2] * i2 + c <= high[2]):
+                            continue
+                        if j == skip and a == 0 and b == 0 and c == 0:
+                            continue
+                        if r2 < overlap2:
+                            return OVERLAP
+                        if r2 < limit:
+                            total += pair_energy(r2, qqr2e * charges[t] * q[j], tables, ti, tj)
+    return total
 
 
 def trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables):
@@ -35,6 +84,8 @@ def trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, invers
     overlap2, qqr2e, limited = numbers[2], numbers[3], numbers[4] != 0.0
     total = 0.0
     a0, a1, b0, b1, c0, c1 = 0, 0, 0, 0, 0, 0
+    if cell[0, 1] == 0.0 and cell[0, 2] == 0.0 and cell[1, 0] == 0.0 and cell[1, 2] == 0.0 and cell[2, 0] == 0.0 and cell[2, 1] == 0.0:
+        return aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
     for t in range(at.shape[0]):
         ti = types[t]
         for j in range(n):
@@ -209,24 +260,32 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
     return n
 
 
+def _written_out(source: str, count: int) -> str:
+    """Calls of `pair_energy` written out for some pair styles: what stands in tables is looked up once, not for each pair."""
+    found = re.search(r"( *)total \+= pair_energy\(r2, (.*), tables, ti, tj\)\n", source)
+    lines = ["one = 0.0"]
+    for k in range(count):
+        lines += [f"fp, ev, ec = pair{k}(r2, {found[2]}, w{k}[0], w{k}[1], w{k}[1], rows{k}, constants{k}, arrays{k}, ti, tj)", "one += ev + ec"]
+    source = source.replace(found[0], "".join(f"{found[1]}{line}\n" for line in [*lines, "total += one"]))
+    head, body = source.split("\n", 1)
+    return "\n".join([head, *(f"    rows{k}, constants{k}, arrays{k}, w{k} = tables[{k}]" for k in range(count)), body])
+
+
 @cache
 def kernel(styles: tuple):
     """The module of `trial_energy` and `atom_moves` for the sum of some pair styles.
 
     `tables` has (rows, constants, arrays, factors (2,)) of each.
     """
-    from asemd.kernels.generate import Builder
+    from asemd.kernels.generate import Builder, plain_source
     from asemd.kernels.pair import list_kernel
     b = Builder(f"trial energies: {' '.join(style.name for style in styles)}")
     b.constant("OVERLAP", OVERLAP)
     b.constant("ACCEPTABLE", ACCEPTABLE)
-    lines = ["def pair_energy(r2, qq, tables, ti, tj):", "    total = 0.0"]
     for k, style in enumerate(styles):
         b.use(list_kernel(style, style.parts, energy=True, per_atom=False)[1], "pair_energy_one", f"pair{k}")
-        lines += [f"    rows, constants, arrays, w = tables[{k}]",
-                  f"    fp, ev, ec = pair{k}(r2, qq, w[0], w[1], w[1], rows, constants, arrays, ti, tj)", "    total += ev + ec"]
-    b.text("\n".join([*lines, "    return total"]))
-    b.function(trial_energy)
+    for f in (aligned_energy, trial_energy):
+        b.text(_written_out(plain_source(f), len(styles)))
     for f in (park, gaussian, atom_moves):
         b.function(f)
     return b.build()

@@ -1,0 +1,109 @@
+"""Atoms without bonds that leave or join: slots, masks and terms of an engine follow, instead of being made anew."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from asemd.engine import Engine
+    from asemd.system import System
+
+
+def simple(engine: Engine, gone: np.ndarray, atoms: System | None) -> bool:
+    """Whether `follow` can do it, before the system changes.
+
+    Parameters
+    ----------
+    engine : asemd.engine.Engine
+    gone : array of int
+        Rows that leave: of no bonded item.
+    atoms : asemd.system.System or None
+        What joins: without bonded items, of the same style and types.
+    """
+    system, exclusions, more = engine.system, engine.exclusions, 0 if atoms is None else atoms.n
+    engine.bonds.carry_back()
+    if engine.expanded or engine.bonds.pending or engine.solver is not None or engine.many_terms or any(np.ndim(t.use.factor) > 0 or t.style.sized for t in engine.pair_terms):
+        return False
+    if engine.mode == "cluster" and engine.ns + more + 8 > engine.state.x.shape[1]:
+        return False
+    if engine.list_for(system.n - len(gone) + more)[:3] != (engine.mode, engine.expanded, engine.sparse):
+        return False
+    if atoms is not None and not alike(system, atoms):
+        return False
+    top = system.topology
+    if top.is_empty or not len(gone):
+        return True
+    leaves = np.zeros(system.n, bool)
+    leaves[gone] = True
+    partners = exclusions.partners is not None and (exclusions.partners[0][gone + 1] != exclusions.partners[0][gone]).any()
+    return top.frozen is None and not partners and not any(leaves[atoms].any() for _, atoms, _ in top.every())
+
+
+def alike(system: System, atoms: System) -> bool:
+    """Whether atoms have the properties and types of a system and no bonded items."""
+    mine, theirs = system.per_atom(), atoms.per_atom()
+    if atoms.units != system.units or not atoms.topology.is_empty or mine.keys() != theirs.keys():
+        return False
+    unset = np.isnan(system.mass[:len(atoms.mass)])
+    return (all(system.counts[k] >= v for k, v in atoms.counts.items()) and not np.isfinite(atoms.mass[:len(unset)][unset]).any()
+            and all(mine[k].shape[1:] == theirs[k].shape[1:] for k in mine))
+
+
+def follow(engine: Engine, gone: np.ndarray, more: int) -> None:
+    """Take over that rows `gone` have left the engine's system and `more` atoms joined behind; a list must be built next."""
+    s, slots, before = engine.state, engine.ns, len(engine.slot_of)
+    engine.exclusions.follow(engine.system, engine.settings.exclude, gone, more)
+    if len(gone):
+        new = np.arange(before + 1, dtype=np.int32)
+        for row in gone[::-1] if len(gone) < 8 else ():
+            new[row:] -= np.int32(1)
+        if len(gone) >= 8:
+            new -= np.searchsorted(gone, new).astype(np.int32)
+        new[gone] = new[-1] = -1        # the last one is that of an empty slot, whose row is -1
+        for term in engine.terms:
+            term.rename(new)
+        s.row[:slots] = new[s.row[:slots]]
+    _put_in(engine, gone, more)
+    _constants(engine, gone, more)
+    if engine.mode != "cluster":        # whose slots are the rows
+        engine.load(False)
+
+
+def _put_in(engine: Engine, gone: np.ndarray, more: int) -> None:
+    """Slots for the last atoms of the system, behind the others."""
+    system, s, slots = engine.system, engine.state, engine.ns
+    if engine.mode != "cluster":
+        engine.slot_of = np.zeros(system.n, np.int32)
+        return
+    new = slice(slots, slots + more)
+    engine.slot_of = _changed(engine.slot_of, gone, np.arange(slots, slots + more, dtype=np.int32))
+    if more:
+        s.row[new] = np.arange(system.n - more, system.n)
+        s.x[:, new], s.v[:, new] = system.x[-more:].T, system.v[-more:].T
+        s.f[:, new], s.torque[:, new], engine.held[:, new] = 0.0, 0.0, s.x[:, new]
+    engine.ns, engine._offset = slots + more, None
+
+
+def _constants(engine: Engine, gone: np.ndarray, more: int) -> None:
+    """Types, masses, charges and masks by row."""
+    system = engine.system
+    last = slice(system.n - more, system.n)
+    mass = system.rmass[last] if system.rmass is not None else system.mass[system.type[last]]
+    mass = np.where(np.isnan(mass), 1.0, mass)
+    mask = np.ones(more, np.int32)
+    for name, members in engine.groups.items():
+        mask[members[last]] |= np.int32(engine.bits[name])
+    new = (system.type[last], mass, engine.units.ftm2v / mass, system.q[last] if system.q is not None else np.zeros(more), mask)
+    names = ("type_row", "mass_row", "inverse_row", "q_row", "mask_row")
+    for name, values in zip(names, new):
+        array = _changed(getattr(engine, name), gone, values)
+        setattr(engine, name, array)
+        if name != "inverse_row" and more:
+            engine.varies[("type_row", "mass_row", "q_row", "mask_row").index(name)] |= bool((values != array[0]).any())
+
+
+def _changed(array: np.ndarray, gone: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """An array without some rows and with others behind."""
+    array = np.delete(array, gone) if len(gone) else array
+    return np.concatenate([array, new]) if len(new) else array
