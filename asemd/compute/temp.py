@@ -60,7 +60,8 @@ class Temp(Compute):
         gone = 0 if self.dynamic else state.gone.get(self.group, 0)
         n, dimension = int(np.count_nonzero(mask)) + gone, state.system.dimension
         extra = dimension if self.extra_dof is None else self.extra_dof
-        dof = dimension * n - extra - sum(fix.removed_dof(mask) for fix in state.fixes)
+        removed = sum(fix.removed_dof(mask) - (0.0 if self.dynamic else fix.added_dof(mask)) for fix in state.fixes)
+        dof = dimension * n - extra - removed
         if dof < 0.0 and n > 0:
             raise InputError(f"compute {self.id or 'temp'}: group {self.group} has {n} atoms and {dof:g} degrees of freedom")
         return max(dof, 0.0)

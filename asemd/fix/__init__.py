@@ -245,6 +245,10 @@ class Fix:
         """Degrees of freedom this fix removes from the atoms of `mask`."""
         return 0.0
 
+    def added_dof(self, mask: np.ndarray) -> float:
+        """Those of them that it did not yet remove when the run began: of molecules that came since."""
+        return 0.0
+
     def state(self) -> dict[str, Any]:
         """What a restart file needs so that this fix goes on: numbers, words and arrays by name, nothing for a fix without memory.
 

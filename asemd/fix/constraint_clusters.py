@@ -106,6 +106,19 @@ def find(system, mask: np.ndarray, chosen: Chosen, what: str) -> Clusters:
     return Clusters(atoms, kind, types)
 
 
+def of_template(molecule, ids: np.ndarray) -> Clusters:
+    """The clusters that the file of a molecule says, of copies whose atoms have the ids (copies, n)."""
+    shake, atoms, kinds, types = molecule.shake, [], [], []
+    for k, flag in enumerate(shake["flag"]):
+        if flag and shake["atoms"][k][0] == k:      # the central atom
+            atoms.append([*shake["atoms"][k], *[-1] * (4 - len(shake["atoms"][k]))])
+            kinds.append(flag)
+            types.append([*shake["types"][k], *[0] * (3 - len(shake["types"][k]))])
+    at = np.array(atoms, int).reshape(-1, 4)
+    found = np.where(at >= 0, ids[:, at], -1).reshape(-1, 4)
+    return Clusters(found, np.tile(np.array(kinds, int), len(ids)), np.tile(np.array(types, int).reshape(-1, 3), (len(ids), 1)))
+
+
 def switch(system, clusters: Clusters, on: bool) -> None:
     """Turn the bonds and angles of clusters (of rows) off, or on again, in a topology of the system's own."""
     topology, n = system.topology, max(system.n, 1)

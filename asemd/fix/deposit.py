@@ -18,14 +18,14 @@ import numpy as np
 from asemd import population
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix
+from asemd.fix import holder as holders
 from asemd.kernels import nearest as near_atoms
 from asemd.molecule import rotation, turned
 from asemd.random import ParkMiller
 from asemd.words import bounds, choice, number, take, whole
 
 VALUES = {"region": 1, "id": 1, "global": 2, "local": 3, "near": 1, "attempt": 1, "rate": 1, "vx": 2, "vy": 2, "vz": 2, "target": 3,
-          "orient": 3, "gaussian": 4, "mol": 1, "molfrac": 0, "units": 1, "var": 1, "set": 2}
-LATER = {"rigid": "fix rigid/small", "shake": "fix shake"}
+          "orient": 3, "gaussian": 4, "mol": 1, "molfrac": 0, "units": 1, "var": 1, "set": 2, "rigid": 1, "shake": 1}
 
 
 class Deposit(Fix):
@@ -71,6 +71,8 @@ class Deposit(Fix):
         Ids count on from the largest one at the start, also if atoms left.
     test : callable, optional
         A place (3,) -> whether it may be used.
+    holder : (str, str), optional
+        ``rigid`` or ``shake`` and the id of the fix of such a style that is to hold the molecules, whose `template` is that of this one.
 
     Raises
     ------
@@ -83,7 +85,7 @@ class Deposit(Fix):
     def __init__(self, group: str = "all", count: int = 1, kind: int = 1, every: int = 1, seed: int = 1, region=None, near: float = 0.0,
                  attempts: int = 10, velocity: Sequence[tuple[float, float]] = ((0.0, 0.0),) * 3, above: tuple[float, float] | None = None,
                  lateral: float | None = None, rate: float = 0.0, target=None, gaussian=None, molecules=(), fractions=None, orient=None,
-                 next_ids: bool = False, test=None):
+                 next_ids: bool = False, test=None, holder: tuple[str, str] | None = None):
         super().__init__(group)
         if region is None:
             raise InputError("fix deposit needs a region")
@@ -104,6 +106,7 @@ class Deposit(Fix):
         self.first: int | None = None
         self.last_ids = [0, 0]      # of atoms and molecules, with `next_ids`
         self.words: list[str] = []
+        self.holder, self.template, self.holds = holder, "", None
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -142,7 +145,9 @@ class Deposit(Fix):
                   whole(given.get("attempt", ["10"])[0], "fix deposit attempt"), velocity, above, lateral,
                   numbers.get("rate", [0.0])[0] * up, _scaled(numbers.get("target"), (sx, sy, sz)),
                   _scaled(numbers.get("gaussian"), (sx, sy, sz, sx)), molecules, numbers.get("molfrac"), numbers.get("orient"),
-                  choice(given.get("id", ["max"])[0], ("max", "next"), "fix deposit id") == "next", _test(given, session))
+                  choice(given.get("id", ["max"])[0], ("max", "next"), "fix deposit id") == "next", _test(given, session),
+                  holders.read(given, "fix deposit"))
+        fix.template = given.get("mol", [""])[0]
         fix.words, fix.next_reneighbor, fix.first = list(words), scene.step + 1, scene.step + 1
         fix.check_inside(scene.system.box)
         return fix
@@ -169,6 +174,7 @@ class Deposit(Fix):
     def setup(self, loop) -> None:
         if self.first is None:      # made in Python
             self.first = self.next_reneighbor = loop.step + 1
+        self.holds = holders.find(loop, self.holder, self.template, "fix deposit") if self.holder else None
         if self.next_ids and not any(self.last_ids):
             self.last_ids = [int(loop.system.id.max(initial=0)), int(loop.system.molecule.max(initial=0))]
 
@@ -180,6 +186,9 @@ class Deposit(Fix):
         for _ in range(self.attempts):
             found = self._try(loop, there)
             if found is not None:
+                if self.holds is not None:
+                    self.holds.take_in(loop.system, *found)
+                found = found[0]
                 population.insert(loop, found, [self.group], listed=False)
                 self.inserted += 1
                 break
@@ -199,7 +208,7 @@ class Deposit(Fix):
                 return x
 
     def _try(self, loop, there: np.ndarray):
-        """One trial: the new atoms as a system, or None if one of those `there` (n, 3) is too near."""
+        """One trial: the new atoms as a system and their molecule, or None if one of those `there` (n, 3) is too near."""
         system = loop.system
         up = system.dimension - 1
         place = self._place(loop)
@@ -231,7 +240,7 @@ class Deposit(Fix):
         numbers = self.last_ids[1] if self.next_ids else int(system.molecule.max(initial=0))
         new.molecule[new.molecule > 0] += numbers
         self.last_ids = [max(self.last_ids[0], int(new.id.max())), max(self.last_ids[1], int(new.molecule.max(initial=0)))]
-        return new
+        return new, one
 
     def _atom(self, system, x: np.ndarray):
         from asemd.atom_style import fresh
@@ -263,13 +272,11 @@ def _read(words: list[str]) -> dict[str, list[str]]:
     given: dict[str, list[str]] = {}
     while words:
         key = words[0]
-        if key in LATER:
-            raise InputError(f"fix deposit {key}: molecules that {LATER[key]} holds cannot be put in yet; leave the keyword out")
         if key not in VALUES:
             raise InputError(f"fix deposit: unknown keyword {key!r}{nearest(key, VALUES)}")
         n = VALUES[key]
         if key == "molfrac":
-            n = next((k for k, w in enumerate(words[1:]) if w in VALUES or w in LATER), len(words) - 1)
+            n = next((k for k, w in enumerate(words[1:]) if w in VALUES), len(words) - 1)
         values = take(words[1:], n, f"fix deposit {key}")
         given[f"set {values[0]}" if key == "set" else key] = values
         if key == "set":

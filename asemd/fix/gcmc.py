@@ -27,6 +27,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.fix import Fix
+from asemd.fix import holder as holders
 from asemd.fix.atom_order import AtomOrder, sort_if_due, storage_of
 from asemd.fix.gcmc_moves import Moves
 from asemd.fix.reservoir import check_scene, find_molecule, find_region, gas_type, read, region_volume
@@ -87,6 +88,9 @@ class GCMC(Fix):
         Positions nearer to an atom are refused, distance units.
     least, most : int
         Limits of the number of gas atoms.
+    holder : (str, str), optional
+        ``rigid`` or ``shake`` and the id of the fix of such a style that holds the molecules, whose `template` is that of this one; they
+        are not moved then.
 
     Raises
     ------
@@ -103,7 +107,8 @@ class GCMC(Fix):
                  temperature: float = 1.0, mu: float = 0.0, displace: float = 0.0, molecule=None, chances: Sequence[float] | None = None,
                  region=None, max_angle: float = 10.0, pressure: float | None = None, fugacity: float = 1.0, full_energy: bool = False,
                  charge: float | None = None, groups: Sequence[str] = (), type_groups: Sequence[tuple[int, str]] = (),
-                 intra_energy: float = 0.0, velocity_factor: float = 1.0, overlap: float = 0.0, least: int = -1, most: int = 2**31 - 1):
+                 intra_energy: float = 0.0, velocity_factor: float = 1.0, overlap: float = 0.0, least: int = -1, most: int = 2**31 - 1,
+                 holder: tuple[str, str] | None = None):
         super().__init__(group)
         if every < 1 or exchanges < 0 or moves < 0:
             raise InputError(f"fix gcmc: N must be at least 1, X and M must not be negative, got {every} {exchanges} {moves}")
@@ -113,6 +118,8 @@ class GCMC(Fix):
             raise InputError("fix gcmc mcmoves: must not be negative, and one must be positive")
         if molecule is not None and kind:
             raise InputError(f"fix gcmc mol: the atom type must be 0 with molecules, got {kind}")
+        if holder is not None and moves > 0:
+            raise InputError(f"fix gcmc: cannot use {holder[0]} with MC moves: M must be 0, got {moves}")
         self.interval, self.exchanges, self.moves, self.kind, self.seed = every, exchanges, moves, kind, seed
         self.temperature, self.mu, self.displace, self.molecule = temperature, mu, displace, molecule
         self.region, self.max_angle, self.reservoir_pressure, self.fugacity = region, max_angle, pressure, fugacity
@@ -129,6 +136,7 @@ class GCMC(Fix):
         self.as_lammps = False      # to the last of its peculiarities, which are named above
         self.held_tail: float | None = None
         self.words: list[str] = []
+        self.holder, self.template, self.holds = holder, "", None
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -151,7 +159,9 @@ class GCMC(Fix):
                   [(bounds(t, 1, types, "fix gcmc grouptype", labels)[0], g) for t, g in given.get("grouptypes", [])],
                   numbers.get("intra_energy", 0.0), numbers.get("tfac_insert", 1.0), numbers.get("overlap_cutoff", 0.0),
                   whole(given["min"][0], "fix gcmc min") if "min" in given else -1,
-                  whole(given["max"][0], "fix gcmc max") if "max" in given else 2**31 - 1)
+                  whole(given["max"][0], "fix gcmc max") if "max" in given else 2**31 - 1,
+                  holders.read(given, cls.what))
+        fix.template = given.get("mol", [""])[0]
         fix.words, fix.next_reneighbor, fix.as_lammps = list(words), scene.step + 1, True
         fix.storage = AtomOrder(*scene.sort, scene.order)
         if group == "all":
@@ -179,6 +189,7 @@ class GCMC(Fix):
             self.activity = math.exp(self.beta * self.mu) / wavelength**3
         self.speed = math.sqrt(units.boltz * self.temperature * self.velocity_factor / gas / units.mvv2e)
         self.held_tail = None
+        self.holds = holders.find(loop, self.holder, self.template, self.what) if self.holder else None
         if self.next_reneighbor < 0:        # made in Python
             self.next_reneighbor = loop.step + 1
 

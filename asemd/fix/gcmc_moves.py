@@ -320,6 +320,9 @@ class Moves(Reservoir):
             new = np.concatenate([new[a.molecule[new] == k] for k in numbers])
             atoms.molecule[:] = a.molecule[new]
         atoms.id[:], atoms.x[:], atoms.image[:], atoms.v[:] = a.id[new], a.x[new], a.image[new], a.v[new]
+        if fix.holds is not None:
+            off = fix.molecule.x.mean(axis=0) if fix.as_lammps else np.zeros(3)     # LAMMPS puts bodies beside their atoms by this much
+            fix.holds.take_in(self.system, atoms, fix.molecule, np.array([-self.born[int(k)] @ off for k in numbers]))
         return atoms
 
     def members(self, atoms) -> dict[str, np.ndarray]:

@@ -24,8 +24,6 @@ def read(words: Sequence[str], values: Mapping[str, int], what: str) -> dict[str
         key = words[0]
         if key not in values:
             raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, values)}")
-        if key in ("rigid", "shake"):
-            raise InputError(f"{what} {key}: molecules that fix {key} holds cannot be exchanged yet; leave the keyword out")
         found = take(words[1:], values[key], f"{what} {key}")
         if key in ("group", "grouptype"):
             given.setdefault(f"{key}s", []).append(found)

@@ -110,7 +110,11 @@ class Rigid(Fix):
     @classmethod
     def from_lammps(cls, group, words, session):
         kind, mode, rest = bodies_from_words(cls, words, session)
-        fix = cls(group, kind, **options_from_words(cls, rest, session))
+        options = options_from_words(cls, rest, session)
+        template = options.pop("mol", "")
+        fix = cls(group, kind, **options)
+        if template:
+            fix.template = template
         fix.kind_words, fix._warn = mode, session.warn
         session.scene.sync_groups()
         if cls.small:

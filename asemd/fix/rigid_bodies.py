@@ -10,6 +10,7 @@ from asemd.errors import InputError
 from asemd.kernels.rigid import Bodies
 from asemd.words import number, whole
 
+BY_BODY = Bodies._fields[:Bodies._fields.index("first")]
 NO_INERTIA = 1e-7       # a principal moment below this times the largest is none
 
 
@@ -172,6 +173,25 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
                   np.ascontiguousarray(axes), quaternions(axes), np.zeros((nb, 4)), image.astype(float), moves, np.zeros((nb, 6)),
                   np.zeros((nb, 6)), box, first, rows, place, np.zeros((len(rows), 6)), radius,
                   np.einsum("iab,ib->ia", axes[body], mu[rows]) if len(mu) == system.n and mu[rows].any() else np.zeros((0, 3)), spin, mu)
+
+
+def joined(a: Bodies, b: Bodies) -> Bodies:
+    """The bodies of `a` and then those of `b`, on atoms of `a`'s system whose rows are to be set."""
+    both = {name: np.concatenate([getattr(a, name), getattr(b, name)]) for name in (*BY_BODY, "rows", "place", "virial", "radius")}
+    dipole = [x.dipole if len(x.dipole) else np.zeros(x.place.shape) for x in (a, b)]
+    return a._replace(**both, first=np.concatenate([a.first, a.first[-1] + b.first[1:]]),
+                      dipole=np.concatenate(dipole) if len(a.dipole) or len(b.dipole) else a.dipole)
+
+
+def without(b: Bodies, members: Members, stay: np.ndarray) -> tuple[Bodies, Members]:
+    """The bodies that `stay` (nb,), and their members."""
+    size = np.diff(members.first)
+    atoms = np.repeat(stay, size)
+    first = np.concatenate([[0], np.cumsum(size[stay])]).astype(np.int64)
+    left = {name: getattr(b, name)[stay] for name in BY_BODY}
+    left |= {name: getattr(b, name)[atoms] for name in ("rows", "place", "virial", "radius")}
+    return (b._replace(**left, first=first, dipole=b.dipole[atoms] if len(b.dipole) else b.dipole),
+            Members(members.ids[atoms], first, members.label[stay]))
 
 
 def spheres(system, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

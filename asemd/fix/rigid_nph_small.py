@@ -4,11 +4,11 @@ Source: LAMMPS manual, fix rigid/nph/small.
 """
 from __future__ import annotations
 
+from asemd.fix.rigid_added import AddedBodies
 from asemd.fix.rigid_nph import RigidNPH
 
 
-class RigidNPHSmall(RigidNPH):
+class RigidNPHSmall(AddedBodies, RigidNPH):
     """Rigid bodies; see `asemd.fix.rigid_nvt.RigidNVT` for the arguments."""
 
     style = "rigid/nph/small"
-    small = True

@@ -4,14 +4,14 @@ Source: LAMMPS manual, fix rigid/nve/small.
 """
 from __future__ import annotations
 
+from asemd.fix.rigid_added import AddedBodies
 from asemd.fix.rigid_nve import RigidNVE
 
 
-class RigidNVESmall(RigidNVE):
+class RigidNVESmall(AddedBodies, RigidNVE):
     """Rigid bodies; see `asemd.fix.rigid.Rigid` for the arguments."""
 
     style = "rigid/nve/small"
-    small = True
 
     def scalar(self) -> float:
         """As in LAMMPS the energy of rotation and twice that of translation, energy units."""

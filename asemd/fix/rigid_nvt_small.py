@@ -4,11 +4,11 @@ Source: LAMMPS manual, fix rigid/nvt/small.
 """
 from __future__ import annotations
 
+from asemd.fix.rigid_added import AddedBodies
 from asemd.fix.rigid_nvt import RigidNVT
 
 
-class RigidNVTSmall(RigidNVT):
+class RigidNVTSmall(AddedBodies, RigidNVT):
     """Rigid bodies; see `asemd.fix.rigid_nvt.RigidNVT` for the arguments."""
 
     style = "rigid/nvt/small"
-    small = True

@@ -5,10 +5,10 @@ LAMMPS spreads these bodies over its processes; here both styles do the same. So
 from __future__ import annotations
 
 from asemd.fix.rigid import Rigid
+from asemd.fix.rigid_added import AddedBodies
 
 
-class RigidSmall(Rigid):
+class RigidSmall(AddedBodies, Rigid):
     """Rigid bodies; see `asemd.fix.rigid.Rigid` for the arguments."""
 
     style = "rigid/small"
-    small = True

@@ -59,7 +59,7 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
     """Keyword arguments of the class."""
     out: dict = {}
     allowed = ["langevin", "infile", "reinit"] if not (cls.thermostats or cls.barostats) else ["infile", "reinit"]
-    allowed += ["gravity"] if cls.small else ["force", "torque", "gravity"]
+    allowed += ["gravity", "mol"] if cls.small else ["force", "torque", "gravity"]
     allowed += ["temp", "tparam"] if cls.thermostats else []
     allowed += ["iso", "aniso", "x", "y", "z", "couple", "dilate"] if cls.barostats else []
     allowed += ["pchain"] if cls.barostats else []
@@ -68,10 +68,15 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
         if keyword not in allowed:
             if keyword not in KEYWORDS:
                 raise InputError(f"fix {cls.style}: unknown keyword {keyword!r}{nearest(keyword, allowed)}")
-            if keyword == "mol":
-                raise InputError(f"{what}: bodies that are added during a run are not supported")
             raise InputError(f"fix {cls.style} does not take the keyword {keyword}")
-        if keyword in ("force", "torque"):
+        if keyword == "mol":
+            name = take(words[1:], 1, what)[0]
+            if name not in session.scene.molecules:
+                raise InputError(f"{what}: there is no molecule {name}{nearest(name, session.scene.molecules)}")
+            for one in session.scene.molecules[name]:
+                one.check(session.scene.system, what)
+            out[keyword], used = name, 1
+        elif keyword in ("force", "torque"):
             which, *flags = take(words[1:], 4, what)
             out.setdefault(keyword, []).append((which, tuple(_on_off(flag, what) for flag in flags)))
             used = 4

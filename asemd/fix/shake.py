@@ -92,6 +92,7 @@ class Shake(Fix):
         self.lasting = False        # of a script: the clusters are those there were when the fix was made
         self.clusters = self.ids = cc.Clusters(np.zeros((0, 4), int), np.zeros(0, int), np.zeros((0, 3), int))
         self.distances = np.zeros((0, 3))
+        self.came = np.zeros(0, np.int64)       # ids of atoms that came since the run began
         self._energy, self._told, self.p = 0.0, -1, np.zeros(9)
 
     # ---- text ---------------------------------------------------------------------------------------------------------------------------
@@ -132,6 +133,9 @@ class Shake(Fix):
             else:
                 if value not in session.scene.molecules:
                     raise InputError(f"{what} mol: there is no molecule {value}{nearest(value, session.scene.molecules)}")
+                if any(key not in one.shake for one in session.scene.molecules[value] for key in ("flag", "atoms", "types")):
+                    raise InputError(f"{what} mol: molecule {value} must have shake info: sections Shake Flags, Shake Atoms and Shake Bond "
+                                     "Types")
                 template = value
             words = words[2:]
         fix = cls(group, **options, **lists)
@@ -172,11 +176,14 @@ class Shake(Fix):
         self._arrays(system)
 
     def _arrays(self, system) -> None:
-        c, self._atoms = self.clusters, system.n
+        c, self._listed = self.clusters, system.id
         self.a = (np.ascontiguousarray(c.atoms, np.int32), c.kind.astype(np.int32), self.distances, np.zeros((len(c.kind), 6)))
 
     def _rows(self, system) -> cc.Clusters:
-        """The clusters of `ids` by row."""
+        """The clusters of `ids` by row; those of which no atom is there any more are forgotten."""
+        stay = np.isin(self.ids.atoms, system.id).any(axis=1)
+        if not stay.all():
+            self.ids = cc.Clusters(self.ids.atoms[stay], self.ids.kind[stay], self.ids.types[stay])
         order = np.argsort(system.id)
         ids = self.ids.atoms
         at = order[np.minimum(np.searchsorted(system.id, ids, sorter=order), system.n - 1)] if system.n else np.zeros_like(ids)
@@ -202,6 +209,12 @@ class Shake(Fix):
         there = centre < len(mask)
         return float(cc.HELD[self.clusters.kind[there]][mask[centre[there]]].sum())
 
+    def added_dof(self, mask: np.ndarray) -> float:
+        rows = self.clusters.atoms[np.isin(self.ids.atoms, self.came)]
+        new = np.zeros(len(mask), bool)
+        new[rows[(rows >= 0) & (rows < len(mask))]] = True
+        return self.removed_dof(mask & new)
+
     # ---- a run --------------------------------------------------------------------------------------------------------------------------
     def parameters(self, loop) -> np.ndarray:
         vars(self).pop("post_force", None)
@@ -213,12 +226,19 @@ class Shake(Fix):
 
     def atom_arrays(self, loop):
         """Clusters by row, their kinds, distances, and virials."""
-        if loop.system.n != self._atoms:        # some have left
-            kinds = self.clusters.kind
+        if loop.system.id is not self._listed:        # some have left or joined
             self.clusters = self._rows(loop.system)
-            self.clusters.kind[:] = kinds
+            self.distances = cc.lengths(self.clusters, loop.interactions, f"fix {self.style}")
+            if self.settle:
+                self._mark_rigid(loop.system)
             self._arrays(loop.system)
         return self.a
+
+    def take_in(self, system, atoms, molecule, aside=0.0) -> None:
+        """Hold copies of a template whose `atoms`, with their ids, are about to join the system."""
+        self.came = np.append(self.came, atoms.id)
+        new = cc.of_template(molecule, atoms.id.reshape(-1, molecule.natoms))
+        self.ids = cc.Clusters(*(np.concatenate([getattr(c, name) for c in (self.ids, new)]) for name in ("atoms", "kind", "types")))
 
     def hooks(self) -> dict[str, bool]:
         hooks = super().hooks()
@@ -230,7 +250,7 @@ class Shake(Fix):
 
     def setup(self, loop) -> None:
         """Positions that fit the constraints; the forces of the first half step follow."""
-        self._energy, self._told = 0.0, loop.step
+        self._energy, self._told, self.came = 0.0, loop.step, np.zeros(0, np.int64)
         if self.minimizing:
             loop.warn(f"Using fix {self.style} with minimization.\n  Substituting constraints with harmonic restraint forces using "
                       f"kbond={self._spring(loop):.8g}")

@@ -44,8 +44,8 @@ PARTIAL = {
     ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
     ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "langevin"): "no angmom, which is for ellipsoids",
-    ("fix", "shake"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
-    ("fix", "rattle"): "run_style verlet; mol is read, but no fix puts in molecules that are held",
+    ("fix", "shake"): "run_style verlet",
+    ("fix", "rattle"): "run_style verlet",
 }
 # names that are read but do nothing useful yet
 REFUSED = registry.REFUSED
