@@ -47,6 +47,7 @@ pair_coeff * 2 0.0 1.0
 molecule water water.mol
 create_atoms 0 random {n} 4711 NULL mol water 993 overlap 2.2 maxtry 400
 group gas type 1 2
+{first}
 fix g gas {fix}
 {more}
 run {steps}
@@ -106,7 +107,7 @@ def atoms(fix, **other):
 
 
 def molecules(fix, **other):
-    return MOLECULES.format(**{"width": 16, "n": 30, "steps": 5, "more": "", "fix": fix, **other})
+    return MOLECULES.format(**{"width": 16, "n": 30, "steps": 5, "first": "", "more": "", "fix": fix, **other})
 
 
 REGION, TILTED = "region s block 0.2 2 0.2 2 0.5 2.5", "prism 0 3 0 3 0 3 0.5 0.3 0.4"
@@ -136,6 +137,10 @@ CASES = {
     "molecules, turned far": molecules(MOVES + "tfac_insert 1.6667 maxangle 180 overlap_cutoff 1.5"),
     "molecules, full energy": molecules(MOVES + "full_energy intra_energy 0.1", more="fix 2 all nve\ntimestep 0.2"),
     "molecules, excluded": molecules(MOVES + "full_energy", more="neigh_modify exclude molecule/intra gas"),
+    "mcmoves": molecules(MOVES + "mcmoves 0 1 3"),
+    "mcmoves, atoms of molecules": molecules(MOVES + "mcmoves 2 1 1 full_energy", more="fix 2 all nve\ntimestep 0.2"),
+    "mcmoves of atoms": atoms(GCMC + "mcmoves 3 0 0"),
+    "mcmoves in a region": molecules(MOVES + "mcmoves 0 1 1 region s", first="region s block 2 14 2 14 2 14"),
     "molecules, small": molecules(MOVES + "full_energy", width=9, n=6),
     "widom": atoms(WIDOM),
     "widom, tail": atoms("widom 2 50 1 29494 2.0", more="pair_modify tail yes"),
@@ -272,8 +277,8 @@ def test_made_in_python():
     ("gcmc 1 1 1 1 7 1.0 0 0.1 region wide", "beyond the box"),
     ("gcmc 1 1 1 1 7 1.0 0 0.1 charge 1.0", "the atoms have no charges"),
     ("gcmc 1 1 1 0 7 1.0 0 0.1 mol nothing", "there is no molecule nothing"),
-    ("gcmc 1 1 1 1 7 1.0 0 0.1 shake s", "fix shake holds"),
-    ("gcmc 1 1 1 1 7 1.0 0 0.1 rigid s", "fix rigid holds"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 shake s", "cannot use shake and not molecule"),
+    ("gcmc 1 1 1 1 7 1.0 0 0.1 rigid s", "cannot use rigid and not molecule"),
     ("gcmc 1 1 1 1 7 1.0 0 0.1 group b", "group b"),
     ("gcmc 1 1 1 1 7 1.0 0 0.1 mcmoves 0 0 0", "mcmoves"),
     ("gcmc 1 1 1 1 7 1.0 0 0.1 full_energy\nfix w all wall/harmonic zlo EDGE 1 1 1\nfix_modify w energy yes",

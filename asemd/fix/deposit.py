@@ -3,7 +3,8 @@ r"""Put atoms or molecules into a region now and then, as in vapour deposition o
 Every M steps one particle is put at a random place of the region, until there were N. With ``near R`` places closer than R to an atom are
 refused and up to ``attempt`` others tried; ``global lo hi`` and ``local lo hi delta`` put it above the highest atom, of all or of those
 that are laterally nearer than delta; ``rate V`` lets the region rise. Molecules are turned at random. Velocities are random within the
-ranges ``vx vy vz``, or point to ``target``. Random numbers are LAMMPS's, so particles come to the same places.
+ranges ``vx vy vz``, or point to ``target``. ``rigid`` and ``shake`` name a fix of such a style that is to hold the molecules, with the same
+template (``mol``). Random numbers are LAMMPS's, so particles come to the same places.
 
 Source: LAMMPS manual, fix deposit. Units: distance, velocity; with ``units lattice``, the default of scripts, lengths count in lattice
 spacings. The first particle comes on the step after the fix is made.
@@ -113,6 +114,7 @@ class Deposit(Fix):
         count, kind, every, seed = take(words, 4, "fix deposit N type M seed")
         scene = session.scene
         given = _read(words[4:])
+        holder = holders.read(given, "fix deposit")
         if "region" not in given:
             raise InputError("fix deposit needs the keyword region")
         if ("var" in given) != ("set" in given):
@@ -145,8 +147,7 @@ class Deposit(Fix):
                   whole(given.get("attempt", ["10"])[0], "fix deposit attempt"), velocity, above, lateral,
                   numbers.get("rate", [0.0])[0] * up, _scaled(numbers.get("target"), (sx, sy, sz)),
                   _scaled(numbers.get("gaussian"), (sx, sy, sz, sx)), molecules, numbers.get("molfrac"), numbers.get("orient"),
-                  choice(given.get("id", ["max"])[0], ("max", "next"), "fix deposit id") == "next", _test(given, session),
-                  holders.read(given, "fix deposit"))
+                  choice(given.get("id", ["max"])[0], ("max", "next"), "fix deposit id") == "next", _test(given, session), holder)
         fix.template = given.get("mol", [""])[0]
         fix.words, fix.next_reneighbor, fix.first = list(words), scene.step + 1, scene.step + 1
         fix.check_inside(scene.system.box)

@@ -12,8 +12,12 @@ in which atoms are chosen are LAMMPS's of one process, so that the same moves ar
 
 In a script all is as LAMMPS does it: without ``full_energy`` only images of atoms within cutoff and skin of the box count (let the skin be
 at least ``displace``), gas atoms of other types have the energy of the exchanged type, and inserted atoms have no charge once they are
-there; in a region the newest molecule is neither moved nor deleted; a tail correction follows a deletion late. Made in Python, the fix has
-none of these.
+there; in a region the newest molecule is neither moved nor deleted; a tail correction follows a deletion late; single atoms of molecules
+(``mcmoves``) have no energy without ``full_energy``; new bodies of fix rigid/small (``rigid``) are put beside their atoms by the
+geometric centre of the template file, so that file should have it at the origin. Made in Python, the fix has none of these.
+
+Molecules that fix rigid/small or fix shake holds are exchanged (not moved) with ``rigid`` or ``shake`` and the ID of that fix, which must
+name the same template (``mol``).
 
 Source: D. Frenkel, B. Smit, Understanding Molecular Simulation, Academic Press (2002); LAMMPS manual, fix gcmc. Units: temperature, energy,
 distance, degrees. Output: a vector, attempts and successes of translations, insertions, deletions and rotations.

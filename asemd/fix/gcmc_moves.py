@@ -108,7 +108,15 @@ class Moves(Reservoir):
 
     # ---- atoms
     def atom_energy(self, i: int, x) -> float:
-        return self.with_others(x, self.types if self.one_type else self.atoms.type[i:i + 1], self.atoms.q[i:i + 1], i)
+        a, fix, molecule = self.atoms, self.fix, int(self.atoms.molecule[i])
+        if fix.as_lammps and not fix.full_energy and fix.molecule is not None:      # type 0 there, which has no energy: overlaps count
+            return self.with_others(x, np.zeros(1, np.int64), a.q[i:i + 1], i)
+        if fix.by_molecule and molecule > 0 and self.energies.exact:        # bonds change, and special pairs
+            rows = a.members(molecule)
+            at = self.unwrapped(rows)
+            at[rows == i] = x + a.image[i] @ self.box.cell
+            return self.with_others(x, a.type[i:i + 1], a.q[i:i + 1], molecule=molecule) + self.alone(self._part(rows, at))
+        return self.with_others(x, self.types if self.one_type else a.type[i:i + 1], a.q[i:i + 1], i)
 
     def translate_atom(self) -> None:
         fix, a = self.fix, self.atoms
@@ -120,6 +128,7 @@ class Moves(Reservoir):
         at = self.displaced(a.x[i], fix.other)
         if self.moved(before, self.atom_energy(i, at[None]), self.decides):
             a.place([i], at[None], a.image[i:i + 1])
+            self.own.pop(int(a.molecule[i]), None)
             self.changed()
             self.count[TRANSLATION + 1] += 1
 

@@ -105,7 +105,9 @@ def check_scene(fix, loop) -> float:
         if (system.molecule[gas] == 0).any():
             single = system.id[gas & (system.molecule == 0)][0]
             raise InputError(f"{what}: atoms of group {fix.group} have no molecule, such as atom {single}")
-    elif (system.molecule[gas] != 0).any():
+    if fix.what == "fix gcmc" and molecule is None and (system.molecule[system.type == fix.kind] != 0).any():
+        raise InputError(f"{what} cannot exchange individual atoms belonging to a molecule: atoms of type {fix.kind} do")
+    if not fix.by_molecule and (system.molecule[gas] != 0).any():
         loop.warn(f"{what} takes single atoms, but atoms of group {fix.group} belong to molecules")
     inter = loop.interactions
     uses = inter.uses["pair"]
@@ -126,7 +128,7 @@ def check_scene(fix, loop) -> float:
 def _check_full(fix, loop, gas) -> None:
     """What the energy of the whole system may not include."""
     for f in loop.fixes:
-        if f.thermo_energy and f is not fix:
+        if f.thermo_energy and f is not fix and f.style not in ("shake", "rattle"):     # whose energy is that of a minimisation
             raise InputError(f"{fix.what} full_energy: the energy of fix {f.id} cannot be included; say fix_modify {f.id} energy no")
     for kind, *masks in loop.settings.exclude:
         if (kind == "molecule/inter" or (kind == "group" and any((m & gas).any() for m in masks))

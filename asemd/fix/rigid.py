@@ -126,7 +126,8 @@ class Rigid(Fix):
             session.print(f"  create bodies CPU = {time.perf_counter() - began:.3f} seconds")
         session.print(f"  {fix.members.count} rigid bodies with {len(fix.members.ids)} atoms")
         if cls.small:
-            session.print(f"  {rb.farthest(system, fix.members):.8} = max distance from body owner to body atom")
+            away = rb.farthest(system, fix.members) if fix.members.count else 0.0
+            session.print(f"  {away:.8} = max distance from body owner to body atom")
         return fix
 
     def to_lammps(self) -> list[str]:
@@ -168,10 +169,10 @@ class Rigid(Fix):
                     raise InputError(f"fix {self.style}: bodies by number needs one for each of {system.n} atoms, got {len(number)}")
                 number = number - number[mask].min(initial=0) + 1
             self.members = rb.by_number(system.id[mask], number[mask])
-        if self.members.count == 0:
+        if self.members.count == 0 and not getattr(self, "template", ""):
             raise InputError(f"fix {self.style}: no rigid bodies defined, group {self.group} has no atoms")
         size = np.diff(self.members.first)
-        if size.min() < 2:
+        if size.min(initial=2) < 2:
             k = int(np.argmin(size))
             raise InputError(f"fix {self.style}: rigid body {k + 1} has {size[k]} atom{'s' * (int(size[k]) != 1)}, it needs two or more")
         for keyword, settings in (("force", self.force), ("torque", self.torque)):

@@ -56,7 +56,9 @@ class AddedBodies:
                 lo, hi = self.members.first[torn[0]:torn[0] + 2]
                 ids = " ".join(map(str, self.members.ids[lo:hi]))
                 raise SimulationError(f"fix {self.id} (style {self.style}): some of the atoms {ids} of a rigid body have left")
+            left = self.kept.half_virial[count == 0].sum(axis=0)      # counts, for they took part in the first half of the step
             self.kept, self.members = rb.without(self.kept, self.members, count > 0)
+            self.kept.half_virial[:1] += left
         return super().atom_arrays(loop)
 
     def own_words(self) -> list[str]:
