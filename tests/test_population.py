@@ -293,7 +293,7 @@ def test_deposit_goes_on_from_a_restart(tmp_path, monkeypatch):
     ("region c block 0 9 0 5 0 5\nfix 2 all deposit 10 1 20 12345 region c", "beyond the box"),
     ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 2 20 12345 region c", "type"),
     ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 1 20 12345 region c nera 1", "did you mean near"),
-    ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 1 20 12345 region c shake 1", "fix shake"),
+    ("region c block 0 1 0 1 0 1\nfix 2 all deposit 10 1 20 12345 region c shake 1", "cannot use shake and not molecule"),
     ("fix 2 all atom/swap 5 3 4711 1.0 types 1", "types"),
     ("fix 2 all atom/swap 5 3 4711 1.0 semi-grand yes types 1 1", "given together"),
     ("fix 2 all bond/create 10 1 1 1.1 1", "bond type"),

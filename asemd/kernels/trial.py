@@ -265,7 +265,8 @@ def _written_out(source: str, count: int) -> str:
     found = re.search(r"( *)total \+= pair_energy\(r2, (.*), tables, ti, tj\)\n", source)
     lines = ["one = 0.0"]
     for k in range(count):
-        lines += [f"fp, ev, ec = pair{k}(r2, {found[2]}, w{k}[0], w{k}[1], w{k}[1], rows{k}, constants{k}, arrays{k}, ti, tj)", "one += ev + ec"]
+        lines += [f"fp, ev, ec = pair{k}(r2, {found[2]}, w{k}[0], w{k}[1], w{k}[1], rows{k}, constants{k}, arrays{k}, ti, tj)",
+                  "one += ev + ec"]
     source = source.replace(found[0], "".join(f"{found[1]}{line}\n" for line in [*lines, "total += one"]))
     head, body = source.split("\n", 1)
     return "\n".join([head, *(f"    rows{k}, constants{k}, arrays{k}, w{k} = tables[{k}]" for k in range(count)), body])
