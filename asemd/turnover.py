@@ -23,13 +23,10 @@ def simple(engine: Engine, gone: np.ndarray, atoms: System | None) -> bool:
     """
     system, exclusions, more = engine.system, engine.exclusions, 0 if atoms is None else atoms.n
     engine.bonds.carry_back()
-<<<<<<< HEAD
-    if engine.expanded or engine.bonds.pending or engine.solver is not None or engine.many_terms or any(np.ndim(t.use.factor) > 0 or t.style.sized for t in engine.pair_terms):
-=======
     if engine.expanded or engine.bonds.pending or engine.solver is not None or engine.many_terms:
         return False
-    if any(np.ndim(t.use.factor) > 0 for t in engine.pair_terms):
->>>>>>> dd3f698 (Table of ids, tests)
+    if any(np.ndim(t.use.factor) > 0 or t.style.sized for t in engine.pair_terms):
+        return False
         return False
     if engine.mode == "cluster" and engine.ns + more + 8 > engine.state.x.shape[1]:
         return False
