@@ -27,7 +27,6 @@ def simple(engine: Engine, gone: np.ndarray, atoms: System | None) -> bool:
         return False
     if any(np.ndim(t.use.factor) > 0 or t.style.sized for t in engine.pair_terms):
         return False
-        return False
     if engine.mode == "cluster" and engine.ns + more + 8 > engine.state.x.shape[1]:
         return False
     if engine.list_for(system.n - len(gone) + more)[:3] != (engine.mode, engine.expanded, engine.sparse):

@@ -135,7 +135,8 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     r = system.box.unwrap(system.x, system.image)[rows]
 
     def total(a):       # one atom after the other, as LAMMPS does
-        return np.stack([np.bincount(body, column, nb) for column in a.reshape(len(a), math.prod(a.shape[1:])).T], axis=1).reshape(nb, *a.shape[1:])
+        columns = a.reshape(len(a), math.prod(a.shape[1:])).T
+        return np.stack([np.bincount(body, column, nb) for column in columns], axis=1).reshape(nb, *a.shape[1:])
     mass = total(m)
     center = total(m[:, None] * r) / mass[:, None]
     image = np.zeros((nb, 3), np.int32)
