@@ -17,6 +17,7 @@ class EmbeddedTerm(FactorTerm):
     def __init__(self, term):
         self.owner, self.style, self.tables = term, term.style, term.tables
         table, offset, self.functions, self.function_of, self.share = term.tables.arrays
+        self.function_of, self.flat = self.function_of.astype(np.int32), self.functions.ravel()
         self.types = len(offset)
         self.table = aligned((table.size,))
         self.table[:] = table.ravel()
@@ -60,8 +61,8 @@ class EmbeddedTerm(FactorTerm):
         return self._with_factor(engine, tid, (
             s.x, f, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, int(c.bounds[tid]),
             int(c.bounds[tid + 1]), self.tables.constants, self.table, self.offset, self.types, self.cut, c.reach, self.functions,
-            self.function_of, self.share, self.rho, self.slope, self.b[tid], self.row, self.local[tid], self.sums[tid], self.kinds[tid],
-            self.kept[tid], self.owners[tid], self.ends, self.work[tid], self.there[tid], self.back[tid], self.lanes[tid],
+            self.flat, self.function_of, self.share, self.rho, self.slope, self.b[tid], self.row, self.local[tid], self.sums[tid],
+            self.kinds[tid], self.kept[tid], self.owners[tid], self.ends, self.work[tid], self.there[tid], self.back[tid], self.lanes[tid],
             *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], tid, engine.meeting,
             engine.bad[tid, self.index]))
 

@@ -122,13 +122,54 @@ def blocks(me, q, v, m8, kinds, kept, offset, types, there, back, lanes):
     store8(back, v, m8 + lookup8(offset, lanes, 0))
 
 
+def slopes(i, types, functions, function_of, constants, slope, lanes):
+    """Slopes of the embedding energies of slots i to i + 7, whose densities are in ``slope[i:]``; False, and nothing done, if one of them
+    is beyond its table or no atom."""
+    p = (load8(slope, i) - all8(constants[6])) * all8(constants[3])
+    start = lookup8(function_of, types, i)
+    within = below8(p, all8(constants[4]), all8(1.0), all8(0.0)) * below8(p, all8(constants[5]), all8(0.0), all8(1.0))
+    if sum8(within * below8(real8(start), all8(0.0), all8(0.0), all8(1.0))) < 8.0:
+        return False
+    m = whole8(p)
+    t = p - real8(m)
+    store8(lanes, 0, (start + m) * all8(4))
+    c3, c4, c5, c6 = rows8(functions, lanes, 0, 0)
+    store8(slope, i, madd8(madd8(c3 * all8(3.0), t, c4 * all8(2.0)), t, c5) * all8(constants[3]))
+    return True
+
+
+def embed(c0, c1, rho, type_of, functions, flat, function_of, share, constants, slope, lanes, acc, bad):
+    """Embedding energies of clusters c0..c1-1, and their slopes."""
+    for i in range(c0 * CLUSTER, c1 * CLUSTER, 8):
+        total = load8(rho[0], i)
+        for t in range(1, rho.shape[0]):
+            total = total + load8(rho[t], i)
+        store8(slope, i, total)
+        if not ENERGY:
+            if slopes(i, type_of, flat, function_of, constants, slope, lanes):
+                if VARYING:
+                    for j in range(i, i + 8):
+                        slope[j] *= share[type_of[j]]
+                else:
+                    store8(slope, i, load8(slope, i) * all8(share[type_of[i]]))
+                continue
+        for j in range(i, i + 8):
+            k = function_of[type_of[j]]
+            e, d = embedding(slope[j], functions, k, constants) if k >= 0 else (0.0, 0.0)
+            if not abs(slope[j]) < math.inf and bad[0] == 0.0:
+                bad[0], bad[1], bad[2] = 1.0, j, slope[j]
+            slope[j] = share[type_of[j]] * d
+            if ENERGY:
+                acc[0] += share[type_of[j]] * e
+
+
 def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shifts, c0, c1, constants, table, offset, types, cut, reach,
-                      functions, function_of, share, rho, slope, b, row, local, sums, kinds, kept, owner, ends, work, there, back,
+                      functions, flat, function_of, share, rho, slope, b, row, local, sums, kinds, kept, owner, ends, work, there, back,
                       lanes, near, push, acc, hide, skin, moved, farthest, tid, meeting, bad):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)`.
 
-    `rho (threads, cap)` and `slope (cap,)` are of all threads; `b`, `local`, `sums`, `kinds`, `work`, `there` and `back` room for the
-    neighbours of one cluster, `kept`, `owner` and `ends` for all of them.
+    `flat` is `functions (n, 4)` as one row. `rho (threads, cap)` and `slope (cap,)` are of all threads; `b`, `local`, `sums`, `kinds`,
+    `work`, `there` and `back` room for the neighbours of one cluster, `kept`, `owner` and `ends` for all of them.
     """
     cap = x.shape[1]
     stage = np.int64(there.shape[0])
@@ -188,19 +229,7 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
         for k in range(full):
             mine_rho[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))] += sums[place(4 * k)]
     barrier(meeting)
-    for i in range(c0 * CLUSTER, c1 * CLUSTER):
-        k = function_of[type_of[i]]
-        slope[i] = 0.0
-        if k >= 0:
-            total = 0.0
-            for t in range(rho.shape[0]):
-                total += rho[t, i]
-            e, d = embedding(total, functions, k, constants)
-            slope[i] = share[type_of[i]] * d
-            if ENERGY:
-                acc[0] += share[type_of[i]] * e
-            if not abs(total) < math.inf and bad[0] == 0.0:
-                bad[0], bad[1], bad[2] = 1.0, i, e
+    embed(c0, c1, rho, type_of, functions, flat, function_of, share, constants, slope, lanes, acc, bad)
     barrier(meeting)
     for k in range(0, cap, 8):
         take8(near, k, x, slope)
@@ -286,6 +315,6 @@ def kernel(*, energy: bool, varying: bool, outdated: bool):
     b.line("place, single = np.uint64, np.float32")
     for name, value in dict(CLUSTER=CLUSTER, SLOT_BITS=SLOT_BITS, ENERGY=energy, VARYING=varying, OUTDATED=outdated).items():
         b.constant(name, value)
-    for f in (add, embedding, pack, find, blocks, embedded_clusters):
+    for f in (add, embedding, pack, find, blocks, slopes, embed, embedded_clusters):
         b.function(f, fast=True)
     return b.build().embedded_clusters
