@@ -57,7 +57,8 @@ class Engine:
         self.bits: dict[str, int] = {"all": 1}
         self.result: Result | None = None
         self.units = unit_styles.get(system.units)
-        self.qqr2e, self.shares = self.units.qqr2e / interactions.dielectric, None      # shares: room of `asemd.atom_shares`
+        self.qqr2e = interactions.coulomb_constant(self.units) / interactions.dielectric
+        self.shares = None      # room of `asemd.atom_shares`
         self.update(system)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------

@@ -36,7 +36,8 @@ CASES = {      # name of the style, and what makes a case another one -> command
     "lj/gromacs/coul/gromacs": "pair_style lj/gromacs/coul/gromacs 4 5 5 7\n" + LJ,
     "coul/exclude": "pair_style coul/exclude 7\npair_coeff * *",
     "coul/long": "pair_style coul/long 7\npair_coeff * *" + SOLVER,
-    "coul/long factor": "pair_style hybrid/scaled 0.7 coul/long 7 0.5 lj/cut 5\npair_coeff * * coul/long\npair_coeff * * lj/cut 0.1 2" + SOLVER,
+    "coul/long factor": "pair_style hybrid/scaled 0.7 coul/long 7 0.5 lj/cut 5\npair_coeff * * coul/long\n"
+            "pair_coeff * * lj/cut 0.1 2" + SOLVER,
     "born/coul/long": "pair_style born/coul/long 5 7\n" + BORN + SOLVER,
     "buck/coul/long": "pair_style buck/coul/long 5 7\npair_coeff * * 1000 0.3 20\npair_modify tail yes" + SOLVER,
     "lj/class2/coul/long": "pair_style lj/class2/coul/long 5 7\n" + LJ + SOLVER,
@@ -111,7 +112,8 @@ def test_like_lammps(theirs, name, special):
     session = ours(script(name, special), "lammps" if twin else "")
     system = session.scene.system
     other = np.reshape(expected["f"], (-1, 3))
-    np.testing.assert_allclose(system.f[np.argsort(system.id)], other, rtol=0, atol=(1e-11 if "/cs" in name else 1e-12) * np.abs(other).max())
+    atol = (1e-11 if "/cs" in name else 1e-12) * np.abs(other).max()
+    np.testing.assert_allclose(system.f[np.argsort(system.id)], other, rtol=0, atol=atol)
     row = [session.variables.evaluate(c) for c in COLUMNS]
     np.testing.assert_allclose(row, expected["thermo"], rtol=1e-11, atol=1e-11)
 

@@ -1,7 +1,8 @@
 r"""coul/wolf for cores and shells of polarisable atoms: special pairs may stand in one place.
 
 Their energy is written with the error function, so that it stays finite and keeps its digits where a core and its shell meet; LAMMPS adds
-1e-20 to the squared distance, as is done here. Force of coul/wolf: see there.  Mitchell and Fincham, J. Phys. Condens. Matter 5, 1031 (1993).
+1e-20 to the squared distance, as is done here. Force of coul/wolf: see there.
+Mitchell and Fincham, J. Phys. Condens. Matter 5, 1031 (1993).
 """
 from __future__ import annotations
 
