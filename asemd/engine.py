@@ -20,7 +20,7 @@ from asemd.manybody_term import ManyBodyTerm, all_pairs
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
 from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
-from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
+from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, list_term, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 SLOTTED = 9           # the first fields of a `State`, those by slot
@@ -108,7 +108,7 @@ class Engine:
             mode, why = "plain", "a periodic cell width is below twice cutoff plus skin"
         else:
             mode, why = "cluster", "half list of clusters of 8 atoms"
-        expanded = mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.sized for t in self.pair_terms)
+        expanded = mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.listed for t in self.pair_terms)
         packed = (mode == "cluster" and not expanded and self.exclusions.partners is None and not len(self.exclusions.rules)
                   and all(getattr(t.style, "packable", False) for t in self.many_terms))
         few = 2.1 * self.reach**3 * n < SPARSE * self.volume or not (self.pair_terms or packed)
@@ -130,7 +130,7 @@ class Engine:
                 if weighted:
                     terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special", owner=t))
             else:
-                terms.append(PairListTerm(t.style, t.tables, t.style.parts, "all", owner=t))
+                terms.append(list_term(t))
         terms += [(EmbeddedTerm if self.packed else ManyBodyTerm)(t) for t in self.many_terms]
         terms += own_terms(self.pair_terms, self.system.counts["ntypes"], self.qqr2e)
         if self.solver is not None and self.solver.modify["compute"]:

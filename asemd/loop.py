@@ -53,7 +53,7 @@ class Loop:
             f.join(self)
         moves = {f.box_moves for f in self.fixes} - {""}
         self.engine = Engine(system, interactions, settings, "shape" if "shape" in moves else "".join(moves))
-        self.units, self.result = self.engine.units, None
+        self.units, self.result, self.engine.loop = self.engine.units, None, self
         self.gone: dict[str, int] = {}        # atoms of each group that left since `setup`, less those that joined
         self.natoms = system.n                # how many there should be: lost ones count
         self.warn, self.say, self.fix_data, self._collected = warn, str, (), -1       # `say` is told what fixes print: nobody listens yet

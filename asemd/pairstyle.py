@@ -110,6 +110,7 @@ class PairStyle(Style):
     solvers: frozenset[str] = frozenset()      # kinds of kspace_style that complete the parts; empty: none is needed
     many = False                     # energies of single pairs; True: `asemd.manybody`
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
+    stirred = False                  # forces depend on velocities and random numbers, see `asemd.noise_term`
     all_or_nothing = False           # special pairs whose weight is not 0 count in full
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
@@ -148,6 +149,11 @@ class PairStyle(Style):
             if "radius" not in system.extra:
                 raise InputError(f"pair style {self.name} needs atom attribute radius: use atom_style sphere")
             settings["radii"] = largest_radii(system)
+
+    @property
+    def listed(self) -> bool:
+        """Whether it works on plain lists of pairs only."""
+        return self.sized
 
     def functions(self):
         return tuple(p.function for p in self.parts)

@@ -64,6 +64,7 @@ FORMULAS = {
     "lj/class2/soft": lambda r: number("0.6")**2 * (2 * soft(r)**number("-1.5") - 3 / soft(r)),
 }
 TERMS = {
+    "morse/soft": lambda r: m.exp(4 * (number("1.2") - r)) + 2 * m.exp(2 * (number("1.2") - r)),
     "colloid": lambda r: 30 / r**2,
     "lj/gromacs": lambda r: 4 * ((number("1.1") / r)**12 + (number("1.1") / r)**6),
     "morse/smooth/linear": lambda r: m.exp(4 * (number("1.2") - r)) + 2 * m.exp(2 * (number("1.2") - r)),

@@ -12,6 +12,7 @@ from asemd.expression_style import ExpressionStyle, fill_variables
 from asemd.fix import Fix
 from asemd.formula import CONSTANTS
 from asemd.formula_functions import MATH
+from asemd.lammps.pair_order import pair_order
 from asemd.term import FactorTerm, PairListTerm
 
 if TYPE_CHECKING:
@@ -91,8 +92,9 @@ class LiveCoefficients(Fix):
 
 
 def live_coefficients(session: Session) -> list[Fix]:
-    """The fix that a run needs beside the user's, if an expression names a variable whose value changes."""
+    """The fixes that a run needs beside the user's: for expressions with variables whose value changes, and for random numbers of pairs."""
     for name in fill(session, "pair"):
         if changes(session, name):
             raise InputError(f"pair_coeff lepton: the variable {name} changes during the run: an expression of pairs must stay the same")
-    return [LiveCoefficients(session)] if any(changes(session, name) for name in (*fill(session), *scale(session))) else []
+    live = [LiveCoefficients(session)] if any(changes(session, name) for name in (*fill(session), *scale(session))) else []
+    return live + pair_order(session)

@@ -1,7 +1,8 @@
-r"""$$E = s D_0 \left[ x^2 - 2x \right] - \tfrac{2}{3} t D_0 e^{-2 \alpha r_0} (e^{\alpha r_0} - 1)\, x^3, \qquad x = e^{-\alpha (r - r_0)}$$
+r"""$$E = s D_0 \left[ x^2 - 2x \right] - \tfrac{2}{3} t D_0 e^{-2 \alpha r_0} (e^{\alpha r_0} - 1)\, x^3,
+    \qquad x = e^{-\alpha (r - r_0)}$$
 
 Morse that turns off with lambda, for free energies. Up to the value `range` of lambda, s and t are (lambda/range)^n; beyond it s is 1 and t
-falls to 0 at lambda = 1, which is Morse.  LAMMPS manual, pair_style morse/soft.
+falls to 0 at lambda = 1, which is Morse. ``pair_modify shift yes`` has no effect, as in LAMMPS.  LAMMPS manual, pair_style morse/soft.
 """
 from __future__ import annotations
 
@@ -41,8 +42,8 @@ def morse_soft_d2(r, depth, alpha, r0, cube):
     return alpha * alpha * x * (depth * (4.0 * x - 2.0) + 9.0 * cube * x * x)
 
 
-@pair("morse/soft", settings="n range cut", coeff="d0 alpha r0 lambda [cut]", derived=derived, rows="depth cube", cls=SoftMorsePair,
-      units={"d0": "energy"}, settings_example="4.0 0.9 2.5", example="1.0 2.0 1.2 0.7 2.4", d2=morse_soft_d2,
+@pair("morse/soft", settings="n range cut", coeff="d0 alpha r0 lambda [cut]", derived=derived, rows="depth cube", cls=SoftMorsePair, shifts=False,
+      units={"d0": "energy", "n": "integer"}, settings_example="4 0.9 2.5", example="1.0 2.0 1.2 0.7 2.4", d2=morse_soft_d2,
       see="LAMMPS manual, pair_style morse/soft")
 def morse_soft(r, depth: "energy", alpha: "1/distance", r0: "distance", cube: "energy"):
     x = math.exp(-alpha * (r - r0))

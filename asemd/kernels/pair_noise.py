@@ -1,0 +1,123 @@
+"""Forces of dissipative particle dynamics: conservative, friction along and across the line of centres, and noise, for each pair of a list.
+
+Random numbers come one after the other from the stream of each thread (`asemd.marsaglia`), in the order of the list.
+Constants of the generated module: ENERGY, PER_ATOM, ACROSS (friction and noise across the line of centres, with exponents).
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.kernels.pair_sums import add, eight
+
+ENERGY = PER_ATOM = ACROSS = False
+
+
+def uniform(stream):
+    """The next number; `stream (102,)`: 97 numbers, c, two places, and a saved normal number behind its flag."""
+    i = int(stream[98])
+    j = int(stream[99])
+    value = stream[i] - stream[j]
+    if value < 0.0:
+        value += 1.0
+    stream[i] = value
+    stream[98] = i - 1 if i > 0 else 96
+    stream[99] = j - 1 if j > 0 else 96
+    c = stream[97] - 7654321.0 / 16777216.0
+    if c < 0.0:
+        c += 16777213.0 / 16777216.0
+    stream[97] = c
+    value -= c
+    return value + 1.0 if value < 0.0 else value
+
+
+def gaussian(stream):
+    """The next normal number, by the polar method."""
+    if stream[100] > 0.0:
+        stream[100] = 0.0
+        return stream[101]
+    while True:
+        a = 2.0 * uniform(stream) - 1.0
+        b = 2.0 * uniform(stream) - 1.0
+        square = a * a + b * b
+        if 0.0 < square < 1.0:
+            break
+    factor = math.sqrt(-2.0 * math.log(square) / square)
+    stream[100] = 1.0
+    stream[101] = a * factor
+    return b * factor
+
+
+def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi, rows, stream, control, acc, atom_energy, atom_virial):
+    """Pairs lo..hi-1: forces added to `f`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and `atom_virial (6, cap)`.
+
+    `rows`: cut^2, 0, a0, cut, gamma, gamma across, exponents along and across. `control`: 1/sqrt(dt), 2 kT at the beginning and at the end
+    of the run, evaluations up to now, steps of the run.
+    """
+    part = min(control[3] / control[4], 1.0) if control[4] > 0.0 else 0.0
+    heat = control[1] + part * (control[2] - control[1])
+    control[3] += 1.0
+    scale = control[0]
+    for m in range(lo, hi):
+        i = pair_i[m]
+        j = pair_j[m]
+        kind = code[m] & 3
+        image = code[m] >> 2
+        dx = x[0, i] - x[0, j] - shifts[image, 0]
+        dy = x[1, i] - x[1, j] - shifts[image, 1]
+        dz = x[2, i] - x[2, j] - shifts[image, 2]
+        r2 = dx * dx + dy * dy + dz * dz
+        ti = type_of[i]
+        tj = type_of[j]
+        if r2 >= rows[0, ti, tj]:
+            continue
+        r = math.sqrt(r2)
+        if r < 1e-10:
+            continue
+        w = weight[kind]
+        root = math.sqrt(w)
+        rinv = 1.0 / r
+        ux = v[0, i] - v[0, j]
+        uy = v[1, i] - v[1, j]
+        uz = v[2, i] - v[2, j]
+        along = (dx * ux + dy * uy + dz * uz) * rinv
+        near = 1.0 - r / rows[3, ti, tj]
+        a0 = rows[2, ti, tj]
+        gamma = rows[4, ti, tj]
+        wp = near
+        if ACROSS:
+            wp = math.pow(near, rows[6, ti, tj])
+        noise = gaussian(stream)
+        push = (w * (a0 * near - gamma * wp * wp * along) + root * math.sqrt(heat * gamma) * wp * noise * scale) * rinv
+        gx = push * dx
+        gy = push * dy
+        gz = push * dz
+        if ACROSS:
+            nx = gaussian(stream)
+            ny = gaussian(stream)
+            nz = gaussian(stream)
+            wt = math.pow(near, rows[7, ti, tj])
+            drag = w * rows[5, ti, tj] * wt * wt
+            kick = root * math.sqrt(heat * rows[5, ti, tj]) * wt * scale
+            line = (dx * nx + dy * ny + dz * nz) * rinv
+            gx += kick * (nx - line * dx * rinv) - drag * (ux - along * dx * rinv)
+            gy += kick * (ny - line * dy * rinv) - drag * (uy - along * dy * rinv)
+            gz += kick * (nz - line * dz * rinv) - drag * (uz - along * dz * rinv)
+        f[0, i] += gx
+        f[1, i] += gy
+        f[2, i] += gz
+        f[0, j] -= gx
+        f[1, j] -= gy
+        f[2, j] -= gz
+        e = 0.5 * w * a0 * rows[3, ti, tj] * near * near
+        if ENERGY:
+            add(acc, eight(e, 0.0, dx, dy, dz, gx, gy, gz))
+        if PER_ATOM:
+            atom_energy[i] += 0.5 * e
+            atom_energy[j] += 0.5 * e
+            for s in (i, j):
+                atom_virial[0, s] += 0.5 * dx * gx
+                atom_virial[1, s] += 0.5 * dy * gy
+                atom_virial[2, s] += 0.5 * dz * gz
+                atom_virial[3, s] += 0.5 * dx * gy
+                atom_virial[4, s] += 0.5 * dx * gz
+                atom_virial[5, s] += 0.5 * dy * gz

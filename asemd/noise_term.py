@@ -1,0 +1,64 @@
+"""The term of pair styles with friction and noise, whose forces depend on velocities and on the time step."""
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.kernels import pair_noise, pair_sums
+from asemd.kernels.generate import Builder
+from asemd.marsaglia import Marsaglia
+from asemd.term import PairListTerm
+
+
+@cache
+def kernel(energy: bool, per_atom: bool, across: bool):
+    """The kernel of `asemd.kernels.pair_noise`."""
+    b = Builder("pairs with friction and noise")
+    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, ACROSS=across).items():
+        b.constant(name, value)
+    for f in (pair_sums.eight, pair_sums.add, pair_noise.uniform, pair_noise.gaussian, pair_noise.noisy_forces):
+        b.function(f)
+    return b.build().noisy_forces
+
+
+class NoiseTerm(PairListTerm):
+    """All pairs of the list, each with random numbers of its own."""
+
+    def __init__(self, owner):
+        super().__init__(owner.style, owner.tables, owner.style.parts, "all", owner=owner)
+        self.streams = None
+
+    def kernel(self, energy, per_atom):
+        return kernel(energy, per_atom, self.style.across)
+
+    def rebuild(self, engine):
+        super().rebuild(engine)
+        loop, settings = getattr(engine, "loop", None), self.owner.use.settings
+        if loop is None:
+            raise InputError(f"pair style {self.style.name} has friction and noise, which take a run (asemd.MolecularDynamics or the "
+                             "command run): energies and forces of positions alone it does not have")
+        if np.ndim(self.owner.use.factor) > 0:
+            raise InputError(f"pair style {self.style.name} cannot have a factor for each atom")
+        order = getattr(loop, "pair_order", None)
+        if order is not None and engine.threads == 1:
+            order.arrange(loop, self)
+        if self.streams is None:
+            if len(settings.get("streams", ())) < engine.threads:        # they go on from run to run
+                settings["streams"] = np.array([stream(settings["seed"] + k) for k in range(engine.threads)])
+            self.streams, self.control = settings["streams"], np.zeros((engine.threads, 5))
+        ends = [2.0 * engine.units.boltz * settings[name] for name in self.style.temperatures]
+        self.control[:] = [loop.dt**-0.5, ends[0], ends[-1], loop.step - loop.begin, loop.end - loop.begin]
+
+    def arguments(self, engine, tid):
+        s, m, nth = engine.state, len(self.i), engine.threads
+        return (s.x, engine.buffers[tid], s.v, s.type, self.i, self.j, self.code, self.shifts, self.lj, m * tid // nth,
+                m * (tid + 1) // nth, self.tables.rows, self.streams[tid], self.control[tid], engine.acc[tid, self.index],
+                engine.atom_energy[tid], engine.atom_virial[tid])
+
+
+def stream(seed: int) -> np.ndarray:
+    """A stream of random numbers as the kernel keeps it."""
+    start = Marsaglia(seed)
+    return np.array([*start._u, start._c, start._i, start._j, 0.0, 0.0])

@@ -1,0 +1,67 @@
+"""Dissipative particle dynamics: LAMMPS's trajectories to the last digits, random numbers included; conservation; words."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from both import asemd, assert_same, lammps
+
+from asemd import style
+from asemd.errors import InputError
+from asemd.lammps import Lammps
+
+FLUID = """
+units lj
+atom_style atomic
+comm_modify vel yes
+lattice sc 0.8
+region b block 0 {size} 0 5 0 5
+create_box 2 b
+create_atoms 1 box
+displace_atoms all random 0.2 0.2 0.2 55
+set type 1 type/fraction 2 0.4 77
+mass * 1.0
+velocity all create 1.0 99
+pair_style {pair}
+{coeff}
+timestep 0.01
+{more}
+fix 1 all nve
+run {steps} post no
+"""
+CASES = {
+    "dpd": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5\npair_coeff 1 2 20 3 1.2", "", 5),
+    "cold": ("dpd 0.0 1.5 34387", "pair_coeff * * 25 4.5", "", 5),
+    "thermostat": ("hybrid/overlay soft 1.1 dpd/tstat 1.0 2.0 1.5 34387", "pair_coeff * * soft 8\npair_coeff * * dpd/tstat 4.5", "", 5),
+    "across": ("dpd/ext 1.0 1.5 34387", "pair_coeff * * 25 4.5 3.0 0.5 0.7", "", 5),
+    "across thermostat": ("dpd/ext/tstat 1.0 1.5 1.5 34387", "pair_coeff * * 4.5 3.0 0.5 0.7", "run 5 post no", 5),
+    "thin": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5", "", 1.5),
+    "unsorted": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5", "atom_modify sort 0 0", 5),
+}
+
+
+def script(name: str, steps: int = 40) -> str:
+    pair, coeff, more, size = CASES[name]
+    text = FLUID.format(pair=pair, coeff=coeff, more="" if "sort" in more else more, size=size, steps=steps)
+    return text.replace("lattice", more + "\nlattice") if "sort" in more else text
+
+
+def test_trajectories_are_those_of_lammps():
+    theirs = lammps({name: script(name) for name in CASES})
+    for name in CASES:
+        assert_same(asemd(script(name)), theirs[name], x=1e-10, v=1e-10)
+
+
+def test_momentum_is_conserved_and_the_temperature_comes():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in script("dpd", 400).replace("create 1.0", "create 0.1").splitlines():
+        lmp.command(line)
+    v = np.array(lmp.gather_atoms("v", 1, 3)).reshape(-1, 3)
+    assert np.abs(v.sum(axis=0)).max() < 1e-10
+    assert (v**2).sum() / (3 * len(v) - 3) == pytest.approx(1.0, abs=0.2)
+
+
+def test_words():
+    s = style.find("pair", "dpd")
+    for words, message in (("1 2.5 0", "seed must be"), ("-1 2.5 7", "temperature must not be negative"), ("1 0 7", "cutoff must be more")):
+        with pytest.raises(InputError, match=f"pair_style dpd: .*{message}"):
+            s.parse_settings(words.split())
