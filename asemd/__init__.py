@@ -13,6 +13,7 @@ _LAZY = {
     "Session": "asemd.lammps.session",
     "Scene": "asemd.scene",
     "ForceField": "asemd.calculator",
+    "EAM": "asemd.embedded_calculator",
     "plan": "asemd.lammps.plan",
     "check": "asemd.check",
     "report": "asemd.report",

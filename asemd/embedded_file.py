@@ -18,8 +18,9 @@ from asemd.potential_file import PotentialFile, Record
 
 @dataclass
 class Funcfl:
-    """One element: `embedding (nrho,)`, effective charges `charge (nr,)`, `density (nr,)`."""
+    """One element with its atomic number: `embedding (nrho,)`, effective charges `charge (nr,)`, `density (nr,)`."""
 
+    number: int
     mass: float
     drho: float
     dr: float
@@ -122,14 +123,14 @@ class _Lines:
             raise InputError(f"{self.file.what}: the cutoff must be positive, got {sizes[4]:g}", record.where)
         return *sizes, record
 
-    def mass(self, of: str) -> float:
+    def element(self, of: str = "") -> tuple[int, float]:
         """The line with atomic number and mass."""
         record = self.record(f"the line with atomic number and mass{of}")
-        record.whole("the atomic number")
+        number = record.whole("the atomic number")
         mass = record.number("the mass")
         if not mass > 0.0:
             raise InputError(f"{self.file.what}: the mass must be positive, got {mass:g}", record.where)
-        return mass
+        return number, mass
 
 
 def read_funcfl(file: PotentialFile) -> Funcfl:
@@ -142,9 +143,25 @@ def read_funcfl(file: PotentialFile) -> Funcfl:
     """
     lines = _Lines(file)
     lines.skip(1)
-    mass = lines.mass("")
+    number, mass = lines.element()
     nrho, drho, nr, dr, cut, _ = lines.sizes()
-    return Funcfl(mass, drho, dr, cut, lines.array(nrho, "F(rho)"), lines.array(nr, "Z(r)"), lines.array(nr, "rho(r)"))
+    return Funcfl(number, mass, drho, dr, cut, lines.array(nrho, "F(rho)"), lines.array(nr, "Z(r)"), lines.array(nr, "rho(r)"))
+
+
+def elements_of(file: PotentialFile) -> tuple[str, ...]:
+    """The elements of a setfl file."""
+    return _elements(_Lines(file))[0]
+
+
+def _elements(lines: _Lines) -> tuple[tuple[str, ...], Record]:
+    lines.skip(3)
+    record = lines.record("the line with the elements")
+    count = record.whole("the number of elements")
+    elements = tuple(record.words[1:])
+    if count < 1 or len(elements) != count:
+        named = " ".join(elements) or "none"
+        raise InputError(f"{lines.file.what}: {count} elements are announced, {len(elements)} named: {named}", record.where)
+    return elements, record
 
 
 def read_setfl(file: PotentialFile, chosen, *, pairs: bool = False, rhomax: bool = False, polynomial: bool = False,
@@ -164,13 +181,8 @@ def read_setfl(file: PotentialFile, chosen, *, pairs: bool = False, rhomax: bool
         An element is not there; something is missing or no number. The message names file and line.
     """
     lines = _Lines(file)
-    lines.skip(3)
-    record = lines.record("the line with the elements")
-    count = record.whole("the number of elements")
-    elements = tuple(record.words[1:])
-    if count < 1 or len(elements) != count:
-        named = " ".join(elements) or "none"
-        raise InputError(f"{file.what}: {count} elements are announced, {len(elements)} named: {named}", record.where)
+    elements, record = _elements(lines)
+    count = len(elements)
     if polynomial and count != 2:
         raise InputError(f"{file.what}: the file must have two elements, it has {count}", record.where)
     for element in chosen:
@@ -180,7 +192,7 @@ def read_setfl(file: PotentialFile, chosen, *, pairs: bool = False, rhomax: bool
     top = record.number("the largest density") if rhomax else (nrho - 1) * drho
     masses, embedding, density = [], [], []
     for a in elements:
-        masses.append(lines.mass(f" of {a}"))
+        masses.append(lines.element(f" of {a}")[1])
         embedding.append(lines.array(nrho, f"F(rho) of {a}"))
         if pairs:
             density.append([lines.array(nr, f"rho(r) of {a} at {b}") for b in elements])
