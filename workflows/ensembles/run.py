@@ -20,10 +20,11 @@ import dynamics  # noqa: E402
 import pictures  # noqa: E402
 
 NVT = ("nvt", "temp/csvr", "temp/csld", "langevin", "gjf", "baoab", "temp/berendsen")
-STEPS = {
-    ("rigid water", "shake + nvt"): 30000, ("flexible water", "nvt"): 200000, ("polymer melt", "nvt"): 60000,
-    ("rigid water", "rigid/nvt/small"): 30000, ("LJ liquid", "npt"): 100000, ("polymer melt", "npt"): 80000,
-    ("rigid water", "shake + npt"): 40000, ("flexible water", "npt"): 200000} | {("LJ liquid", d): 60000 for d in NVT}
+STEPS = {("LJ liquid", d): 200000 for d in NVT} | {
+    ("LJ liquid", "nvt"): 300000, ("LJ liquid", "temp/csvr"): 100000, ("LJ liquid", "temp/csld"): 40000, ("LJ liquid", "npt"): 200000,
+    ("polymer melt", "nvt"): 600000, ("polymer melt", "npt"): 200000,
+    ("rigid water", "shake + nvt"): 150000, ("rigid water", "rigid/nvt/small"): 100000, ("rigid water", "shake + npt"): 100000,
+    ("flexible water", "nvt"): 300000, ("flexible water", "npt"): 120000}
 QUICK = {("LJ liquid", "nvt"): 12000, ("LJ liquid", "langevin"): 12000, ("LJ liquid", "temp/berendsen"): 12000}
 
 
@@ -40,7 +41,7 @@ def plan(steps: dict) -> list[list[dynamics.Run]]:
     groups = []
     for (liquid, kind), n in steps.items():
         points = [(0, 0), (1, 0), (0, 1)] if "npt" in kind else [(0, 0), (1, 0)]
-        groups.append([dynamics.Run(liquid, kind, hot, dense, n, min(20000, n // 3)) for hot, dense in points])
+        groups.append([dynamics.Run(liquid, kind, hot, dense, n, max(4000, n // 8)) for hot, dense in points])
     return groups
 
 
