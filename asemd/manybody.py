@@ -51,6 +51,9 @@ class ManyBody(PairStyle):
     name : str
     site, forces : callable
         One of the two, see above; `helpers` are functions that it calls.
+    block : callable, optional
+        ``block(i, n, m, full, b, constants)``, the same energy for tables that `fits` agrees to, on ``full`` neighbours, a multiple of
+        eight, in vector code: see `asemd.kernels.manybody.block_forces`. Loops without branches, indices ``b[place(row * ROW + k)]``.
     rooms, shares : int
         Rows of work space by neighbour of a thread, and by slot for all threads.
     elements : bool
@@ -60,14 +63,16 @@ class ManyBody(PairStyle):
     """
 
     many = True
+    block_helpers: tuple[Callable, ...] = ()       # functions that `block` calls
 
-    def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, helpers=(), rooms: int = 1,
-                 shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="", example="", **options):
+    def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,
+                 helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="",
+                 example="", **options):
         coeff, notes = ("file element", {"file": "path", "element": "word"}) if elements else (coeff, {})
         options["units"] = {**notes, **options.get("units", {})}
         options.setdefault("doc", inspect.getdoc(inspect.getmodule(site or forces)) or "")
         super().__init__(name, [], settings=settings, coeff=coeff, example=example, **options)
-        self.site, self.forces, self.helpers = site, forces, tuple(helpers)
+        self.site, self.forces, self.block, self.helpers = site, forces, block, tuple(helpers)
         self.reads = name.partition("/")[0]      # the word for it in LAMMPS's log
         self.rooms, self.shares, self.elements, self.converts = rooms, shares, elements, converts
 
@@ -80,6 +85,10 @@ class ManyBody(PairStyle):
     def pack_pairs(self, settings, filled, ntypes, units, shift=False) -> PairTables:
         """Squared cutoffs by pair of types as ``rows[0]`` (0: no interaction), constants and arrays of the kernel."""
         raise NotImplementedError
+
+    def fits(self, tables: PairTables) -> bool:
+        """Whether `block` can compute with these tables."""
+        return False
 
     def for_some_types(self, settings: Mapping[str, Any]) -> bool:
         """Whether ``pair_coeff`` may be given for some pairs of types, each with the whole line of elements."""

@@ -46,10 +46,11 @@ class ManyBodyTerm(FactorTerm):
         self.uniform = bool((cut2[1:, 1:] == cut2[1, 1]).all())
         self.first = self.middle = self.last = np.zeros(0, np.int64)
         self.neighbors, self.codes = np.zeros(0, np.int32), np.zeros(0, np.uint8)
-        self.width = 0
+        self.width, self.blocks = 0, self.style.block is not None and self.style.fits(self.tables)
 
     def kernel(self, energy, per_atom):
-        made = manybody.kernel(self.style, energy=energy, per_atom=per_atom, uniform=self.uniform)
+        row = self.width if self.blocks and not per_atom else 0
+        made = manybody.kernel(self.style, energy=energy, per_atom=per_atom, uniform=self.uniform, row=row)
         return made if per_atom else self._scaled(made, energy)
 
     def rebuild(self, engine):
@@ -74,10 +75,15 @@ class ManyBodyTerm(FactorTerm):
         self.edges[0], self.edges[-1] = 0, self.ns
         longest = int(lengths.max(initial=0)) + 1
         if longest > self.width or len(self.near) != engine.threads:
-            self.width = longest + longest // 4 + 7 & -8
+            if self.blocks:       # kernels know how wide it is; not a power of two, to spare the cache's sets
+                self.width = next(w for w in (40, 72, 136, 264, 520, 1032, 2056, 4104, 8200, 16392) if w > longest + 8)
+                engine.changed = True
+            else:
+                self.width = longest + longest // 4 + 7 & -8
             nth = engine.threads
-            self.near, self.grad = aligned((nth, 4, self.width)), aligned((nth, 3, self.width))
-            self.room = aligned((nth, self.style.rooms, self.width))
+            work = aligned((nth, 7 + self.style.rooms, self.width))
+            self.near, self.grad, self.room = work[:, :4], work[:, 4:7], work[:, 7:]
+            self.flat = work.reshape(nth, -1)
             self.types, self.slots = np.zeros((nth, self.width), np.int32), np.zeros((nth, self.width), np.int32)
         if self.style.shares and getattr(self, "shared", np.zeros((0, 0))).shape[1] != capacity:
             self.shared = aligned((self.style.shares, capacity))
@@ -92,10 +98,11 @@ class ManyBodyTerm(FactorTerm):
     def arguments(self, engine, tid, shares: bool = False):
         s = engine.state
         f, acc = (engine.buffers[tid], engine.acc[tid, self.index]) if shares else self._sums(engine, tid)
+        room = self.flat[tid] if self.blocks and not shares else self.room[tid]
         arguments = (
             s.x, f, s.q, s.type, self.first, self.middle, self.last, self.neighbors, self.codes, self.shifts, int(self.edges[tid]),
             int(self.edges[tid + 1]), self.tables.rows[0], self.tables.constants, self.tables.arrays, self.near[tid], self.types[tid],
-            self.slots[tid], self.grad[tid], self.room[tid], self.shared, engine.qqr2e, acc, engine.atom_energy[tid],
+            self.slots[tid], self.grad[tid], room, self.shared, engine.qqr2e, acc, engine.atom_energy[tid],
             engine.atom_virial[tid], engine.bad[tid, self.index], engine.meeting)
         return arguments if shares else self._with_factor(engine, tid, arguments)
 

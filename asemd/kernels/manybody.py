@@ -13,9 +13,12 @@ from functools import cache
 
 import numpy as np
 
+from asemd.kernels import vector_math
 from asemd.kernels.generate import Builder
 
 ENERGY = PER_ATOM = UNIFORM = False
+ROW = 0
+place = int
 site = None
 
 
@@ -211,6 +214,40 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
             add_virial(acc, n, near, grad)
 
 
+def block_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts, lo, hi, cut2, constants, arrays, near, types, slots, grad,
+                 room, shared, qqr2e, acc, atom_energy, atom_virial, bad, meeting):
+    """`site_forces` for sites that compute on eight neighbours at a time: `room` is the whole work space in one row, `near` its first four
+    rows of ROW numbers, `grad` the next three. Neighbours are filled up to eights with far ones."""
+    for i in range(lo, hi):
+        if last[i] == first[i]:
+            continue
+        m = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        if n == 0:
+            continue
+        full = (n + 7) & -8
+        for k in range(n, full):
+            near[0, k] = 1e10
+            near[1, k] = 0.0
+            near[2, k] = 0.0
+            near[3, k] = 1e20
+        for k in range(full):
+            grad[0, k] = 0.0
+            grad[1, k] = 0.0
+            grad[2, k] = 0.0
+        e = site(i, n, m, full, room, constants)
+        if not abs(e) < np.inf:
+            if bad[0] == 0.0:
+                bad[0] = 1.0
+                bad[1] = i
+                bad[2] = e
+            continue
+        scatter(i, n, f, grad, slots)
+        if ENERGY:
+            acc[0] += e
+            add_virial(acc, n, near, grad)
+
+
 @cache
 def rows_module():
     """The compiled `fill_rows`."""
@@ -220,12 +257,23 @@ def rows_module():
 
 
 @cache
-def kernel(style, *, energy: bool, per_atom: bool, uniform: bool):
-    """The compiled kernel of a many-body style."""
+def kernel(style, *, energy: bool, per_atom: bool, uniform: bool, row: int = 0):
+    """The compiled kernel of a many-body style; with `row` that of its blocks, which has so many places for neighbours."""
     b = Builder(f"pair {style.name}: rows of neighbours")
     b.line("from asemd.kernels.threads import barrier")
     for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, UNIFORM=uniform).items():
         b.constant(name, value)
+    if row:
+        b.line("place = np.uint64")
+        b.constant("ROW", row)
+        vector_math.paste(b)
+        for f in (gather_near, add_virial, scatter):
+            b.function(f, fast=True)
+        for f in style.block_helpers:
+            b.function(f, fast=True)
+        b.function(style.block, "site", fast=True, vector=True)
+        b.function(block_forces, fast=True)
+        return b.build().block_forces
     for f in (gather_near, share_pair, share_triple, add_virial, scatter, *style.helpers):
         b.function(f, fast=True)
     if style.forces is not None:

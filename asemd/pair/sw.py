@@ -14,7 +14,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.kernels.manybody import PER_ATOM, ROW, place, share_pair, share_triple
 from asemd.manybody import ManyBody, element_of
 from asemd.pairstyle import PairTables
 from asemd.style import register
@@ -113,8 +113,65 @@ def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
+def sw_block(i, n, m, full, b, constants):
+    """The same for one kind of atoms with p = 4 and q = 0; each triple comes twice, for its force on one neighbour and on the other."""
+    sigma, cut, width, pairs, flat = constants[1], constants[2], constants[3], constants[4], constants[5]
+    triples, c0 = constants[6], constants[7]
+    energy = 0.0
+    for k in range(full):
+        r = math.sqrt(b[place(3 * ROW + k)])
+        ir = 1.0 / r
+        ux = b[place(k)] * ir
+        uy = b[place(ROW + k)] * ir
+        uz = b[place(2 * ROW + k)] * ir
+        s = 1.0 / (r - cut)
+        g = width * s
+        inside = k < n
+        b[place(7 * ROW + k)] = ux
+        b[place(8 * ROW + k)] = uy
+        b[place(9 * ROW + k)] = uz
+        b[place(10 * ROW + k)] = ir
+        b[place(11 * ROW + k)] = math.exp(g) if inside else 0.0
+        b[place(12 * ROW + k)] = g * s
+        x = sigma * ir
+        x2 = x * x
+        a = pairs * x2 * x2
+        e = math.exp(sigma * s) if k < m else 0.0
+        energy += (a - flat) * e
+        d = -(4.0 * a * ir + (a - flat) * sigma * s * s) * e
+        b[place(4 * ROW + k)] = d * ux
+        b[place(5 * ROW + k)] = d * uy
+        b[place(6 * ROW + k)] = d * uz
+    bent = 0.0
+    for k in range(n):
+        vx = b[place(7 * ROW + k)]
+        vy = b[place(8 * ROW + k)]
+        vz = b[place(9 * ROW + k)]
+        h = triples * b[place(11 * ROW + k)]
+        for j in range(full):
+            ux = b[place(7 * ROW + j)]
+            uy = b[place(8 * ROW + j)]
+            uz = b[place(9 * ROW + j)]
+            ir = b[place(10 * ROW + j)]
+            c = ux * vx + uy * vy + uz * vz
+            delta = c - c0
+            w = h * delta * b[place(11 * ROW + j)]
+            w = w if j != k else 0.0
+            e = w * delta
+            bent += e
+            w = 2.0 * w * ir
+            a = -e * b[place(12 * ROW + j)] - w * c
+            b[place(4 * ROW + j)] += a * ux + w * vx
+            b[place(5 * ROW + j)] += a * uy + w * vy
+            b[place(6 * ROW + j)] += a * uz + w * vz
+    return energy + 0.5 * bent
+
+
 class SW(ManyBody):
     """Tables by atom type from the triples of the file."""
+
+    def fits(self, tables):
+        return len(tables.constants) == 8
 
     def parse_settings(self, words):
         what = f"pair_style {self.name}"
@@ -156,7 +213,11 @@ class SW(ManyBody):
                     if element[k] is not None and settings["threebody"] == "on":
                         q = c["data"][element[i], element[j], element[k]]
                         three[i, j, k] = [q["lambda"] * q["epsilon"] * unit, q["costheta"]]
-        return PairTables(rows, np.array(self.numbers(settings)), (two, three))
+        constants = self.numbers(settings)
+        pair, triple = two[1:, 1:].reshape(-1, 8), three[1:, 1:, 1:].reshape(-1, 2)
+        if (pair == pair[0]).all() and (triple == triple[0]).all() and (pair[0, 5], pair[0, 6]) == (4.0, 0.0) and len(constants) == 1:
+            constants += [*pair[0, :3], pair[0, 4], pair[0, 7], *triple[0]]
+        return PairTables(rows, np.array(constants), (two, three))
 
     def numbers(self, settings):
         """Constants of `bend`."""
@@ -170,6 +231,6 @@ def ends_at(p) -> float:
     return p["sigma"] * p["a"] + (width / math.log(tol) if tol > 0.0 else 0.0)
 
 
-register(SW("sw", site=sw, helpers=(power, bend, neighbours), rooms=6, settings="[threebody] [on|off]",
+register(SW("sw", site=sw, block=sw_block, helpers=(power, bend, neighbours), rooms=6, settings="[threebody] [on|off]",
             units={"threebody": "word", "on|off": "word"}, example="Si.sw Si",
             see="F. H. Stillinger and T. A. Weber, Phys. Rev. B 31, 5262 (1985)"))

@@ -11,10 +11,14 @@ bonded to, the neighbour k that weakens the bond; pairs take theirs from the ent
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+
+import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
 from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.pair.tersoff_block import copy_rows, tersoff_block
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -171,6 +175,7 @@ class Tersoff(TripleStyle):
     columns = COLUMNS
     positive = "c d n beta lambda2 B R D lambda1 A gamma"
     energies = ("A", "B")
+    block_helpers = (copy_rows,)
 
     def parse_settings(self, words):
         what = f"pair_style {self.name}"
@@ -200,6 +205,14 @@ class Tersoff(TripleStyle):
         """Columns that are not numbers of the file."""
         return {"reach": p["R"] + p["D"], "inner": p["R"] - p["D"]}
 
+    def fits(self, tables):
+        table = tables.arrays[0][1:, 1:, 1:].reshape(-1, len(self.columns))
+        return bool((table == table[0]).all()) and min(table[0, 6], table[0, 12], table[0, 15]) > 0.0
+
+    def pack_pairs(self, settings, filled, ntypes, units, shift=False):
+        tables = super().pack_pairs(settings, filled, ntypes, units, shift)
+        return replace(tables, constants=np.append(tables.constants, tables.arrays[0][-1, -1, -1]))
+
     def shortened(self, settings):
         return settings["shift"]
 
@@ -207,6 +220,7 @@ class Tersoff(TripleStyle):
         return [settings["shift"]]
 
 
-OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)
-register(Tersoff("tersoff", site=tersoff, helpers=(taper, repulsion, attraction, angular, order, longer), example="Si.tersoff Si",
+OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=62)
+register(Tersoff("tersoff", site=tersoff, block=tersoff_block, helpers=(taper, repulsion, attraction, angular, order, longer),
+                 example="Si.tersoff Si",
                  see="J. Tersoff, Phys. Rev. B 37, 6991 (1988); 39, 5566 (1989)", **OPTIONS))
