@@ -42,7 +42,8 @@ def morse_soft_d2(r, depth, alpha, r0, cube):
     return alpha * alpha * x * (depth * (4.0 * x - 2.0) + 9.0 * cube * x * x)
 
 
-@pair("morse/soft", settings="n range cut", coeff="d0 alpha r0 lambda [cut]", derived=derived, rows="depth cube", cls=SoftMorsePair, shifts=False,
+@pair("morse/soft", settings="n range cut", coeff="d0 alpha r0 lambda [cut]", derived=derived, rows="depth cube", shifts=False,
+      cls=SoftMorsePair,
       units={"d0": "energy", "n": "integer"}, settings_example="4 0.9 2.5", example="1.0 2.0 1.2 0.7 2.4", d2=morse_soft_d2,
       see="LAMMPS manual, pair_style morse/soft")
 def morse_soft(r, depth: "energy", alpha: "1/distance", r0: "distance", cube: "energy"):
