@@ -1,7 +1,6 @@
 """Terms: the pieces of an energy, each a compiled kernel with its arguments per thread."""
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Protocol
 
 import numpy as np
@@ -81,29 +80,6 @@ class BondedTerm(Term):
         item = self.order[item]
         ids = [int(engine.system.id[r]) for r in self.items[item]]
         return SimulationError(bonded.describe(self.style, value, ids, int(self.types[item])))
-
-
-class ItemsTerm(BondedTerm):
-    """Pairs of atoms that a pair style names one by one (``list``), computed as bonds are; their energy is that of the pair style.
-
-    Raises
-    ------
-    InputError
-        The pair style has a factor, or atoms do not exist.
-    """
-
-    def __init__(self, use, system, interactions, units):
-        if isinstance(use.scale, str) or use.scale != 1.0:
-            raise InputError(f"pair style {use.style.name} cannot have a factor")
-        rows, coeff = use.style.items(use.settings, system, interactions.modified(use, "shift"))
-        kinds = np.arange(1, len(rows) + 1)
-        bonds = SimpleNamespace(style=use.style.items_style, settings={}, coeff=dict(zip(kinds.tolist(), coeff)))
-        super().__init__("pair", bonds, np.array(rows, np.int32).reshape(-1, 2), kinds, len(rows), units)
-        self.owner, self.images = SimpleNamespace(use=use), interactions.compat != "lammps"
-
-    def rebuild(self, engine):
-        super().rebuild(engine)
-        self.periodic &= self.images
 
 
 class DipoleTerm(BondedTerm):
@@ -351,6 +327,7 @@ def not_finite(engine, style, i: int, j: int, distance: float) -> SimulationErro
 
 def bonded_terms(system, interactions, pair_terms, units) -> list:
     """The terms of all bonded styles in use, and the weighted 1-4 pairs that dihedral styles ask for."""
+    from asemd.items_term import ItemsTerm
     terms: list = [ItemsTerm(use, system, interactions, units) for use in interactions.uses["pair"] if hasattr(use.style, "items_style")]
     for category, items, types in system.topology:
         for use in interactions.uses.get(category, []):

@@ -81,7 +81,7 @@ def read(path: str, cut: float) -> list[tuple[int, int, dict[str, float]]]:
 
 
 class ListPair(PairStyle):
-    """Has no parts: its pairs are items, as bonds are (see `asemd.term.ItemsTerm`)."""
+    """Has no parts: its pairs are items, as bonds are (see `asemd.items_term.ItemsTerm`)."""
 
     items_style = BOND
 
