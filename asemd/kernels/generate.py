@@ -198,8 +198,10 @@ class Builder:
             self.lines.append(f"@njit({', '.join(words)})")
         self.lines.append(source)
 
-    def function(self, function: Callable, name: str | None = None, *, fast: bool = False, real: bool = False, vector: bool = False) -> str:
-        """Paste a Python function; returns its name there. The same function is pasted once.
+    def function(self, function: Callable, name: str | None = None, *, fast: bool = False, real: bool = False, vector: bool = False,
+                 inline: bool = False) -> str:
+        """Paste a Python function; returns its name there. The same function is pasted once. With `inline` it never stays a call, which
+        would keep the loop around it from becoming vector code.
 
         Raises
         ------
@@ -210,7 +212,8 @@ class Builder:
         known = self._have.get(name)
         if known is None:
             self._have[name] = function
-            self.text(plain_source(function, name, real, vector, self.constants), f"fastmath={FAST}" if fast else "")
+            options = [f"fastmath={FAST}"] * fast + ["forceinline=True"] * inline
+            self.text(plain_source(function, name, real, vector, self.constants), ", ".join(options))
         elif known is not function and text_of(known) != text_of(function):
             raise NameError(f"two functions named {name} in one module of kernels: of {known.__module__} and {function.__module__}")
         return name

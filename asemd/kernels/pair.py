@@ -27,7 +27,7 @@ def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
     names = []
     for k, part in enumerate(parts):
         name = f"part{k}_{re.sub(r'[^0-9a-zA-Z]', '_', part.function.__name__)}"
-        b.function(part.function, name, fast=vector, real=real, vector=vector)
+        b.function(part.function, name, fast=vector, real=real, vector=vector, inline=vector)
         names.append(name)
     return names
 
@@ -103,7 +103,7 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)
-    b.text(_adapter(style.parts, names, uniform, energy, piece), "fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
+    b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
     varying = len(uniform) - sum(uniform)
     if varying:
         lines = ["def fill_rows(b, full, rows, t, types, base):"]
