@@ -331,6 +331,11 @@ class ForceField(Calculator):
         from asemd.hessian import of_calculator
         return of_calculator(self, self.atoms if atoms is None else atoms, numerical)
 
+    def get_elastic_constants(self, atoms=None, relaxed: bool = True, numerical: bool = False) -> np.ndarray:
+        """Elastic constants (6, 6), xx yy zz yz xz xy, in eV/Angstrom^3: see `asemd.elastic.elastic_constants`."""
+        from asemd.elastic import elastic_constants
+        return elastic_constants(self, self.atoms if atoms is None else atoms, relaxed, numerical)
+
     def adopt(self, atoms, results: dict[str, Any]) -> None:
         """Take over results that the time loop has found for the atoms as they are now."""
         changes = self.check_state(atoms)

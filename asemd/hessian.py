@@ -12,9 +12,11 @@ from scipy import sparse
 
 from asemd import units as unit_styles
 from asemd.curvatures import SHIFT, STEP, bonded_items, of_list
+from asemd.embedded_curvature import of_embedded
 from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.loads import Maps
+from asemd.manybody_term import ManyBodyTerm
 from asemd.own_term import OwnTerm
 from asemd.term import BondedTerm, PairListTerm
 
@@ -52,20 +54,58 @@ def hessian_of(system, interactions, settings, numerical: bool = False):
     """
     engine = ListEngine(system, interactions, replace(settings, threads=1, precision="double"))
     engine.compute()
-    n, blocks = system.n, []
+    n, blocks, rest = system.n, [], []
     for term in engine.terms:
         if type(term) is BondedTerm:
             blocks += [_block(atoms, pairs, inner) for atoms, pairs, _, _, inner in bonded_items(engine, term, numerical)]
         elif type(term) is PairListTerm:
             for atoms, d, a, b in of_list(engine, term, numerical):
-                inner = a[:, None, None] * np.eye(3) + b[:, None, None] * d[:, :, None] * d[:, None, :]
-                blocks.append(_block(atoms, [(0, 1)], inner))
+                blocks.append(pair_block(atoms, d, a, b))
+        elif type(term) is ManyBodyTerm:
+            rest.append(_many(engine, term, numerical, blocks))
         elif type(term) is not OwnTerm:
             raise InputError(f"no second derivatives: {term.category} style {term.style.name} is not a function of positions alone")
+    whole = sum(rest, sparse.csr_matrix((3 * n, 3 * n)))
     if not blocks:
-        return sparse.csr_matrix((3 * n, 3 * n))
+        return whole
     rows, columns, numbers = (np.concatenate(part) for part in zip(*blocks))
-    return sparse.coo_matrix((numbers, (rows, columns)), shape=(3 * n, 3 * n)).tocsr()
+    return sparse.coo_matrix((numbers, (rows, columns)), shape=(3 * n, 3 * n)).tocsr() + whole
+
+
+def pair_block(atoms: np.ndarray, d: np.ndarray, a: np.ndarray, b: np.ndarray):
+    """Rows, columns and numbers of pairs whose matrix by the vector d is ``a I + b d d^T``."""
+    return _block(atoms, [(0, 1)], a[:, None, None] * np.eye(3) + b[:, None, None] * d[:, :, None] * d[:, None, :])
+
+
+def _many(engine, term, numerical: bool, blocks: list):
+    """Second derivatives of a many-body style: those of its pairs into `blocks`, what is left as a matrix."""
+    if getattr(term.style, "packable", False):
+        found = of_embedded(engine, term)
+        blocks.append(pair_block(found.atoms, found.d, found.a, found.b))
+        return found.matrix()
+    if not numerical:
+        raise InputError(f"no second derivatives of pair style {term.style.name}; numerical=True takes differences instead")
+    return _of_forces(engine, term)
+
+
+def _of_forces(engine, term):
+    """Second derivatives of a term by central differences of its forces."""
+    s, n, f, kernel = engine.state, engine.system.n, engine.buffers[0], term.kernel(False, False)
+    slots, out = np.flatnonzero(s.row[:engine.ns] >= 0), []
+    rows = s.row[slots]
+    for slot in slots:
+        for axis in range(3):
+            here, column = s.x[axis, slot], np.zeros((n, 3))
+            for count, weight in SHIFT:
+                s.x[axis, slot] = here + count * STEP
+                f[:] = 0.0
+                kernel(*term.arguments(engine, 0))
+                column[rows] -= weight / STEP * f[:3, slots].T
+            s.x[axis, slot] = here
+            out.append(sparse.csr_matrix(column.reshape(1, -1)))
+    order = np.argsort((3 * rows[:, None] + np.arange(3)).ravel())
+    matrix = sparse.vstack(out).tocsr()[order]
+    return 0.5 * (matrix + matrix.T)
 
 
 def of_calculator(calculator, atoms, numerical: bool = False):

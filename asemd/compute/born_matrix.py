@@ -109,17 +109,17 @@ class BornMatrix(Compute):
             raise InputError(f"compute born/matrix: pair style {engine.many_terms[0].style.name} has no second derivatives: use numdiff")
         if "pair" in chosen and engine.pair_terms:
             for d, b in _pairs(state, mask):
-                _add_pairs(out, d, b)
+                add_pairs(out, d, b)
         for term in engine.terms:
             bonded_pairs = type(term) is PairListTerm and term.owner is None       # 1-4 pairs of dihedrals, ends of angles
             if bonded_pairs and ("dihedral" if term.pairs == "one_four" else "angle") in chosen:
                 for atoms, d, _, b in of_list(engine, term):
                     inside = mask[atoms].all(axis=1)
-                    _add_pairs(out, d[inside], b[inside])
+                    add_pairs(out, d[inside], b[inside])
             elif isinstance(term, BondedTerm) and term.category in chosen:
                 for atoms, _, v, gradient, inner in bonded_items(engine, term):
                     inside = mask[atoms].all(axis=1)
-                    _add_items(out, v[inside], gradient[inside], inner[inside])
+                    add_items(out, v[inside], gradient[inside], inner[inside])
             elif not isinstance(term, BondedTerm) and term.category in chosen and term.category != "pair" and not bonded_pairs:
                 raise InputError(f"compute born/matrix: {term.category} style {term.style.name} has no second derivatives, use numdiff")
         return out
@@ -177,12 +177,13 @@ def _pairs(state, mask: np.ndarray):
             yield p.d[m], b - a / p.r2[m] if engine.interactions.compat == "lammps" else b
 
 
-def _add_pairs(out: np.ndarray, d: np.ndarray, b: np.ndarray) -> None:
+def add_pairs(out: np.ndarray, d: np.ndarray, b: np.ndarray) -> None:
+    """Add what pairs with vectors (k, 3) contribute whose matrix by the vector is ``a I + b d d^T``."""
     products = np.stack([d[:, i] * d[:, j] for i, j in VOIGT])
     out += (products * b) @ products.T
 
 
-def _add_items(out: np.ndarray, v: np.ndarray, gradient: np.ndarray, inner: np.ndarray) -> None:
+def add_items(out: np.ndarray, v: np.ndarray, gradient: np.ndarray, inner: np.ndarray) -> None:
     """The vectors of a strained item are (1 + eta - eta^2 / 2) v up to a rotation."""
     moved = np.einsum("sab,mkb->mska", UNIT, v).reshape(len(v), 6, -1)
     out += np.einsum("msi,mij,mtj->st", moved, inner, moved, optimize=True)
