@@ -85,7 +85,6 @@ class ForceField(Calculator):
         self.loads: list[Load | Maps] = []
         self.left_out: list[str] = []
         self._engine: Engine | None = None
-        self._system_now: System | None = None
         self._seen: dict[str, np.ndarray | None] = {}
         self._seen_topology: Topology | None = None
 
@@ -124,7 +123,7 @@ class ForceField(Calculator):
 
     # ---- copies -------------------------------------------------------------------------------------------------------------------------
     def __getstate__(self):
-        return {**self.__dict__, "_engine": None, "_system_now": None, "_seen": {}, "_seen_topology": None}
+        return {**self.__dict__, "_engine": None, "_seen": {}, "_seen_topology": None}
 
     def __deepcopy__(self, memo):
         new = object.__new__(type(self))
@@ -273,9 +272,7 @@ class ForceField(Calculator):
         if not self._seen:
             return list(all_changes)
         changes = [name for name, array in self._view(atoms).items() if not _same(array, self._seen[name])]
-        topology = getattr(atoms, "topology", None)
-        if topology is None:
-            topology = self.topology
+        topology = self.topology if (own := getattr(atoms, "topology", None)) is None else own
         return changes if topology == self._seen_topology else [*changes, "topology"]
 
     def get_property(self, name, atoms=None, allow_calculation=True):
@@ -350,8 +347,7 @@ class ForceField(Calculator):
             return
         self.atoms = atoms.copy()
         self._seen = {name: None if array is None else array.copy() for name, array in self._view(atoms).items()}
-        topology = getattr(atoms, "topology", None)
-        topology = self.topology if topology is None else topology
+        topology = self.topology if (own := getattr(atoms, "topology", None)) is None else own
         self._seen_topology = None if topology is None else topology.copy()
 
     def convert(self, result: Result, atoms, of_loop: bool = False) -> dict[str, Any]:
