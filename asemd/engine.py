@@ -57,8 +57,7 @@ class Engine:
         self.bits: dict[str, int] = {"all": 1}
         self.result: Result | None = None
         self.units = unit_styles.get(system.units)
-        self.qqr2e = interactions.coulomb_constant(self.units) / interactions.dielectric
-        self.shares = None      # room of `asemd.atom_shares`
+        self.qqr2e, self.shares = interactions.coulomb_constant(self.units) / interactions.dielectric, None      # of `asemd.atom_shares`
         self.update(system)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------

@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asemd import modifiers
+from asemd import coulomb_table, modifiers
 from asemd.errors import InputError, InputWarning
 from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 
@@ -131,7 +131,12 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
             style = use.style.variant(use.settings, interactions.compat).bind(use.settings, filled)
             molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
             settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
+            arrays: tuple = ()
+            if interactions.table.get("table") and "g_ewald" in settings:
+                style = coulomb_table.tabled(style)
+                settings, arrays = coulomb_table.settings_of(style, settings, interactions.table)
             tables = style.pack_pairs(settings, filled, ntypes, units, shift)
+            tables = replace(tables, arrays=tables.arrays + arrays)
             out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))
     return out
 

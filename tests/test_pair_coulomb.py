@@ -59,6 +59,15 @@ CASES = {      # name of the style, and what makes a case another one -> command
     "buck/coul/long/cs": "pair_style buck/coul/long/cs 5 7\npair_coeff * * 1000 0.3 20" + SOLVER,
     "lj/class2/coul/long/cs": "pair_style lj/class2/coul/long/cs 5 7\n" + LJ + SOLVER,
     "lj/cut/coul/long/cs": "pair_style lj/cut/coul/long/cs 5 7\n" + LJ + SOLVER,
+    "lj/switch3/coulgauss/long": "pair_style lj/switch3/coulgauss/long 5 1.5\npair_coeff 1 1 0.1 2.5 1.2\n"
+            "pair_coeff 2 2 0.3 2.2 0.7 4" + SOLVER,
+    "mm3/switch3/coulgauss/long": "pair_style mm3/switch3/coulgauss/long 5 7 1.5\npair_coeff 1 1 0.1 2 1.2\n"
+            "pair_coeff 2 2 0.3 1.9 0.7" + SOLVER,
+    "coul/slater/long": "pair_style coul/slater/long 1.5 7\npair_coeff * *" + SOLVER,
+    "coul/long table": "pair_style coul/long 7\npair_coeff * *" + SOLVER[:-1] + "12",
+    "coul/long/cs table": "pair_style coul/long/cs 7.1\npair_coeff * *" + SOLVER[:-1] + "14 tabinner 1.3",
+    "buck/coul/long table": "pair_style buck/coul/long 5 6\npair_coeff * * 1000 0.3 20" + SOLVER[:-1] + "16",
+    "lj/switch3/coulgauss/long table": "pair_style lj/switch3/coulgauss/long 5 1.5\npair_coeff * * 0.1 2.5 1.2" + SOLVER[:-1] + "10",
     "coul/cut/global": "pair_style coul/cut/global 7\npair_coeff * *",
     "coul/diel": "pair_style coul/diel 7\npair_coeff * * 78 2.5 0.8",
     "coul/slater/cut": "pair_style coul/slater/cut 2.5 7\npair_coeff * *\npair_coeff 1 1 6",

@@ -25,7 +25,8 @@ STYLES = [n for n in style.names("pair") if style.find("pair", n).parts and n !=
 QQ = -302.0
 RADII = (0.5, 0.5)
 LONG_RANGE = {"g_ewald": 0.29}
-SMOOTH = ("coul/dsf", "lj/cut/coul/dsf", "born/coul/dsf", "born/coul/dsf/cs", "lj/gromacs/coul/gromacs")      # both go to zero at the end
+SMOOTH = ("coul/dsf", "lj/cut/coul/dsf", "born/coul/dsf", "born/coul/dsf/cs", "lj/gromacs/coul/gromacs",
+          "coul/slater/long")      # both go to zero at the end
 TERMS = pair_formulas.TERMS | dict.fromkeys(SMOOTH, lambda r: abs(QQ) / r)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from asemd.coulomb_table import coul_long_table
 from asemd.pairstyle import pair
 
 
@@ -41,3 +42,6 @@ def coul_long(r2, qq, g_ewald):
     tail = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * gauss
     e = qq * rinv
     return e * tail, -0.5 * e * (tail + 1.12837917 * x * gauss) * r2inv
+
+
+coul_long.table = coul_long_table

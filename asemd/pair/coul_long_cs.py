@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from asemd.coulomb_table import coul_long_cs_table
 from asemd.pair.coul_long import EWALD, coul_long_d2, long_range
 from asemd.pairstyle import pair_sum
 
@@ -38,5 +39,5 @@ def coul_long_cs(r2, qq, g_ewald):
     return e * tail, -0.5 * e * (tail + 1.12837917 * x * gauss) * r2inv
 
 
-coul_long_cs.special, coul_long_cs.d2 = special, coul_long_d2
+coul_long_cs.special, coul_long_cs.d2, coul_long_cs.table = special, coul_long_d2, coul_long_cs_table
 pair_sum("coul/long/cs", (coul_long_cs, "cut"), settings="cut", settings_example="10.0", see="LAMMPS manual, pair_style coul/long/cs")

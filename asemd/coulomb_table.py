@@ -1,0 +1,161 @@
+"""LAMMPS's tables of the part of 1/r that a long-range solver leaves, for an explicit ``pair_modify table N``.
+
+Up to 2^N squared distances from ``tabinner`` on, the bits of a number in single precision but the leading ones being zero; lines between
+them, for energy, force and the bare 1/r that special pairs lose. Below ``tabinner`` the pair style's own function counts. Without the
+keyword the function is used everywhere, which is exact.
+Source: Wolff and Rudd, Comput. Phys. Commun. 120, 20 (1999); LAMMPS manual, pair_modify.
+"""
+from __future__ import annotations
+
+import copy
+import math
+from functools import cache
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.pairstyle import PairStyle, make_part
+
+TABINNER = math.sqrt(2.0)
+
+
+class Bits:
+    """The squared distances of a table from `inner` to `outer` of 2^bits entries."""
+
+    def __init__(self, inner: float, outer: float, bits: int):
+        if not inner < outer:
+            raise InputError(f"pair_modify tabinner {inner:g} must be less than the Coulomb cutoff {outer:g}")
+        lowest = math.frexp(inner * inner)[1] - 1
+        exponent_bits = 0
+        while 2.0 ** (2.0**exponent_bits) < outer * outer / 2.0**lowest:
+            exponent_bits += 1
+        mantissa_bits = bits - exponent_bits
+        if not 3 <= mantissa_bits <= 23 or exponent_bits > 8:
+            few = "few" if mantissa_bits < 3 else "many"
+            raise InputError(f"pair_modify table {bits}: too {few} bits for a table from {inner:g} to {outer:g}")
+        shift = 23 - mantissa_bits
+        self.scale = float(1 << mantissa_bits)
+        number = int(np.float32(inner * inner).view(np.int32)) >> shift
+        number += bool(np.int32(number << shift).view(np.float32) < inner * inner)
+        self.r2 = ((number + np.arange(1 << bits)) << shift).astype(np.int32).view(np.float32)
+        mantissa, exponent = math.frexp(float(self.r2[0]))
+        self.first = (2.0 * mantissa - 1.0 + exponent) * self.scale
+
+
+def values(r2: np.ndarray, g: float) -> np.ndarray:
+    """Energy, force times distance and 1/r at squared distances in single precision, for charges whose product is 1."""
+    from scipy.special import erfc
+    r = np.sqrt(r2.astype(float))
+    x = g * r
+    return np.stack([erfc(x) / r, (erfc(x) + 1.12837916709551 * x * np.exp(-x * x)) / r, 1.0 / r])
+
+
+def nodes(bits: Bits, g: float, cut: float) -> np.ndarray:
+    """(2^N, 8): value and rise to the next node of energy, force and 1/r; squared distance and inverse of that to the next one."""
+    at = values(bits.r2, g)
+    rise = np.append(np.diff(at, axis=1), np.zeros((3, 1)), axis=1)
+    r2 = bits.r2.astype(float)
+    inverse = np.append(1.0 / np.diff(r2), 0.0)
+    end = float(np.float32(cut * cut))
+    if end > r2[-1]:      # the last line ends at the cutoff
+        rise[:, -1], inverse[-1] = values(np.array([end]), g)[:, 0] - at[:, -1], 1.0 / (end - r2[-1])
+    return np.ascontiguousarray(np.stack([at[0], rise[0], at[1], rise[1], at[2], rise[2], r2, inverse], axis=1))
+
+
+def coul_long_table(r2, qq, g_ewald, start2, scale, first, nodes: "array"):
+    single = np.float64(np.float32(r2))
+    mantissa, exponent = math.frexp(single)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    b = (single - nodes[k, 6]) * nodes[k, 7]
+    if r2 > start2:
+        return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
+    r = math.sqrt(r2)
+    x = g_ewald * r
+    gauss = math.exp(-x * x)
+    t = 1.0 / (1.0 + 0.3275911 * x)
+    tail = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * gauss
+    return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / r2
+
+
+def special(r2, qq, g_ewald, start2, scale, first, nodes, off):
+    single = np.float64(np.float32(r2))
+    mantissa, exponent = math.frexp(single)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    b = (single - nodes[k, 6]) * nodes[k, 7]
+    if r2 > start2:
+        bare = off * (nodes[k, 4] + b * nodes[k, 5])
+        return qq * (nodes[k, 0] + b * nodes[k, 1] - bare), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3] - bare) / r2
+    r = math.sqrt(r2)
+    x = g_ewald * r
+    gauss = math.exp(-x * x)
+    t = 1.0 / (1.0 + 0.3275911 * x)
+    tail = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * gauss - off
+    return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / r2
+
+
+def coul_long_cs_table(r2, qq, g_ewald, start2, scale, first, nodes: "array"):
+    single = np.float64(np.float32(r2))
+    mantissa, exponent = math.frexp(single)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    b = (single - nodes[k, 6]) * nodes[k, 7]
+    if r2 > start2:
+        return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
+    r = math.sqrt(r2 + 1e-20)
+    x = g_ewald * r
+    gauss = math.exp(-x * x)
+    t = 1.0 / (1.0 + 0.995473818 * x)
+    u = 1.0 - t
+    p = -0.1335096380159268 + u * (-0.257839507 + u * (-0.137203639 + u * (-0.00888822059 + u * (-0.00580844129 + u * 0.114652755))))
+    tail = t * (1.0 + p * u) * gauss
+    return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / (r2 + 1e-20)
+
+
+def special_cs(r2, qq, g_ewald, start2, scale, first, nodes, off):
+    single = np.float64(np.float32(r2))
+    mantissa, exponent = math.frexp(single)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    b = (single - nodes[k, 6]) * nodes[k, 7]
+    if r2 > start2:
+        bare = off * (nodes[k, 4] + b * nodes[k, 5])
+        return qq * (nodes[k, 0] + b * nodes[k, 1] - bare), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3] - bare) / r2
+    r = math.sqrt(r2 + 1e-20) + 1e-6
+    x = g_ewald * r
+    gauss = math.exp(-x * x)
+    t = 1.0 / (1.0 + 0.995473818 * x)
+    u = 1.0 - t
+    p = -0.1335096380159268 + u * (-0.257839507 + u * (-0.137203639 + u * (-0.00888822059 + u * (-0.00580844129 + u * 0.114652755))))
+    tail = t * (1.0 + p * u) * gauss - off
+    return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / (r2 + 1e-12)
+
+
+for function, near in ((coul_long_table, special), (coul_long_cs_table, special_cs)):
+    function.long, function.special, function.solvers = True, near, ("pppm", "ewald")
+
+
+@cache
+def tabled(style: PairStyle) -> PairStyle:
+    """The style with tables in place of the parts that have them; itself if none has."""
+    if not any(hasattr(part.function, "table") for part in style.parts):
+        return style
+    twin = copy.copy(style)
+    twin.parts = tuple(make_part(part.function.table, part.cut, part.rows) if hasattr(part.function, "table") else part
+                       for part in style.parts)
+    return twin
+
+
+def settings_of(style: PairStyle, settings: dict, table: dict) -> tuple[dict, tuple[np.ndarray, ...]]:
+    """Settings with what the functions take as numbers, and the nodes.
+
+    Raises
+    ------
+    InputError
+        The range does not fit into so many bits.
+    """
+    cut_name = next((part.cut for part in style.parts if part.arrays), None)
+    if cut_name is None:
+        return settings, ()
+    cut = float(settings[cut_name])
+    inner = table.get("tabinner", TABINNER)
+    bits = Bits(inner, cut, int(table["table"]))
+    numbers = {"start2": float(bits.r2[0]), "scale": bits.scale, "first": bits.first}
+    return {**settings, **numbers}, (nodes(bits, settings["g_ewald"], cut),)
