@@ -158,6 +158,10 @@ class PairStyle(Style):
     def functions(self):
         return tuple(p.function for p in self.parts)
 
+    def works_with(self, settings: Mapping[str, Any]) -> frozenset[str]:
+        """Kinds of kspace_style that may stand beside it: by default those that it needs."""
+        return self.solvers
+
     def variant(self, settings: Mapping[str, Any], compat: str = "") -> PairStyle:
         """The style whose parts are computed: this one, unless settings or ``compat="lammps"`` ask for other functions."""
         return self.twin if compat == "lammps" and self.twin else self

@@ -68,6 +68,9 @@ CASES = {      # name of the style, and what makes a case another one -> command
     "coul/long/cs table": "pair_style coul/long/cs 7.1\npair_coeff * *" + SOLVER[:-1] + "14 tabinner 1.3",
     "buck/coul/long table": "pair_style buck/coul/long 5 6\npair_coeff * * 1000 0.3 20" + SOLVER[:-1] + "16",
     "lj/switch3/coulgauss/long table": "pair_style lj/switch3/coulgauss/long 5 1.5\npair_coeff * * 0.1 2.5 1.2" + SOLVER[:-1] + "10",
+    "lepton/coul": "pair_style lepton/coul 7\npair_coeff * * 'qi*qj/r*exp(-0.3*r)'\npair_coeff 1 2 'qi*qj*(1/r-1/r^2)' 6",
+    "lepton/coul solver": "pair_style lepton/coul 7 ewald\npair_coeff * * 'qi*qj/r*erfc(0.3*r)'"
+                          "\nkspace_style ewald 1e-4\nkspace_modify gewald 0.3 compute no",
     "coul/cut/global": "pair_style coul/cut/global 7\npair_coeff * *",
     "coul/diel": "pair_style coul/diel 7\npair_coeff * * 78 2.5 0.8",
     "coul/slater/cut": "pair_style coul/slater/cut 2.5 7\npair_coeff * *\npair_coeff 1 1 6",

@@ -192,10 +192,11 @@ def solve(system, interactions, units) -> KSpace | None:
         return None
     name, *words = interactions.kspace.split()
     solver = class_of("kspace", name, KSpace).from_words(words, interactions.kspace_modify)
-    mine = [use for use in uses if solver.flag in use.style.solvers]
+    mine = [use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings)]
     if not mine:
         raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as lj/cut/coul/long")
-    cutoffs = {float(use.settings[part.cut]) for use in mine for part in use.style.parts if part.long}
+    cutoffs = {float(use.settings[part.cut]) for use in mine for part in use.style.parts
+               if part.long or (part.charged and not use.style.solvers)}
     if len(cutoffs) > 1:
         raise InputError(f"Coulomb cutoffs of the sub-styles differ ({', '.join(f'{c:g}' for c in sorted(cutoffs))}): "
                          f"kspace_style {name} needs one")
