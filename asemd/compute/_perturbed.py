@@ -46,10 +46,16 @@ def uses_of(interactions, category: str, style: str, name: str, what: str) -> li
         raise InputError(f"{what}: there is no {category} style {style!r} in use{nearest(style, known)}")
     known = [p.name for p in uses[0].style.coeff if p.unit not in ("word", "path", "integer") and not p.name.startswith("cut")]
     known += getattr(uses[0].style, "coefficients", ())
-    if name not in known:
+    if spelled(uses[0].style, name) not in known:
         raise InputError(f"{what}: {category} style {style} has no coefficient {name!r} that can change, it has "
                          f"{' '.join(known) or 'none'}")
     return uses
+
+
+def spelled(style, name: str) -> str:
+    """A coefficient's name as the style writes it, for one that may differ in the case of letters (LAMMPS: ``a`` for A)."""
+    known = [p.name for p in style.coeff]
+    return name if name in known else next((n for n in known if n.lower() == name.lower()), name)
 
 
 def perturbed_terms(state, changes, what: str) -> list:
@@ -69,7 +75,7 @@ def perturbed_terms(state, changes, what: str) -> list:
     for style, name, i, j, delta in changes:
         (ilo, ihi), (jlo, jhi) = (bounds(t, 1, n, what, system.labels["atom"]) for t in (i, j))
         for use in uses_of(new, "pair", style, name, what):
-            before = old.uses["pair"][new.uses["pair"].index(use)].coeff
+            before, name = old.uses["pair"][new.uses["pair"].index(use)].coeff, spelled(use.style, name)
             for pair in [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]:
                 if name in use.coeff.get(pair, ()):
                     use.coeff[pair][name] = before[pair][name] + delta

@@ -1,10 +1,15 @@
 """Energy of one pair style, such as a sub-style of a hybrid: all of it, or its van der Waals or Coulomb part.
 
+Pair style gauss also gives a vector of one number: how many pairs are closer than 1/sqrt(2 B), where the force is largest (occupied sites).
+
 Source: LAMMPS manual, compute pair. Units: energy.
 """
 from __future__ import annotations
 
+import numpy as np
+
 from asemd.compute import Compute
+from asemd.compute._pairs import half
 from asemd.errors import InputError, nearest
 from asemd.registry import plain_name
 from asemd.words import choice, take, whole
@@ -67,6 +72,23 @@ class Pair(Compute):
         if self.number is None and len(mine) > 1 or self.number is not None and not 1 <= self.number <= len(mine):
             raise InputError(f"compute pair: pair style {self.name} is in use {len(mine)} times: say which one, from 1 to {len(mine)}")
         return mine[(self.number or 1) - 1]
+
+    @property
+    def size(self) -> int:
+        """Elements of the vector, 0 for none."""
+        return int(self.name == "gauss")
+
+    def vector(self, state) -> np.ndarray:
+        """How many pairs are within the width of their well."""
+        use, n = self.chosen(state.engine.interactions), state.system.counts["ntypes"]
+        within = np.zeros((n + 1, n + 1))
+        for term in state.engine.pair_terms:
+            if term.style.name == "gauss" and use in (None, term.use):
+                for (i, j), c in term.filled.items():
+                    within[i, j] = within[j, i] = min(0.5 / c["b"], c["cut"] ** 2) if c["b"] > 0.0 else c["cut"] ** 2
+        pairs = half(state, float(within.max()) ** 0.5)
+        kind = state.system.type
+        return np.array([float((pairs.r2 < within[kind[pairs.i], kind[pairs.j]]).sum())])
 
     def scalar(self, state) -> float:
         """The energy, without the tail correction."""

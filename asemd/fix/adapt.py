@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.compute._perturbed import uses_of
+from asemd.compute._perturbed import spelled, uses_of
 from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
@@ -173,6 +173,7 @@ class Adapt(Fix):
             number, (ilo, ihi), (jlo, jhi) = float(value(loop)), *(_range(t, counts["ntypes"], system.labels["atom"]) for t in (i, j))
             pairs = [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]
             for use in uses_of(loop.interactions, "pair", style, name, "fix adapt"):
+                name = spelled(use.style, name)
                 for pair in pairs:
                     if name in use.coeff.get(pair, ()):
                         self._set(use.coeff[pair], name, number)
@@ -181,6 +182,7 @@ class Adapt(Fix):
             for style, name, t, value in given:
                 number, (lo, hi) = float(value(loop)), _range(t, counts[f"n{category}types"], system.labels[category])
                 for use in uses_of(loop.interactions, category, style, name, "fix adapt"):
+                    name = spelled(use.style, name)
                     for k in range(lo, hi + 1):
                         if name in use.coeff.get(k, ()):
                             self._set(use.coeff[k], name, number)

@@ -25,7 +25,7 @@ def lj_pirani_d2(r, alpha, beta, gamma, rm, epsilon):
 
 
 @pair("lj/pirani", settings="cut", coeff="alpha beta gamma rm epsilon [cut]", settings_example="2.5", example="4.0 8.0 6.0 1.2 1.0 2.4",
-      d2=lj_pirani_d2, see="LAMMPS manual, pair_style lj/pirani")
+      d2=lj_pirani_d2, splits=True, see="LAMMPS manual, pair_style lj/pirani")
 def lj_pirani(r, alpha, beta, gamma, rm: "distance", epsilon: "energy"):
     x = r / rm
     n = alpha * x * x + beta

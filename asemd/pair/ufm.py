@@ -1,25 +1,37 @@
 r"""$$E = -\epsilon \ln \left( 1 - e^{-r^2/\sigma^2} \right) \qquad r < r_c$$
 
 The Uhlenbeck-Ford model, the reference of free energies of liquids. Below r = 0.7 sigma, (1 - exp(-x))/x comes from its power series, so
-that no digits cancel.  Paula Leite, Freitas, Azevedo and de Koning, J. Chem. Phys. 145, 194101 (2016).
+that no digits cancel. fix adapt may change the factor `scale` of energy and forces (in LAMMPS, of the forces only).  Paula Leite, Freitas, Azevedo and de Koning, J. Chem. Phys. 145, 194101 (2016).
 """
 from __future__ import annotations
 
 import math
 
-from asemd.pairstyle import pair
+from asemd.pairstyle import PairStyle, pair
 
 
-def ufm_d2(r2, epsilon, sigma):
+class UfmPair(PairStyle):
+    """Has a factor of the energy, `scale`, which fix adapt may change."""
+
+    coefficients = ("scale",)
+
+    def parse_coeff(self, words, settings):
+        return super().parse_coeff(words, settings) | {"scale": 1.0}
+
+    def mixed(self, a, b, rule):
+        return super().mixed(a, b, rule) | {"scale": 1.0}
+
+
+def ufm_d2(r2, epsilon, sigma, scale):
     s2 = sigma * sigma
     x = r2 / s2
     rest = -math.expm1(-x)
-    return epsilon * math.exp(-x) / (rest * rest * s2 * s2)
+    return scale * epsilon * math.exp(-x) / (rest * rest * s2 * s2)
 
 
-@pair("ufm", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, d2=ufm_d2, settings_example="2.5",
-      example="1.0 1.1 2.4", see="LAMMPS manual, pair_style ufm")
-def ufm(r2, epsilon: "energy", sigma: "distance"):
+@pair("ufm", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, d2=ufm_d2, rows="scale",
+      cls=UfmPair, settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style ufm")
+def ufm(r2, epsilon: "energy", sigma: "distance", scale):
     s2 = sigma * sigma
     x = r2 / s2
     decay = math.exp(-x)
@@ -37,4 +49,5 @@ def ufm(r2, epsilon: "energy", sigma: "distance"):
     p = p * x + 0.5
     near = x * (1.0 - x * p)
     rest = near if x < 0.5 else 1.0 - decay
-    return -epsilon * math.log(rest), -epsilon * decay / (rest * s2)
+    front = scale * epsilon
+    return -front * math.log(rest), -front * decay / (rest * s2)
