@@ -1,11 +1,11 @@
 """Charges to a mesh, the field of the mesh back to the charges; what happens in between on the mesh of waves.
 
 The Fourier transforms themselves are a library's, which thread 0 calls back between two meetings. Every thread spreads its charges on a
-mesh of its own. Rows along the third direction are longer than the mesh by ORDER, so that the weights of a charge fall on neighbouring
+mesh of its own. Rows along the third direction are longer than the mesh, so that the weights of a charge fall on neighbouring
 places; what is beyond the end is folded back when the meshes of the threads are added.
 
 `numbers (3,)`: mesh points; `green (nx, ny, nz/2 + 1, 4)`: the influence function and its products with the wave vector; `packed (nx, ny,
-(nz + ORDER) * m)`: m meshes side by side; `base (cap, 3)`, `weight (cap, 3 * ORDER)`: first place and weights of each slot.
+(nz + ORDER) * m)`: m meshes side by side; `base (cap, 3)`, `weight (cap, 3 * WIDE)`: first place and weights of each slot.
 """
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from asemd.kernels.callback import call_back
 from asemd.kernels.ewald import is_same, slab, stretched
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import denominator, folded, influence, make_green, opposite, sinc_power
+from asemd.kernels.stencil import WIDE, collect, deposit
 from asemd.kernels.threads import barrier
 
 ORDER = 5
@@ -26,9 +27,19 @@ ENERGY = PER_ATOM = AD = False
 make_green_ad = own_force = gather_ad = None
 
 
+def find_rows(i, base, wrap, ny, length, step, rows):
+    """Where the rows around slot i begin in a flat mesh; `step`: numbers per point."""
+    at0, at1, at2 = base[i, 0], base[i, 1], step * base[i, 2]
+    for p in range(ORDER):
+        front = wrap[0, at0 + p] * ny
+        for m in range(ORDER):
+            rows[p * ORDER + m] = (front + wrap[1, at1 + m]) * length + at2
+
+
 def spread(x, q, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, base, weight, brick):
     """Charges of slots lo..hi-1 on the mesh; where they are and their weights stay for `gather`."""
     brick[:] = 0.0
+    mesh, rows = brick.reshape(-1), np.empty(ORDER * ORDER, np.int64)
     half = (ORDER - 1) // 2
     for i in range(lo, hi):
         if q[i] == 0.0:
@@ -45,26 +56,18 @@ def spread(x, q, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, bas
                 t = k + 0.5 - u
             base[i, d] = wrap[d, k + numbers[d] - half]
             for m in range(ORDER):
-                p = pieces[m, ORDER - 1]
+                p = pieces[ORDER - 1, m]
                 for c in range(ORDER - 2, -1, -1):
-                    p = p * t + pieces[m, c]
-                weight[i, d * ORDER + m] = p
-                if AD:
-                    p = (ORDER - 1) * pieces[m, ORDER - 1]
+                    p = p * t + pieces[c, m]
+                weight[i, d * WIDE + m] = p
+            if AD:
+                for m in range(ORDER):
+                    p = (ORDER - 1) * pieces[ORDER - 1, m]
                     for c in range(ORDER - 2, 0, -1):
-                        p = p * t + c * pieces[m, c]
-                    weight[i, (3 + d) * ORDER + m] = p
-        w = weight[i]
-        charge = q[i] * density_of
-        b2 = base[i, 2]
-        for l in range(ORDER):
-            w0 = charge * w[l]
-            b0 = wrap[0, base[i, 0] + l]
-            for m in range(ORDER):
-                w1 = w0 * w[ORDER + m]
-                row = brick[b0, wrap[1, base[i, 1] + m], b2:b2 + ORDER]
-                for n in range(ORDER):
-                    row[n] += w1 * w[2 * ORDER + n]
+                        p = p * t + c * pieces[c, m]
+                    weight[i, (3 + d) * WIDE + m] = p
+        find_rows(i, base, wrap, brick.shape[1], brick.shape[2], 1, rows)
+        deposit(mesh, rows, weight, i, q[i] * density_of, ORDER)
 
 
 def add_bricks(first, last, brick, density):
@@ -79,7 +82,7 @@ def add_bricks(first, last, brick, density):
                 for k in range(nz):
                     out[k] += brick[t, i, j, k]
             for t in range(brick.shape[0]):
-                for k in range(nz, nz + ORDER):
+                for k in range(nz, nz + ORDER):      # what is farther is zero
                     out[k % nz] += brick[t, i, j, k]
 
 
@@ -180,26 +183,17 @@ def interleave(first, last, field, packed):
 
 def gather(f, q, lo, hi, scale, wrap, base, weight, packed, flat):
     """Forces on slots lo..hi-1 from the gradient of the potential; `flat` leaves out the third component."""
-    sums = np.empty(3 * ORDER)
+    mesh, rows, sums = packed.reshape(-1), np.empty(ORDER * ORDER, np.int64), np.empty(3 * ORDER + WIDE)
     for i in range(lo, hi):
         if q[i] == 0.0:
             continue
-        w = weight[i]
-        sums[:] = 0.0
-        b2 = 3 * base[i, 2]
-        for l in range(ORDER):
-            b0 = wrap[0, base[i, 0] + l]
-            for m in range(ORDER):
-                w1 = w[l] * w[ORDER + m]
-                row = packed[b0, wrap[1, base[i, 1] + m], b2:b2 + 3 * ORDER]
-                for n in range(3 * ORDER):
-                    sums[n] += w1 * row[n]
+        find_rows(i, base, wrap, packed.shape[1], packed.shape[2], 3, rows)
+        collect(mesh, rows, weight, i, sums, ORDER)
         fx, fy, fz = 0.0, 0.0, 0.0
         for n in range(ORDER):
-            w2 = w[2 * ORDER + n]
-            fx += w2 * sums[3 * n]
-            fy += w2 * sums[3 * n + 1]
-            fz += w2 * sums[3 * n + 2]
+            fx += weight[i, 2 * WIDE + n] * sums[3 * n]
+            fy += weight[i, 2 * WIDE + n] * sums[3 * n + 1]
+            fz += weight[i, 2 * WIDE + n] * sums[3 * n + 2]
         c = -scale * q[i]
         f[0, i] += c * fx
         f[1, i] += c * fy
@@ -219,7 +213,7 @@ def gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, field, 
             for l in range(ORDER):
                 for m in range(ORDER):
                     for n in range(ORDER):
-                        total += (w[l] * w[ORDER + m] * w[2 * ORDER + n]
+                        total += (w[l] * w[WIDE + m] * w[2 * WIDE + n]
                                   * field[c, wrap[0, base[i, 0] + l], wrap[1, base[i, 1] + m], (base[i, 2] + n) % nz])
             if c == 0:
                 energy[i] += 0.5 * scale * q[i] * total
@@ -309,6 +303,8 @@ def kernel(level: int, order: int, ad: bool):
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
     b.constant("AD", ad)
+    b.line("from asemd.kernels.stencil import WIDE, collect, deposit")
+    b.function(find_rows, fast=True, inline=True)
     for f in (denominator, sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
               multiply_shares, interleave, gather, gather_shares, is_same, slab, *(pppm_ad.FUNCTIONS if ad else ())):
         b.function(f, fast=True)

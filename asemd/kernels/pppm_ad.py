@@ -14,6 +14,7 @@ from asemd.kernels.generate import Builder
 from asemd.kernels.influence import denominator, folded
 
 ORDER = 5
+WIDE = 8
 
 
 def power(u, n):
@@ -129,11 +130,11 @@ def gather_ad(x, f, q, lo, hi, numbers, lengths, scale, own, wrap, base, weight,
                 row = packed[b0, wrap[1, base[i, 1] + m], b2:b2 + ORDER]
                 u, du = 0.0, 0.0
                 for n in range(ORDER):
-                    u += w[2 * ORDER + n] * row[n]
-                    du += w[5 * ORDER + n] * row[n]
-                e0 += w[3 * ORDER + l] * w[ORDER + m] * u
-                e1 += w[l] * w[4 * ORDER + m] * u
-                e2 += w[l] * w[ORDER + m] * du
+                    u += w[2 * WIDE + n] * row[n]
+                    du += w[5 * WIDE + n] * row[n]
+                e0 += w[3 * WIDE + l] * w[WIDE + m] * u
+                e1 += w[l] * w[4 * WIDE + m] * u
+                e2 += w[l] * w[WIDE + m] * du
         for d in range(3):
             if d == 2 and flat:
                 continue

@@ -15,6 +15,7 @@ from numpy.polynomial import Polynomial
 from asemd.errors import InputError
 from asemd.kernels import pppm, pppm_ad
 from asemd.kernels.callback import Callback
+from asemd.kernels.stencil import WIDE
 from asemd.kspace import KSpace
 from asemd.kspace.term import KSpaceTerm
 
@@ -178,19 +179,20 @@ class PPPMTerm(KSpaceTerm):
         s, nth = self.solver, engine.threads
         nx, ny, nz = s.mesh
         nh = nz // 2 + 1
-        self.numbers, self.pieces, self.aliases = np.array(s.mesh, np.int64), pieces(s.order), aliases(s.order)
+        self.numbers, self.pieces, self.aliases = np.array(s.mesh, np.int64), np.zeros((s.order, WIDE)), aliases(s.order)
+        self.pieces[:, :s.order] = pieces(s.order).T
         # a sum over images that LAMMPS's estimate finds large enough
         self.images = (np.abs(s.upright) @ (s.g_ewald / (math.pi * self.numbers)) * (-math.log(1e-7)) ** 0.25).astype(np.int64)
         self.wrap = np.arange(3 * max(s.mesh) + 8)[None] % self.numbers[:, None]
         self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
         self.lengths, self.own = np.zeros(3), np.zeros((3, 2))
-        self.brick, self.density = np.zeros((nth, nx, ny, nz + s.order)), np.zeros((nx, ny, nz))
+        self.brick, self.density = np.zeros((nth, nx, ny, nz + s.order + 8)), np.zeros((nx, ny, nz))
         m = 1 if s.ad else 3
         self.wave, self.waves = np.zeros((nx, ny, nh), complex), np.zeros((m, nx, ny, nh), complex)
-        self.field, self.packed = np.zeros((m, nx, ny, nz)), np.zeros((nx, ny, (nz + s.order) * m))
+        self.field, self.packed = np.zeros((m, nx, ny, nz)), np.zeros((nx, ny, (nz + s.order) * m + 16))
         self.shares, self.share_field = np.zeros((0, nx, ny, nh), complex), np.zeros((0, nx, ny, nz))
         self.sums = np.zeros((nth, 8))
-        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * s.order))
+        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * WIDE))
         self.forward, self.backward, self.backward_shares = map(Callback, self._transforms(nth))
 
     def _make_shares(self) -> None:
