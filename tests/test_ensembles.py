@@ -53,7 +53,7 @@ def test_three_ensembles_of_a_liquid(tmp_path):
 @compiled
 @pytest.mark.slow
 def test_every_ensemble(tmp_path):
-    """Half an hour of processor time: ``pytest -m slow tests/test_ensembles.py``."""
+    """Three quarters of an hour of processor time: ``pytest -m slow tests/test_ensembles.py``."""
     result = run(tmp_path)
     wrong = [row for row in result["kinetic"] + result["ratios"] if not row["ok"] and not row["control"]]
     assert not wrong and any(not row["ok"] for row in result["kinetic"] if row["control"])
@@ -91,6 +91,19 @@ def test_what_the_temperature_of_positions_is_made_of(module):
     laplacian = sum(energy(x[1] + s) - 2 * energy(x[1]) + energy(x[1] - s) for s in shifts) / h**2
     square, twice = module("splitting").curvature(x, 10.0, 1.122)
     assert square == pytest.approx(2 * np.dot(gradient, gradient), rel=1e-6) and twice == pytest.approx(2 * laplacian, rel=1e-5)
+
+
+def test_jackknife_over_blocks(module):
+    """Of correlated records of known distributions: the slope is found, and its error is that of repeated records."""
+    import numpy as np
+    pytest.importorskip("physical_validation")
+    checks, rng, found = module("checks"), np.random.default_rng(5), []
+    for _ in range(40):
+        first, second = (np.repeat(rng.normal(mean, 2.0, 300), 5) for mean in (0.0, 2.0))      # five equal rows: each counts once
+        found.append((checks.likelihood(first, second), checks.jackknife(first, second)))
+    slopes, errors = np.array(found).T
+    assert slopes.mean() == pytest.approx(0.5, abs=4 * slopes.std() / 40**0.5)
+    assert errors.mean() == pytest.approx(slopes.std(), rel=0.4)
 
 
 @pytest.mark.parametrize("liquid, kind", [("LJ liquid", "nvt"), ("rigid water", "shake + nvt"), ("flexible water", "nvt"),

