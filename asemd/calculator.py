@@ -44,8 +44,8 @@ class ForceField(Calculator):
     threads : int
     precision : str
         ``double`` or ``mixed``.
-    shift, tail, mix, dielectric, compat
-        As in ``pair_modify`` and ``dielectric``; ``compat="lammps"``: LAMMPS's forces also where they are not the gradient of its energy.
+    shift, tail, mix, dielectric, compat, kspace, kspace_modify
+        As in LAMMPS's commands (``kspace="pppm 1e-4"``); ``compat="lammps"``: its forces also where they are no gradient of its energy.
 
     Raises
     ------
@@ -64,7 +64,7 @@ class ForceField(Calculator):
     def __init__(self, bond: Mapping | None = None, angle: Mapping | None = None, dihedral: Mapping | None = None,
                  improper: Mapping | None = None, pair: Mapping | None = None, *, topology: Topology | Mapping | None = None,
                  special_bonds=None, shift: bool = False, tail: bool = False, mix: str | None = None, dielectric: float = 1.0,
-                 compat: str = "", skin: float = 2.0, threads: int = 1, precision: str = "double"):
+                 compat: str = "", kspace: str = "", kspace_modify: str = "", skin: float = 2.0, threads: int = 1, precision="double"):
         super().__init__()
         for name, value, known in (("precision", precision, ("double", "mixed")), ("compat", compat, ("lammps", ""))):
             if value not in known:
@@ -73,7 +73,8 @@ class ForceField(Calculator):
             raise InputError(f"skin must not be negative, got {skin}")
         given = dict(bond=bond, angle=angle, dihedral=dihedral, improper=improper, pair=pair)
         self.arguments = {category: with_keys(styles or {}) for category, styles in given.items()} | dict(
-            special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric, compat=compat)
+            special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric, compat=compat, kspace=kspace,
+            kspace_modify=kspace_modify)
         self.interactions: Interactions | None = None
         self.topology = Topology(**topology) if isinstance(topology, Mapping) else topology
         self.natoms = 0                          # atoms that `topology` is for, once known
@@ -157,14 +158,13 @@ class ForceField(Calculator):
 
     def commands(self) -> list[str]:
         """The force field as LAMMPS commands, in its own units."""
-        inter = self.interactions
-        lines = []
+        inter, lines = self.interactions, []
         for category in inter.uses:
             if inter.uses[category]:
                 lines.append(" ".join([f"{category}_style", *inter.style_line(category)]))
                 lines += [" ".join([f"{category}_coeff", *words]) for words in inter.coeff_lines(category)]
         lines += [" ".join(["pair_modify", *words]) for words in inter.modify_lines()]
-        return [*lines, " ".join(["special_bonds", *inter.special_line()])]
+        return [*lines, " ".join(["special_bonds", *inter.special_line()]), *inter.kspace_lines()]
 
     # ---- atoms -> system ----------------------------------------------------------------------------------------------------------------
     def _topology_of(self, atoms) -> Topology:

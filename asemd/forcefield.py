@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from asemd import modifiers
+from asemd import kspace_settings, modifiers
 from asemd import units as unit_styles
 from asemd import words as read
 from asemd.errors import InputError, nearest
@@ -290,11 +290,18 @@ class Interactions:
         return ["lj", *map(repr, self.special_lj), "coul", *map(repr, self.special_coul),
                 "angle", _yes(self.special_angle), "dihedral", _yes(self.special_dihedral)]
 
+    def kspace_lines(self) -> list[str]:
+        """Commands that make the long-range solver again."""
+        out = [f"kspace_style {self.kspace}"] if self.kspace != "none" else []
+        words = kspace_settings.to_words(self.kspace_modify)
+        return [*out, f"kspace_modify {' '.join(words)}"] if words else out
+
     @classmethod
     def build(cls, *, bond=None, angle=None, dihedral=None, improper=None, pair=None,
               special_bonds: str | Mapping[str, Any] | Sequence[float] = "", dielectric: float = 1.0, shift: bool = False,
               tail: bool = False, mix: str | None = None,
-              labels: Mapping[str, Mapping[int, str]] | None = None, compat: str = "") -> Interactions:
+              labels: Mapping[str, Mapping[int, str]] | None = None, compat: str = "", kspace: str = "",
+              kspace_modify: str = "") -> Interactions:
         """Interactions from Python, in the units of the scene (ASE's for a scene without a script), angles in degrees.
 
         Parameters
@@ -309,6 +316,8 @@ class Interactions:
             Words of the command (``"amber"``), factors ``{"lj": (0, 0, 0.5), "coul": (0, 0, 0.8)}``, or three factors for both.
         dielectric, shift, tail, mix, compat
             As the attributes.
+        kspace, kspace_modify : str
+            Words of the commands: ``kspace="pppm 1.0e-4"``, ``kspace_modify="order 6"``.
         labels : mapping, optional
             kind (atom bond angle dihedral improper) -> {type: label}; labels may then stand for types.
 
@@ -318,7 +327,8 @@ class Interactions:
             An unknown style, a wrong number of values, an unknown label.
         """
         from asemd.native import fill
-        out = cls(dielectric=dielectric, compat=compat)
+        out = cls(dielectric=dielectric, compat=compat, kspace=" ".join(kspace.split()) or "none",
+                  kspace_modify=kspace_settings.parse(kspace_modify.split()))
         given = {"bond": bond, "angle": angle, "dihedral": dihedral, "improper": improper, "pair": pair}
         for category, styles in given.items():
             if styles:

@@ -155,6 +155,25 @@ def test_madelung_constant():
     assert e / (n / 2) == pytest.approx(-1.747564594633 * 332.06371 / (a / 2), rel=3e-6)      # LAMMPS's erfc is good to 1.5e-7 of a pair
 
 
+def test_from_ase():
+    """Rock salt with a solver given in Python: forces vanish, ASE's stress is the slope of the energy, commands and files bring it back."""
+    from asemd import ForceField
+    a = 5.64
+    atoms = Atoms("NaClNaClNaClNaCl", scaled_positions=[(0, 0, 0), (0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0.5, 0, 0.5), (0, 0, 0.5),
+                                                        (0, 0.5, 0.5), (0.5, 0.5, 0.5)], cell=[a] * 3, pbc=True).repeat(2)
+    atoms.set_initial_charges([1.0 if s == "Na" else -1.0 for s in atoms.symbols])
+    pairs = {("Na", "Na"): (0.2637, 0.317, 2.340, 1.0486, -0.4993), ("Cl", "Cl"): (0.1580, 0.317, 3.170, 72.4022, -145.4285),
+             ("Cl", "Na"): (0.2110, 0.317, 2.755, 6.9906, -8.6757)}
+    force_field = ForceField(pair={"born/coul/long 5.5": pairs}, kspace="pppm 1.0e-6", kspace_modify="order 6")
+    atoms.calc = force_field
+    energy = atoms.get_potential_energy()
+    assert energy / len(atoms) == pytest.approx(-4.02, abs=0.05) and np.abs(atoms.get_forces()).max() < 1e-5      # of the mesh
+    assert force_field.commands()[-2:] == ["kspace_style pppm 1.0e-6", "kspace_modify order 6"]
+    again = atoms.copy()
+    again.calc = ForceField(**{k: v for k, v in force_field.todict().items() if k in ("pair", "kspace", "kspace_modify", "skin")})
+    assert again.get_potential_energy() == pytest.approx(energy, rel=1e-12)
+
+
 def test_choices_without_a_scene():
     pppm = class_of("kspace", "pppm", object)
     from asemd.kspace.pppm import aliases, pieces, with_small_factors

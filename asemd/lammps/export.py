@@ -11,7 +11,6 @@ from asemd import units as unit_styles
 from asemd.engine import Settings
 from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
-from asemd.kspace_settings import to_words
 from asemd.lammps.data_write import write_data
 from asemd.system import System
 
@@ -65,10 +64,7 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
         out.append(f"special_bonds {' '.join(interactions.special_line())}")
     else:
         out.append(f"comm_modify cutoff {reach_of_items(system) + settings.skin!r}")
-    if interactions.kspace != "none":
-        out.append(f"kspace_style {interactions.kspace}")
-    if interactions.kspace_modify:
-        out.append(f"kspace_modify {' '.join(to_words(interactions.kspace_modify))}")
+    out += interactions.kspace_lines()
     out.append(f"dielectric {interactions.dielectric * factor!r}")
     out += [f"neighbor {settings.skin!r} bin", "neigh_modify every 1 delay 0 check yes", *exclusions(system, settings)]
     return out
