@@ -51,7 +51,7 @@ class Embedded(ManyBody):
     def __init__(self, name: str, *, forces=kernels.embedded_forces, helpers=(kernels.embedding,), shares=1, form=None, **options):
         super().__init__(name, forces=forces, helpers=helpers, shares=shares, **options)
         self.form = form or {}
-        self.reads = "eam"
+        self.reads = "eam/alloy" if name.startswith("eam/cd") else name      # the word for it in LAMMPS's log
 
     def variant(self, settings, compat=""):
         if compat != "lammps":
