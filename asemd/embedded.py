@@ -46,6 +46,7 @@ class Embedded(ManyBody):
     """A style whose file is a setfl file; `form` are options of `asemd.embedded_file.read_setfl`."""
 
     coefficients: tuple[str, ...] = ("scale",)      # what ``fix adapt`` may change
+    half_list = True               # LAMMPS's log calls its list one of half the pairs
     ends = False                   # whether forces go on with the last slope of an embedding function, as in LAMMPS
 
     def __init__(self, name: str, *, forces=kernels.embedded_forces, helpers=(kernels.embedding,), shares=1, form=None, **options):
