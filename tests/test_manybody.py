@@ -27,10 +27,10 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "tersoff/zbl": ("SiC.tersoff.zbl", "Si C", 3.7), "gw": ("SiC.gw", "Si C", 4.6), "gw/zbl": ("SiC.gw.zbl", "Si C", 3.8),
     "vashishta": ("SiC.vashishta", "Si C", 4.4), "edip": ("Si.edip", "Si", 5.43), "edip/multi": ("SiC.edip", "Si C", 4.4),
     "nb3b/harmonic": ("MOH.nb3b.harmonic", "M O H", 2.6), "nb3b/screened": ("PSiO.nb3b.screened", "P Si O", 5.1),
-    "vashishta/table 500 0.4": ("SiC.vashishta", "Si C", 4.4), "polymorphic": ("GaN_tersoff.poly", "Ga N", 4.6),
+    "vashishta/table 2000 0.4": ("SiC.vashishta", "Si C", 4.4), "polymorphic": ("GaN_tersoff.poly", "Ga N", 4.6),
 }
 TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
-STEPS = {"polymorphic": 1e-5, "vashishta/table 500 0.4": 1e-2}      # tables: steps between their points, forces of their own
+STEPS = {"polymorphic": 1e-5, "vashishta/table 2000 0.4": 1e-2}      # tables: steps between their points, forces of their own
 UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic"), ("metal",))
 FOLDER = r"""
 import importlib.util, os
