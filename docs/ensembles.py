@@ -67,8 +67,7 @@ RATIOS = """
 ## Ratios of distributions
 
 The slope found by maximum likelihood in units of the true one: in energy at two temperatures; at constant pressure in enthalpy at two
-temperatures and in volume at two pressures. The control has to
-be found here too.
+temperatures and in volume at two pressures. The control has to be found.
 
 | system | dynamics | quantity | records | slope / true slope | off | |
 |---|---|---|---|---|---|---|
@@ -77,8 +76,7 @@ SPLITTING = """
 ![ratios](images/ensembles-ratios.png)
 
 The lines have the true slope; only their height is fitted. Over all ratios but the control the squares of *off* add up to {squares}, where
-{count} are expected. The energies and volumes of flexible water at constant pressure are the weakest numbers here: 50 ps hold few independent
-ones.
+{count} are expected. Flexible water at constant pressure is the weakest of them: 50 ps hold few independent energies and volumes.
 
 ## Langevin dynamics at large friction
 
@@ -102,8 +100,8 @@ def verdict(row: dict) -> str:
 def page(result: dict) -> str:
     out = [HEAD.replace("{limit}", f"{result['limit']:g}"), f"\nMeasured on {result['date']}: {result['machine']}.\n", KINETIC]
     for r in result["kinetic"]:
-        out.append(f"| {r['liquid']} | {r['dynamics']} | {r['T']:g} | {r['freedom']} | {r['samples']} | {r['T of mean']:.4g} "
-                   f"&pm; {r['error of mean']:.2g} | {r['T of width']:.3g} &pm; {r['error of width']:.2g} | {r['off mean']:.1f}, "
+        out.append(f"| {r['liquid']} | {r['dynamics']} | {r['T']:g} | {r['freedom']} | {r['samples']} | {r['T of mean']:#.4g} "
+                   f"&pm; {r['error of mean']:.2g} | {r['T of width']:#.3g} &pm; {r['error of width']:.2g} | {r['off mean']:.1f}, "
                    f"{r['off width']:.1f} | {r['p']:.2g} | {verdict(r)} |\n")
     if result["missing"]:
         out.append(f"\nNot in this run: {', '.join(result['missing'])}.\n")
