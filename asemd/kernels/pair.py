@@ -216,6 +216,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     if any(p.coordinate == "r" for p in parts):
         lines.append("    r = math.sqrt(r2)")
     row = constant = array = 0
+    core = max((getattr(p.function, "core", 0.0) for p in parts), default=0.0)      # what LAMMPS adds to r^2 of a core and its shell
     if piece:
         limits = sum(len(p.constants) for p in parts) + 4
         lines += [f"    if r2 <= constants[{limits}] or r2 >= constants[{limits + 1}]:", "        return fp, ev, ec"]
@@ -240,6 +241,9 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
                       f"        fp += whole * {slope} - (bare / r2 if bare != 0.0 else 0.0)",
                       f"        ec += whole * e{k} - bare"]
         else:
+            if core:
+                near = f"r2 + ({core} if coul != whole else 0.0)"
+                args[0], slope = (near, slope) if part.coordinate == "r2" else ("r", f"{slope} * (r2 / ({near}))")
             lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
                       f"        fp += {w} * {slope}",

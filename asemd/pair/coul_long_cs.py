@@ -2,6 +2,7 @@ r"""coul/long for cores and shells of polarisable atoms: special pairs may stand
 
 The complementary error function is LAMMPS's approximation for these styles (errors below 5e-8). Special pairs are met as if they were 1e-6
 farther apart, as LAMMPS does; their force, too, is LAMMPS's, which differs from the gradient of this energy by 1e-6 / r.
+Other parts take 1e-12 more than r^2.
 Mitchell and Fincham, J. Phys. Condens. Matter 5, 1031 (1993).
 """
 from __future__ import annotations
@@ -40,4 +41,5 @@ def coul_long_cs(r2, qq, g_ewald):
 
 
 coul_long_cs.special, coul_long_cs.d2, coul_long_cs.table = special, coul_long_d2, coul_long_cs_table
+coul_long_cs.core = 1e-12
 pair_sum("coul/long/cs", (coul_long_cs, "cut"), settings="cut", settings_example="10.0", see="LAMMPS manual, pair_style coul/long/cs")
