@@ -12,10 +12,12 @@ Annotations and bodies follow the rules of `asemd.style`.
 """
 from __future__ import annotations
 
+import copy
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from types import MappingProxyType
 from typing import Any
 
@@ -323,6 +325,32 @@ def largest_radii(system) -> tuple[float, ...]:
     out = np.zeros(system.counts["ntypes"] + 1)
     np.maximum.at(out, system.type, system.extra["radius"])
     return tuple(out.tolist())
+
+
+def with_series(style: PairStyle, tables: PairTables) -> tuple[PairStyle, np.ndarray]:
+    """The style for kernels over clusters, and its constants: functions that have a twin which costs less there give way to it.
+
+    A function's attribute ``series`` holds the twin, which takes other constants, and what makes these of its own and the cutoff (None:
+    the twin is not good enough). What follows the constants of the parts stays at the end.
+    """
+    parts, numbers, at, row = [], [], 0, 0
+    for part in style.parts:
+        own = tables.constants[at:at + len(part.constants)]
+        twin, make = getattr(part.function, "series", (None, None))
+        values = make(*own, math.sqrt(float(tables.rows[row].max()))) if twin else None
+        parts.append(part if values is None else replace(make_part(twin, part.cut, set(part.rows)), long=part.long))
+        numbers += list(own) if values is None else values
+        at, row = at + len(part.constants), row + 2 + len(part.rows)
+    return _of_parts(style, tuple(parts)), np.array([*numbers, *tables.constants[at:]])
+
+
+@cache
+def _of_parts(style: PairStyle, parts: tuple[Part, ...]) -> PairStyle:
+    if parts == style.parts:
+        return style
+    out = copy.copy(style)
+    out.parts = parts
+    return out
 
 
 def missing_pairs(pairs) -> str:

@@ -11,6 +11,7 @@ from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.pair_scaled import scaled
 from asemd.kernels.state import aligned
 from asemd.pairing import NO_REPULSION
+from asemd.pairstyle import with_series
 
 BONDED_KEY = {"bond": "ebond", "angle": "eangle", "dihedral": "edihed", "improper": "eimp"}
 
@@ -154,12 +155,13 @@ class PairTerm(FactorTerm):
     def __init__(self, term, single: bool):
         self.owner, self.style, self.tables, self.single = term, term.style, term.tables, single
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
+        self.fast = with_series(self.style, self.tables)[0]
         self.row = 0
         self.tables4 = np.zeros((1, 2, 0, 4))
         self._views: dict[int, tuple] = {}
 
     def kernel(self, energy, per_atom, virial=False):
-        return self._scaled(pair_kernels.cluster_kernel(self.style, self.uniform, self.row, energy=energy, exclude=self.exclude,
+        return self._scaled(pair_kernels.cluster_kernel(self.fast, self.uniform, self.row, energy=energy, exclude=self.exclude,
                                                         single=self.single, outdated=self.outdated, piece=self.piece,
                                                         virial=virial or energy and not self.single)[0],
                             energy or virial)
@@ -187,7 +189,11 @@ class PairTerm(FactorTerm):
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
             self.rows = pair_kernels.varying_rows(self.tables.rows, self.uniform)
-            self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, self.single)
+            self.p = self.scalars()
+
+    def scalars(self) -> tuple:
+        """Coefficients that are the same for all pairs of types, and constants, as the kernel takes them."""
+        return pair_kernels.cluster_tuple(self.tables.rows, with_series(self.style, self.tables)[1], self.uniform, self.single)
 
     def arguments(self, engine, tid):
         s, c = engine.state, self.clusters(engine)
@@ -220,7 +226,11 @@ class PairRowsTerm(FactorTerm):
     def __init__(self, term):
         self.owner, self.style, self.tables = term, term.style, term.tables
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
-        self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
+        self.p = self.scalars()
+
+    def scalars(self) -> tuple:
+        """As of `PairTerm`."""
+        return pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
 
     def kernel(self, energy, per_atom):
         return self._scaled(pair_kernels.rows_kernel(self.style, self.uniform, energy=energy, piece=self.piece)[0], energy)

@@ -16,7 +16,7 @@ from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
 from asemd.fix.formula import Formula
-from asemd.kernels.pair import cluster_tuple, uniform_rows, varying_rows
+from asemd.kernels.pair import uniform_rows, varying_rows
 from asemd.population import retie
 from asemd.words import bounds, take, whole, yes_no
 
@@ -270,7 +270,7 @@ def _in_place(e: Engine, interactions, system) -> bool:
             if getattr(t, "owner", None) is old and hasattr(t, "uniform"):
                 if hasattr(t, "rows"):
                     t.rows = varying_rows(old.tables.rows, t.uniform)
-                t.p = cluster_tuple(old.tables.rows, old.tables.constants, t.uniform, getattr(t, "single", False))
+                t.p = t.scalars()
     for t in e.terms:
         if getattr(t, "packed", None) is not None:
             fresh = t.style.pack(t.use.settings, t.use.coeff, t.packed.coeff.shape[1] - 1, e.units)

@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.polynomial import chebyshev
+
 from asemd.coulomb_table import coul_long_table
 from asemd.pairstyle import pair
 
@@ -45,3 +48,42 @@ def coul_long(r2, qq, g_ewald):
 
 
 coul_long.table = coul_long_table
+
+
+DEGREE = 24
+FARTHEST = 3.2      # of g r: up to there the series below is good to 1e-12
+
+
+def _written(names: list[str]) -> str:
+    """Nested products of a polynomial."""
+    return names[0] if len(names) == 1 else f"({_written(names[1:])}) * s + {names[0]}"
+
+
+def _series():
+    """The function as two polynomials of r between 0 and the cutoff, which cost half of the exponential function and a division."""
+    e, f = ([f"{letter}{k}" for k in range(DEGREE + 1)] for letter in "ef")
+    source = (f"def coul_long_series(r2, qq, scale, {', '.join(e + f)}):\n    r2inv = 1.0 / r2\n    rinv = math.sqrt(r2inv)\n"
+              f"    s = scale * (r2 * rinv) - 1.0\n    q = qq * rinv\n"
+              f"    return q * ({_written(e)}), -0.5 * q * ({_written(f)}) * r2inv\n")
+    scope = {"math": math}
+    exec(source, scope)
+    function = scope["coul_long_series"]
+    function.source = source
+    return function
+
+
+def _numbers(g_ewald: float, cut: float) -> list[float] | None:
+    """Constants of `coul_long_series` for a splitting parameter and a cutoff; None where the series is not good enough."""
+    x = g_ewald * cut
+    if not 0.0 < x <= FARTHEST:
+        return None
+
+    def both(s, k):
+        r = 0.5 * cut * (s + 1.0)
+        values = [coul_long(v * v, v, g_ewald) for v in r]
+        return np.array([e if k == 0 else -2.0 * d * v * v for v, (e, d) in zip(r, values)])
+
+    return [2.0 / cut, *(c for k in (0, 1) for c in chebyshev.cheb2poly(chebyshev.chebinterpolate(both, DEGREE, (k,))))]
+
+
+coul_long.series = _series(), _numbers
