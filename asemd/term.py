@@ -323,6 +323,9 @@ class PairListTerm(Term):
 
 def list_term(term) -> PairListTerm:
     """The term of a pair style over all pairs of a plain list."""
+    if term.style.oriented:
+        from asemd.oriented_term import TERMS
+        return TERMS[term.style.oriented](term)
     from asemd.noise_term import NoiseTerm
     return NoiseTerm(term) if term.style.stirred else PairListTerm(term.style, term.tables, term.style.parts, "all", owner=term)
 

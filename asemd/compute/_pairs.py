@@ -191,7 +191,7 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         A style whose forces are not those of its energy (a factor for each atom).
     """
     engine, m = state.engine, len(pairs.i)
-    check_pairwise(engine.many_terms if terms is None else ())
+    check_pairwise([*engine.many_terms, *engine.pair_terms] if terms is None else terms)
     energy, force = np.zeros(m), np.zeros((m, 3))
     x, q = np.zeros((3, 2 * m)), np.zeros(2 * m)
     x[:, :m] = pairs.d.T
@@ -225,16 +225,20 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
     return energy, force
 
 
-def check_pairwise(many) -> None:
-    """Refuse pair styles without energies of single pairs.
+def check_pairwise(terms) -> None:
+    """Refuse pair styles without energies of single pairs that are functions of the distance.
 
     Raises
     ------
     InputError
         The message names the style.
     """
-    for term in many:
-        raise InputError(f"pair style {term.style.name} is a many-body potential: there is no energy or force of a single pair of atoms")
+    for term in terms:
+        if term.style.many:
+            raise InputError(f"pair style {term.style.name} is a many-body potential: there is no energy or force of a single pair of "
+                             "atoms")
+        if term.style.oriented:
+            raise InputError(f"pair style {term.style.name} depends on the orientation of atoms: single pairs are not available")
 
 
 def _kernel(term):

@@ -34,7 +34,7 @@ def chosen(session, ntypes: int, units) -> list:
     for fill in (live_coefficients.fill, live_coefficients.scale):
         fill(session)
     terms = session.scene.interactions.pair_terms(ntypes, units)
-    check_pairwise(t for t in terms if t.style.many)
+    check_pairwise(terms)
     if not any(term.molecules for term in terms):
         return terms
     which = "other" if system.n > 1 and system.molecule[0] != system.molecule[1] else "same"

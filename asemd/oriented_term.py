@@ -1,0 +1,59 @@
+"""Terms of pair styles of atoms with an orientation, which feel torques: over plain lists of pairs."""
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.kernels import pair_dipole, pair_sums
+from asemd.kernels.generate import Builder
+from asemd.term import PairListTerm
+
+
+@cache
+def dipole_kernel(style, energy: bool, per_atom: bool):
+    """The kernel of `asemd.kernels.pair_dipole` for a style."""
+    b = Builder(f"pair {style.name}: charges with dipoles")
+    first, second = style.parts
+    last, scale = 2 + len(first.rows), second.rows.index("scale") if "scale" in second.rows else -1
+    name = b.function(first.function)
+    arguments = ", ".join(["r2", *(f"rows[{2 + k}, ti, tj]" for k in range(len(first.rows)))])
+    b.text(f"def plain(r2, rows, ti, tj):\n    e, d = {name}({arguments})\n    return e - rows[1, ti, tj], -2.0 * d")
+    for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FIRST=last, SCALE=last + 2 + scale, SCALED=scale >= 0).items():
+        b.constant(key, value)
+    b.function(style.radial, "radial")
+    for f in (pair_sums.eight, pair_sums.add, pair_dipole.dipole_forces):
+        b.function(f)
+    return b.build().dipole_forces
+
+
+class OrientedTerm(PairListTerm):
+    """All pairs of the list; forces and torques.
+
+    Raises
+    ------
+    InputError
+        The style has a factor for each atom.
+    """
+
+    def __init__(self, owner):
+        super().__init__(owner.style, owner.tables, owner.style.parts, "all", owner=owner)
+        if np.ndim(owner.use.factor) > 0:
+            raise InputError(f"pair style {self.style.name} cannot have a factor for each atom")
+
+
+class DipolePairTerm(OrientedTerm):
+    """Charges with point dipoles, which fixes may turn: kernels read them where they are, by row."""
+
+    def kernel(self, energy, per_atom):
+        return dipole_kernel(self.style, energy, per_atom)
+
+    def arguments(self, engine, tid):
+        s, m, nth = engine.state, len(self.i), engine.threads
+        return (s.x, engine.buffers[tid], s.q, engine.system.extra["mu"], s.row, engine.buffers[tid, 3:], s.type, self.i, self.j, self.code,
+                self.shifts, self.lj, self.coul, m * tid // nth, m * (tid + 1) // nth, self.tables.rows, self.tables.constants,
+                engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+
+
+TERMS = {"dipole": DipolePairTerm}      # by `asemd.pairstyle.PairStyle.oriented`
