@@ -1,5 +1,6 @@
-r"""$$E = 4\epsilon\left[(\sigma/r)^{12} - (\sigma/r)^6\right] + C \left[\frac{q_i q_j}{r} + \frac{(q_i \vec p_j - q_j \vec p_i) \cdot \vec r}{r^3}
-    + \frac{\vec p_i \cdot \vec p_j}{r^3} - \frac{3 (\vec p_i \cdot \vec r)(\vec p_j \cdot \vec r)}{r^5}\right], \qquad \vec r = \vec x_i - \vec x_j$$
+r"""$$E = 4\epsilon\left[(\sigma/r)^{12} - (\sigma/r)^6\right] + C \left[\frac{q_i q_j}{r} + \frac{(q_i \vec p_j - q_j \vec p_i) \cdot
+    \vec r}{r^3} + \frac{\vec p_i \cdot \vec p_j}{r^3} - \frac{3 (\vec p_i \cdot \vec r)(\vec p_j \cdot \vec r)}{r^5}\right], \qquad
+    \vec r = \vec x_i - \vec x_j$$
 
 Lennard-Jones up to cut_lj, charges and point dipoles up to cut_coul; one cutoff given means both. Dipoles feel torques.
 Source: M. P. Allen, D. J. Tildesley, Computer Simulation of Liquids (1987).

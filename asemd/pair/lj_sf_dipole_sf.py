@@ -1,7 +1,9 @@
-r"""$$E = 4\epsilon\left[\frac{\sigma^{12}}{r^{12}} - \frac{\sigma^6}{r^6} + \left(\frac{6\sigma^{12}}{a^{12}} - \frac{3\sigma^6}{a^6}\right)
-    \frac{r^2}{a^2} - \frac{7\sigma^{12}}{a^{12}} + \frac{4\sigma^6}{a^6}\right] + s C \left[q_i q_j \frac{(1-x)^2}{r}
+r"""$$E = 4\epsilon\left[\frac{\sigma^{12}}{r^{12}} - \frac{\sigma^6}{r^6} + \left(\frac{6\sigma^{12}}{a^{12}}
+    - \frac{3\sigma^6}{a^6}\right) \frac{r^2}{a^2}
+     - \frac{7\sigma^{12}}{a^{12}} + \frac{4\sigma^6}{a^6}\right] + s C \left[q_i q_j \frac{(1-x)^2}{r}
     + (q_i \vec p_j - q_j \vec p_i) \cdot \vec r \frac{1 - 3 x^2 + 2 x^3}{r^3}
-    + \left(\vec p_i \cdot \vec p_j - \frac{3 (\vec p_i \cdot \vec r)(\vec p_j \cdot \vec r)}{r^2}\right) \frac{1 - 4 x^3 + 3 x^4}{r^3}\right]$$
+    + \left(\vec p_i \cdot \vec p_j - \frac{3 (\vec p_i \cdot \vec r)(\vec p_j \cdot \vec r)}{r^2}\right)
+    \frac{1 - 4 x^3 + 3 x^4}{r^3}\right]$$
 
 Lennard-Jones, charges and point dipoles with energies and forces that end at zero, at a = cut_lj and cut_coul; x = r / cut_coul, and
 vec r = x_i - x_j. The factor s is 1 unless ``scale`` says otherwise. Dipoles feel torques.
@@ -88,5 +90,5 @@ class ShiftedDipoles(DipolePair):
         return super().mixed(a, b, rule) | {"scale": 1.0}
 
 
-register(ShiftedDipoles("lj/sf/dipole/sf", radial, coul_shifted, __doc__, plain=lj_shifted, rows="repulsion attraction scale", derived=derived,
-                        units={"epsilon": "energy", "sigma": "distance"}, shifts=False))
+register(ShiftedDipoles("lj/sf/dipole/sf", radial, coul_shifted, __doc__, plain=lj_shifted, rows="repulsion attraction scale",
+                        derived=derived, units={"epsilon": "energy", "sigma": "distance"}, shifts=False))
