@@ -33,13 +33,13 @@ def python(*arguments: str, cwd: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md"])
+@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md", "docs/kspace.md"])
 def test_python_blocks_run(name, tmp_path):
     page = ROOT / name
     for script, text in scripts(page).items():
         (tmp_path / script).write_text(text)
     found = blocks(page, "python")
-    assert len(found) >= 2
+    assert len(found) >= 2 or name == "docs/kspace.md" and found
     (tmp_path / "page.py").write_text("\n".join(found))
     python("page.py", cwd=tmp_path)
 
