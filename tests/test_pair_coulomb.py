@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from both import lines_of
 from test_pair_hybrid import chain
+from test_pair_styles import setup
 from wheel import ask
 
 from asemd import style
@@ -143,3 +144,22 @@ def check_many(name):
     assert 27 * sums[0] == pytest.approx(sums[1], rel=1e-11)
     forces = [s.scene.system.f[np.argsort(s.scene.system.id)] for s in (small, large)]
     np.testing.assert_allclose(forces[0], forces[1][:len(forces[0])], rtol=0, atol=1e-11 * np.abs(forces[0]).max())
+
+
+@pytest.mark.parametrize("name", [n for n in style.names("pair") if style.find("pair", n).parts and style.find("pair", n).charged])
+def test_second_derivatives(name):
+    """Those of each part that has them are differences of the first ones (those of LAMMPS's erfc are good to 1e-5)."""
+    s = style.find("pair", name)
+    s, tables, _ = setup(name, s.settings_example, {(1, 1): s.example}, ntypes=1)
+    row = constant = 0
+    for part in s.parts:
+        cut2, _, *values = tables.rows[row:row + 2 + len(part.rows), 1, 1]
+        numbers = tables.constants[constant:constant + len(part.constants)]
+        row, constant = row + 2 + len(part.rows), constant + len(part.constants)
+        given = [-302.0] * part.charged + values + list(numbers)
+        for r in np.array([0.13, 0.35, 0.6, 0.75, 0.95]) * cut2**0.5 if getattr(part.function, "d2", None) else ():
+            x = r * r if part.coordinate == "r2" else r
+            slopes = [part.function(x * (1.0 + 1e-5 * k), *given)[1] for k in (-2, -1, 0, 1, 2)]
+            want = (slopes[0] - 8.0 * slopes[1] + 8.0 * slopes[3] - slopes[4]) / (12e-5 * x)
+            scale = abs(want) + abs(slopes[2]) / x
+            assert abs(part.function.d2(x, *given) - want) <= (3e-5 if "gradient" in s.xfail else 1e-6) * scale, (part.function, r)
