@@ -16,16 +16,19 @@ class EmbeddedTerm(FactorTerm):
 
     def __init__(self, term):
         self.owner, self.style, self.tables = term, term.style, term.tables
-        table, offset, self.functions, self.function_of, self.share = term.tables.arrays
-        self.function_of, self.flat = self.function_of.astype(np.int32), self.functions.ravel()
-        self.types = len(offset)
-        self.table = aligned((table.size,))
-        self.table[:] = table.ravel()
-        self.offset = np.ascontiguousarray(8 * offset.ravel(), np.int32)
+        table, offset, self.functions, function_of, self.share = term.tables.arrays
+        self.function_of, self.flat = function_of.astype(np.int32), self.functions.ravel()
         cut2 = term.tables.rows[0]
-        self.offset[cut2.ravel() == 0.0] = 0
+        offset = np.where(cut2 > 0.0, offset, 0)[1:, 1:]
         self.cut = float(np.sqrt(cut2.max()))
-        self.varying = bool((self.offset.reshape(offset.shape)[1:, 1:] != self.offset[self.types + 1]).any())
+        # types with the same functions are one class
+        _, first, classes = np.unique(np.concatenate([offset, offset.T], axis=1), axis=0, return_index=True, return_inverse=True)
+        self.class_of_type, self.classes = np.concatenate([[0.0], classes.ravel()]), float(len(first))
+        size = int(term.tables.constants[2]) + 1
+        blocks = [table[offset[s, t]:offset[s, t] + size].ravel() for s in first for t in first]
+        self.table = aligned((len(blocks) * 8 * size,))
+        self.table[:] = np.concatenate(blocks)
+        self.varying = len(first) > 1
         self.longest, self.room = -1, 0
 
     def kernel(self, energy, per_atom):
@@ -35,8 +38,9 @@ class EmbeddedTerm(FactorTerm):
         clusters, nth, slots = engine.list, engine.threads, engine.state.x.shape[1]
         self.outdated = engine.settings.outdated
         if getattr(self, "rho", np.zeros((0, 0))).shape != (nth, slots):
-            self.rho, self.slope = aligned((nth, slots)), aligned((slots,))
+            self.rho, self.slope, self.class_of = aligned((nth, slots)), aligned((slots,)), aligned((slots,))
             self.tables4 = aligned((nth, 2, slots, 4))
+        self.class_of[:] = self.class_of_type[engine.state.type]
         longest, most = clusters.longest(), 0
         ends = [clusters.first[t, int(clusters.bounds[t + 1])] for t in range(nth)]
         most = 8 * (max(int(n) for n in ends) + 64 * (len(clusters.own) // nth + 8))
@@ -60,7 +64,7 @@ class EmbeddedTerm(FactorTerm):
         f, acc = self._sums(engine, tid)
         return self._with_factor(engine, tid, (
             s.x, f, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, int(c.bounds[tid]),
-            int(c.bounds[tid + 1]), self.tables.constants, self.table, self.offset, self.types, self.cut, c.reach, self.functions,
+            int(c.bounds[tid + 1]), self.tables.constants, self.table, self.classes, self.class_of, self.cut, c.reach, self.functions,
             self.flat, self.function_of, self.share, self.rho, self.slope, self.b[tid], self.row, self.local[tid], self.sums[tid],
             self.kinds[tid], self.kept[tid], self.owners[tid], self.ends, self.work[tid], self.there[tid], self.back[tid], self.lanes[tid],
             *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], tid, engine.meeting,

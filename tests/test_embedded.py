@@ -123,6 +123,16 @@ def test_potential_files_against_lammps(potentials):
     assert not wrong, "\n".join(wrong)
 
 
+def test_forces_of_lammps_beyond_a_table(potentials):
+    """Where LAMMPS holds the embedding energy, its forces are not the gradient; energies agree."""
+    scenes = [("cd", scene("eam/cd", ["pair_coeff * * FeCr.cdeam Cr Fe"], 2, 1.9, 3))]
+    want, = ask(ASK, scenes=scenes)
+    ours, theirs = (answer(run(scenes[0][1], switches=switches)) for switches in ((), ("-compat", "lammps")))
+    assert ours["pe"] == pytest.approx(want["pe"], rel=1e-13)
+    assert np.abs(ours["f"] - want["f"]).max() > 0.01
+    np.testing.assert_allclose(theirs["f"], want["f"], rtol=0, atol=1e-12 * np.abs(want["f"]).max())
+
+
 def small(tmp_path, style="eam/alloy") -> Path:
     """A setfl file of two invented elements."""
     r, rho = np.arange(200) * 0.03, np.arange(100) * 0.5

@@ -7,7 +7,7 @@ first and functions next: neither waits for long chains of results, nor for gues
 the pairs of the first one in memory.
 
 Constants of the generated module: ENERGY (and virial), VARYING (more than one block of tables), OUTDATED (the list may be, see
-`asemd.kernels.pair_cluster`). Tables are those of `asemd.embedded`, flat; `offset (types * types,)` in numbers instead of rows.
+`asemd.kernels.pair_cluster`). Tables are those of `asemd.embedded`, flat, a block for each ordered pair of classes of atom types.
 """
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ VECTORS = ('add_at8 add_row all8 below8 inverse_root8 larger8 load8 lookup8 madd
            'whole8')
 
 
-def pack(ci, full, row, near, entries, f0, unshifted, shifts, type_of, b, local, kinds):
-    """The neighbours of cluster `ci` in `local` and `b`, their types in `kinds`; an atom far away behind them."""
+def pack(ci, full, row, near, entries, f0, unshifted, shifts, b, local):
+    """The neighbours of cluster `ci` in `local` and `b`; an atom far away behind them."""
     s = place(ci * CLUSTER)
     ox, oy, oz = near[s, 0], near[s, 1], near[s, 2]
     if unshifted[ci]:
@@ -63,9 +63,7 @@ def pack(ci, full, row, near, entries, f0, unshifted, shifts, type_of, b, local,
         for k in range(0, full, 8):
             pack8(b, k, row, local, near, entries, f0 + k, ox, oy, oz, shifts, SLOT_BITS, True)
     local[place(4 * full)] = 1e9
-    if VARYING:
-        for k in range(full):
-            kinds[place(4 * k)] = type_of[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
+    local[place(4 * full + 3)] = 0.0
 
 
 def find(ci, f0, full, mine, row, span, type_of, cut, reach, local, b, kept, n, owner, hide, moved, rest):
@@ -112,14 +110,11 @@ def find(ci, f0, full, mine, row, span, type_of, cut, reach, local, b, kept, n, 
     return n
 
 
-def blocks(me, q, v, m8, kinds, kept, offset, types, there, back, lanes):
-    """Where the functions of eight pairs begin: of the atom with its neighbours in `there`, the other way round in `back`."""
-    ti = np.int64(kinds[place(me)])
-    tj = lookup8(kinds, kept, q)
-    store8(lanes, 0, tj + all8(ti * types))
-    store8(there, v, m8 + lookup8(offset, lanes, 0))
-    store8(lanes, 0, tj * all8(types) + all8(ti))
-    store8(back, v, m8 + lookup8(offset, lanes, 0))
+def blocks(ci, cj, m8, v, classes, size, there, back):
+    """Where the functions of eight pairs begin: of an atom of class `ci` with neighbours of classes `cj` in `there`, the other way round in
+    `back`."""
+    store8(there, v, m8 + whole8(madd8(cj, all8(size), all8(ci * classes * size))))
+    store8(back, v, m8 + whole8(madd8(cj, all8(classes * size), all8(ci * size))))
 
 
 def slopes(i, types, functions, function_of, constants, slope, lanes):
@@ -163,13 +158,14 @@ def embed(c0, c1, rho, type_of, functions, flat, function_of, share, constants, 
                 acc[0] += share[type_of[j]] * e
 
 
-def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shifts, c0, c1, constants, table, offset, types, cut, reach,
+def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shifts, c0, c1, constants, table, classes, class_of, cut, reach,
                       functions, flat, function_of, share, rho, slope, b, row, local, sums, kinds, kept, owner, ends, work, there, back,
                       lanes, near, push, acc, hide, skin, moved, farthest, tid, meeting, bad):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)`.
 
-    `flat` is `functions (n, 4)` as one row. `rho (threads, cap)` and `slope (cap,)` are of all threads; `b`, `local`, `sums`, `kinds`,
-    `work`, `there` and `back` room for the neighbours of one cluster, `kept`, `owner` and `ends` for all of them.
+    `class_of (cap,)` is each slot's class of `classes`, as a double; `flat` is `functions (n, 4)` as one row. `rho (threads, cap)` and
+    `slope (cap,)` are of all threads; `b`, `local`, `sums`, `kinds`, `work`, `there` and `back` room for the neighbours of one cluster,
+    `kept`, `owner` and `ends` for all of them.
     """
     cap = x.shape[1]
     stage = np.int64(there.shape[0])
@@ -180,20 +176,20 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
     nothing = all8(np.int64(constants[2]))
     one, two, three, zero = all8(1.0), all8(2.0), all8(3.0), all8(0.0)
     eight = all8(8)
-    base = all8(np.int64(offset[types + 1]))
+    size = 8.0 * (constants[2] + 1.0)
     mine_rho = rho[tid]
     spill = work[stage:]
     for k in range(cap):
         mine_rho[k] = 0.0
     for k in range(0, cap, 8):
-        take8(near, k, x, slope)
+        take8(near, k, x, class_of)
     rest = 0.999999 * skin - math.sqrt(farthest[0]) if OUTDATED else 0.0
     n = np.int64(0)
     for ci in range(c0, c1):
         f0 = np.int64(first[ci])
         full = ((np.int64(first[ci + 1]) - f0) // 8) * 8
         mine = np.int64(own[ci])
-        pack(ci, full, row, near, entries, f0, unshifted, shifts, type_of, b, local, kinds)
+        pack(ci, full, row, near, entries, f0, unshifted, shifts, b, local)
         for k in range(0, 4 * full + 4, 8):
             store8(sums, k, zero)
         begin = n
@@ -201,7 +197,7 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
         ends[place(ci)] = n
         for v in range(0, n - begin, 8):
             me = np.int64(owner[place((begin + v) >> 3)])
-            xj, yj, zj, _ = rows8(local, kept, begin + v, 0)
+            xj, yj, zj, cj = rows8(local, kept, begin + v, 0)
             dx = all8(local[place(me)]) - xj
             dy = all8(local[place(me + 1)]) - yj
             dz = all8(local[place(me + 2)]) - zj
@@ -212,9 +208,9 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
             store8(work, v, smaller8(p - real8(inside), one))
             m8 = below8(r2, cut2, inside, nothing) * eight
             if VARYING:
-                blocks(me, begin + v, v, m8, kinds, kept, offset, types, there, back, lanes)
+                blocks(local[place(me + 3)], cj, m8, v, classes, size, there, back)
             else:
-                store8(there, v, m8 + base)
+                store8(there, v, m8)
         for v in range(0, n - begin, 8):
             me = np.int64(owner[place((begin + v) >> 3)])
             t = load8(work, v)
@@ -238,9 +234,13 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
     for ci in range(c0, c1):
         f0 = np.int64(first[ci])
         full = ((np.int64(first[ci + 1]) - f0) // 8) * 8
-        pack(ci, full, row, near, entries, f0, unshifted, shifts, type_of, b, local, kinds)
+        pack(ci, full, row, near, entries, f0, unshifted, shifts, b, local)
         for k in range(0, 4 * full + 4, 8):
             store8(sums, k, zero)
+        if VARYING:
+            for k in range(full):
+                kinds[place(4 * k)] = np.int32(class_of[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))])
+            kinds[place(4 * full)] = 0
         begin = n
         n = ends[place(ci)]
         for v in range(0, n - begin, 8):
@@ -262,10 +262,11 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
             store8(work, v + 4 * stage, dz)
             if VARYING:
                 store8(work, v + 5 * stage, fj)
-                blocks(me, begin + v, v, m8, kinds, kept, offset, types, there, back, lanes)
+                cj = real8(lookup8(kinds, kept, begin + v))
+                blocks(np.float64(kinds[place(me)]), cj, m8, v, classes, size, there, back)
             else:
                 store8(work, v + 5 * stage, fj + all8(local[place(me + 3)]))
-                store8(there, v, m8 + base)
+                store8(there, v, m8)
         for v in range(0, n - begin, 8):
             me = np.int64(owner[place((begin + v) >> 3)])
             t = load8(work, v)
