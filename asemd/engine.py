@@ -18,9 +18,10 @@ from asemd.kernels.team import Team
 from asemd.kspace import solve
 from asemd.manybody_term import ManyBodyTerm, all_pairs
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
+from asemd.noise_term import list_term
 from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
-from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, list_term, store_torques
+from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 SLOTTED = 9           # the first fields of a `State`, those by slot

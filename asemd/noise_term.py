@@ -62,3 +62,8 @@ def stream(seed: int) -> np.ndarray:
     """A stream of random numbers as the kernel keeps it."""
     start = Marsaglia(seed)
     return np.array([*start._u, start._c, start._i, start._j, 0.0, 0.0])
+
+
+def list_term(term) -> PairListTerm:
+    """The term of a pair style over all pairs of a plain list."""
+    return NoiseTerm(term) if term.style.stirred else PairListTerm(term.style, term.tables, term.style.parts, "all", owner=term)

@@ -321,15 +321,6 @@ class PairListTerm(Term):
         return not_finite(engine, self.style, self.i[item], self.j[item], value)
 
 
-def list_term(term) -> PairListTerm:
-    """The term of a pair style over all pairs of a plain list."""
-    if term.style.oriented:
-        from asemd.oriented_term import TERMS
-        return TERMS[term.style.oriented](term)
-    from asemd.noise_term import NoiseTerm
-    return NoiseTerm(term) if term.style.stirred else PairListTerm(term.style, term.tables, term.style.parts, "all", owner=term)
-
-
 def not_finite(engine, style, i: int, j: int, distance: float) -> SimulationError:
     """The error of two slots whose pair energy or force is not finite."""
     first, second = sorted(int(engine.system.id[engine.state.row[slot]]) for slot in (i, j))
