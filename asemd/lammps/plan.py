@@ -203,7 +203,8 @@ def _term(e: Engine, t) -> Item:
         blocks = "tables by pair of types" if t.varying else "the same tables for all types"
         return Item(f"pair {style.name}", f"cluster kernel, densities first, then forces, double precision, {blocks}{times}", "pair_style")
     if isinstance(t, ManyBodyTerm):
-        return Item(f"pair {style.name}", f"rows of all neighbours of each atom, double precision{times}", "pair_style")
+        how = "rows of all neighbours of each atom" + ", eight at a time" * t.blocks
+        return Item(f"pair {style.name}", f"{how}, double precision{times}", "pair_style")
     assert isinstance(t, PairListTerm)
     if t.pairs == "special":
         return Item(f"pair {style.name} (special)", f"{len(e.exclusions.weighted)} weighted pairs, one by one",
