@@ -41,9 +41,10 @@ class EmbeddedTerm(FactorTerm):
             self.rho, self.slope, self.class_of = aligned((nth, slots)), aligned((slots,)), aligned((slots,))
             self.tables4 = aligned((nth, 2, slots, 4))
         self.class_of[:] = self.class_of_type[engine.state.type]
-        longest, most = clusters.longest(), 0
-        ends = [clusters.first[t, int(clusters.bounds[t + 1])] for t in range(nth)]
-        most = 8 * (max(int(n) for n in ends) + 64 * (len(clusters.own) // nth + 8))
+        longest = clusters.longest()
+        # an atom of a cluster keeps no more than the cluster's row, filled up to whole vectors
+        most = max(8 * int(clusters.first[t, int(high)]) + 64 * int(high - low)
+                   for t, (low, high) in enumerate(zip(clusters.bounds[:-1], clusters.bounds[1:])))
         if longest > self.longest:
             self.longest = longest + longest // 8
             self.row = -(-(self.longest + 48) // 16) * 16
