@@ -12,6 +12,7 @@ from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.state import aligned
 from asemd.manybody_term import ManyBodyTerm
 from asemd.result import Result
+from asemd.site_terms import OnSites
 from asemd.term import PairRowsTerm, PairTerm
 
 if TYPE_CHECKING:
@@ -47,7 +48,15 @@ def add(engine: Engine, result: Result, energies: bool = True, virials: bool = T
     for t in engine.terms:
         if t.category not in shares:
             shares[t.category] = np.zeros(n), np.zeros((n, 6))
-        (_of_pairs if isinstance(t, (PairTerm, PairRowsTerm)) else _of_others)(engine, t, energies, virials, *shares[t.category])
+        of = _of_pairs if isinstance(t, (PairTerm, PairRowsTerm)) else _of_others
+        if isinstance(t, OnSites):
+            mine = np.zeros(n), np.zeros((n, 6))
+            of(engine, t, energies, virials, *mine)
+            t.hand_over(engine, *mine)
+            for total, part in zip(shares[t.category], mine):
+                total += part
+        else:
+            of(engine, t, energies, virials, *shares[t.category])
     if energies:
         result.energies_of = {category: e for category, (e, _) in shares.items()}
         result.energies = _total(list(result.energies_of.values()), (n,))
@@ -68,7 +77,8 @@ def _total(parts: list[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
 
 def _of_pairs(engine: Engine, t: PairTerm | PairRowsTerm, energies: bool, virials: bool, energy: np.ndarray, virial: np.ndarray) -> None:
     """Pair terms over clusters and over rows have kernels of their own for it, which write no forces."""
-    room, (kernel, arguments) = engine.shares, (_rows if isinstance(t, PairRowsTerm) else _clusters)(engine, t, energies, virials)
+    seen = t.sighted(engine) if isinstance(t, OnSites) else engine
+    room, (kernel, arguments) = engine.shares, (_rows if isinstance(t, PairRowsTerm) else _clusters)(seen, t, energies, virials)
     engine.parallel(lambda tid: kernel(*arguments(tid), room.front[tid], room.back[tid]))
     scale = 0.5 * (1.0 if t.owner.is_plain else float(t.owner.use.factor))
     column = -1 if not energies else 0 if isinstance(t, PairTerm) and not virials else 3

@@ -16,11 +16,12 @@ from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.kspace import solve
-from asemd.manybody_term import ManyBodyTerm, all_pairs
+from asemd.manybody_term import all_pairs, many_term
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
 from asemd.noise_term import list_term
 from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
+from asemd.site_terms import made
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
@@ -76,7 +77,7 @@ class Engine:
                     t.exclude(*pair)
         self.pair_terms, self.many_terms = [t for t in terms if t.style.parts], [t for t in terms if t.style.many]
         self.has_pairs = bool(terms)
-        self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) for t in terms), default=0.0) ** 0.5
+        self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) ** 0.5 + t.margin for t in terms), default=0.0)
         self.reach = self.cutoff + s.skin
         self.exclusions = Exclusions(system, inter, s.exclude, self.has_pairs)
         self.mode, self.expanded, self.sparse, self.packed, self.why = self.list_for(system.n)
@@ -121,17 +122,17 @@ class Engine:
         return mode, expanded, sparse, packed, why
 
     def _make_terms(self) -> list:
-        terms: list = []
-        single = self.settings.precision == "mixed"
+        terms, single = [], self.settings.precision == "mixed"
         weighted = bool(len(self.exclusions.weighted))
         for t in self.pair_terms:
             if self.mode == "cluster" and not self.expanded:
-                terms.append(PairRowsTerm(t) if self.sparse else PairTerm(t, single))
+                terms.append(made(PairRowsTerm, t.sites, t) if self.sparse else made(PairTerm, t.sites, t, single))
                 if weighted:
-                    terms.append(PairListTerm(t.style, t.tables, t.style.parts, "special", owner=t))
+                    terms.append(made(PairListTerm, t.sites, t.style, t.tables, t.style.parts, "special", owner=t))
             else:
-                terms.append(list_term(t))
-        terms += [(EmbeddedTerm if self.packed else ManyBodyTerm)(t) for t in self.many_terms]
+                terms.append(list_term(t) if t.sites is None else
+                             made(PairListTerm, t.sites, t.style, t.tables, t.style.parts, "all", owner=t))
+        terms += [EmbeddedTerm(t) if self.packed else many_term(t) for t in self.many_terms]
         terms += own_terms(self.pair_terms, self.system.counts["ntypes"], self.qqr2e)
         if self.solver is not None and self.solver.modify["compute"]:
             terms.append(self.solver.term(self))

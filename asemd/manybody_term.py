@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError, SimulationError
+from asemd.hydrogen_bond import HydrogenBond
 from asemd.kernels import manybody
 from asemd.kernels.state import aligned
 from asemd.neighbor import IMAGES
@@ -110,3 +111,9 @@ class ManyBodyTerm(FactorTerm):
         atom = int(engine.system.id[engine.state.row[int(item)]])
         return SimulationError(f"pair style {self.style.name}: the energy of atom {atom} with its neighbours is not finite: "
                                f"{self.style.domain or 'atoms coincide, or are outside of what the potential is for'}")
+
+
+def many_term(owner):
+    """The term of a pair style that is no sum over pairs."""
+    from asemd.hydrogen_bond_term import HydrogenBondTerm
+    return (HydrogenBondTerm if isinstance(owner.style, HydrogenBond) else ManyBodyTerm)(owner)

@@ -12,6 +12,7 @@ from asemd.errors import InputError, InputWarning
 from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 
 if TYPE_CHECKING:
+    from asemd.charge_sites import ChargeSites
     from asemd.forcefield import Interactions
     from asemd.uses import Use
 
@@ -31,6 +32,8 @@ class PairTerm:
         (i, j) -> complete coefficients, mixed ones included.
     molecules : str
         ``same`` or ``other``: only pairs of atoms of one molecule, or of two.
+    sites : asemd.charge_sites.ChargeSites, optional
+        Where charges are that are not on their atoms; `margin` is by how much atoms may be farther apart than two of them.
     """
 
     use: Use
@@ -40,6 +43,8 @@ class PairTerm:
     label: str
     has_tail: bool
     molecules: str = ""
+    sites: ChargeSites | None = None
+    margin: float = 0.0
 
     @property
     def is_plain(self) -> bool:
@@ -128,16 +133,19 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
     for k, (use, filled) in enumerate(complete(interactions, ntypes)):
         if interactions.modified(use, "compute"):
             shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
-            style = use.style.variant(use.settings, interactions.compat).bind(use.settings, filled)
-            molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
-            settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
-            arrays: tuple = ()
-            if interactions.table.get("table") and "g_ewald" in settings:
-                style = coulomb_table.tabled(style)
-                settings, arrays = coulomb_table.settings_of(style, settings, interactions.table)
-            tables = style.pack_pairs(settings, filled, ntypes, units, shift)
-            tables = replace(tables, arrays=tables.arrays + arrays)
-            out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))
+            for style in use.style.variant(use.settings, interactions.compat).pieces():
+                style = style.bind(use.settings, filled)
+                molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
+                settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
+                arrays: tuple = ()
+                if interactions.table.get("table") and "g_ewald" in settings:
+                    style = coulomb_table.tabled(style)
+                    settings, arrays = coulomb_table.settings_of(style, settings, interactions.table)
+                tables = style.pack_pairs(settings, filled, ntypes, units, shift)
+                tables = replace(tables, arrays=tables.arrays + arrays)
+                out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))
+                if style.on_sites:
+                    out[-1].sites, out[-1].margin = style.sites(use.settings, interactions), 2.0 * use.settings["qdist"]
     return out
 
 

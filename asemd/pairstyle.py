@@ -15,7 +15,7 @@ from __future__ import annotations
 import copy
 import inspect
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
@@ -118,6 +118,8 @@ class PairStyle(Style):
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
+    needs_newton = False             # newton off is refused, as by LAMMPS
+    on_sites = False                 # it acts on charges that are not on atoms, see `asemd.charge_sites`
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
                  mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, derived=None,
@@ -168,6 +170,10 @@ class PairStyle(Style):
     def variant(self, settings: Mapping[str, Any], compat: str = "") -> PairStyle:
         """The style whose parts are computed: this one, unless settings or ``compat="lammps"`` ask for other functions."""
         return self.twin if compat == "lammps" and self.twin else self
+
+    def pieces(self) -> Sequence[PairStyle]:
+        """What it is computed as, in turn: this style, unless some of its parts act elsewhere."""
+        return (self,)
 
     def parse_settings(self, words):
         values = super().parse_settings(words)

@@ -82,10 +82,13 @@ EXTRA = {
 def every_style() -> list[tuple[str, str]]:
     """(category, name) of all force-field styles, those included that are made of others or of nothing.
 
-    Many-body potentials are left out: their coefficients are files of many numbers.
+    Many-body potentials are left out: their coefficients are files of many numbers. So are those of four-site water, which need molecules.
     """
+    def drawn(name: str) -> bool:
+        style = registry.find("pair", name)
+        return not style.many and not any(piece.on_sites for piece in style.pieces())
     return [(c, n) for c in CATEGORIES for n in catalog.names(c)
-            if c != "pair" or n in (*catalog.WRAPPERS, *HYBRIDS) or not registry.find(c, n).many]
+            if c != "pair" or n in (*catalog.WRAPPERS, *HYBRIDS) or drawn(n)]
 
 
 def text_of(category: str, name: str) -> str:

@@ -53,6 +53,8 @@ def check(session) -> None:
         scene.interactions.check_complete(system)
     for warning in caught:
         session.warn(str(warning.message))
+    if not scene.newton[0] and (strict := [use.style.name for use in scene.interactions.uses["pair"] if use.style.needs_newton]):
+        raise InputError(f"pair style {strict[0]} needs newton on, which stands before the box is defined", session.places.get("newton"))
     if scene.newton[1]:
         for use in scene.interactions.uses["bond"]:
             settings = use.settings

@@ -9,7 +9,7 @@ def report_files(session, args) -> None:
     """What LAMMPS's log says about potential files, those of this command."""
     for use in session.scene.interactions.uses["pair"]:
         if use.style.many:
-            for c in {c["file"]: c for c in use.coeff.values() if c["file"] in args}.values():
+            for c in {c["file"]: c for c in use.coeff.values() if c.get("file") in args}.values():
                 file, units = c["units"], session.scene.units
                 if file.date:
                     session.print(f"Reading {use.style.reads} potential file {file.name} with DATE: {file.date}")

@@ -1,0 +1,41 @@
+r"""pppm for four-site water (TIP4P): charges of oxygen atoms are on massless sites, whose forces their three atoms share.
+
+The water molecules are those of the pair style, see pair_style tip4p/long. Source: LAMMPS manual, kspace_style pppm/tip4p.
+"""
+from __future__ import annotations
+
+import math
+
+from asemd.kspace.pppm import PPPM, PPPMTerm
+from asemd.site_terms import OnSites
+
+
+class PPPMTIP4P(PPPM):
+    """``kspace_style pppm/tip4p accuracy``."""
+
+    style = flag = "pppm/tip4p"
+
+    def prepare(self, system, interactions, units, cutoff):
+        use = next(use for use in interactions.uses["pair"] if self.flag in use.style.solvers)
+        self.sites = use.style.sites(use.settings, interactions)
+        super().prepare(system, interactions, units, cutoff)
+
+    def term(self, engine):
+        return TIP4PTerm(self)
+
+
+class TIP4PTerm(OnSites, PPPMTerm):
+    """The mesh with charges on sites."""
+
+    def __init__(self, solver):
+        super().__init__(solver)
+        self.sites = solver.sites
+
+    def hand_over(self, engine, energy, virial):
+        """As others, but the energy of a charge by itself stays with its oxygen atom."""
+        s, oxygen = self.solver, self._atoms[:, 0]
+        q = engine.system.q[oxygen]
+        own = s.scale * (s.g_ewald * q * q / math.sqrt(math.pi) + 0.5 * math.pi * q * s.qsum / (s.g_ewald**2 * s.volume))
+        energy[oxygen] += own
+        super().hand_over(engine, energy, virial)
+        energy[oxygen] -= own
