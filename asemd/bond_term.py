@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from asemd.errors import InputError
 from asemd.kernels import pair as pair_kernels
 from asemd.term import BondedTerm, PairListTerm
 
@@ -223,13 +224,22 @@ def _length(d: np.ndarray, box) -> np.ndarray:
 
 
 def bond_terms(system, interactions, pair_terms, units) -> list:
-    """Terms of the bond styles that remember or break bonds, or are a pair interaction."""
+    """Terms of the bond styles that remember or break bonds, or are a pair interaction.
+
+    Raises
+    ------
+    InputError
+        The pair style is one of atoms with an orientation, and bonds break or are a pair interaction.
+    """
     terms: list = []
     bonds, types = system.topology.items("bond")
     for use in interactions.uses["bond"]:
         style, at = use.style, np.flatnonzero(np.isin(types, list(use.coeff)))
         if not len(at):
             continue
+        turning = next((t for t in pair_terms if t.style.oriented), None)
+        if turning is not None and (style.pair_weights or style.breaks):
+            raise InputError(f"bond style {style.name} cannot be used with pair style {turning.style.name}, whose atoms feel torques")
         if style.pair_weights:
             weights = {t: tuple(use.coeff[t][name] for name in style.pair_weights) for t in use.coeff}
             for lj, coul in sorted(set(weights.values())):

@@ -135,7 +135,7 @@ for function, near in ((coul_long_table, special), (coul_long_cs_table, special_
 @cache
 def tabled(style: PairStyle) -> PairStyle:
     """The style with tables in place of the parts that have them; itself if none has."""
-    if not any(hasattr(part.function, "table") for part in style.parts):
+    if style.oriented or not any(hasattr(part.function, "table") for part in style.parts):
         return style
     twin = copy.copy(style)
     twin.parts = tuple(make_part(part.function.table, part.cut, part.rows) if hasattr(part.function, "table") else part

@@ -43,6 +43,7 @@ CASES = {
     "lj/sf/dipole/sf": "pair_style lj/sf/dipole/sf 5 6\npair_coeff 1 1 0.1 2 5.2 5.5 scale 0.4\npair_coeff 2 2 0.2 1.7 4",
     "lj/sf/dipole/sf scale": "pair_style lj/sf/dipole/sf 5\npair_coeff * * 0.1 2\npair_coeff 1 2 0.2 1.7 scale 0.2\npair_modify shift yes",
     "lj/cut/dipole/long": "pair_style lj/cut/dipole/long 4 5\n" + LJ + SOLVER,
+    "lj/cut/dipole/long table": "pair_style lj/cut/dipole/long 4 5\n" + LJ + SOLVER + "\npair_modify table 12",
     "lj/cut/dipole/long g": "pair_style lj/cut/dipole/long 5\n" + LJ + SOLVER + "\nkspace_modify gewald 0.4",
     "lj/cut/dipole/long slab": "pair_style lj/cut/dipole/long 4 5\n" + LJ + SOLVER
                                + "\nkspace_modify slab 3.0 gewald 0.35 kmax/ewald 5 6 14",
@@ -129,6 +130,11 @@ def test_forces_and_torques_are_the_gradient(name):
      "without charges"),
     ("pair_style lj/cut/dipole/long 5\npair_coeff * * 1 1\nrun 0", "needs a kspace_style"),
     ("pair_style lj/cut/dipole/long 5\npair_coeff * * 1 1 3 3", "got 4 values"),
+    ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\nspecial_bonds lj/coul 0 1 1\nbond_style special\n"
+     "bond_coeff * 0.5 0.5\nrun 0", "cannot be used with pair"),
+    ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\nfix 1 all widom 1 1 1 4711 300\nrun 1", "depends on the orientation"),
+    ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\ncompute 1 all born/matrix\nthermo_style custom c_1[1]\nrun 0",
+     "orientation"),
     ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\npair_write 1 1 10 r 1 2 file.table X", "orientation"),
 ])
 def test_words(line, message):

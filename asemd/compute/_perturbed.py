@@ -79,7 +79,7 @@ def perturbed_terms(state, changes, what: str) -> list:
             for pair in [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]:
                 if name in use.coeff.get(pair, ()):
                     use.coeff[pair][name] = before[pair][name] + delta
-    check_pairwise(state.engine.many_terms)
+    check_pairwise([*state.engine.many_terms, *state.engine.pair_terms])
     terms = [t for t in new.pair_terms(n, state.units) if t.style.parts]
     for kind, *pair in state.engine.settings.exclude:
         if kind == "type":

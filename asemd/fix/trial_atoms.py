@@ -37,6 +37,9 @@ class Energies:
             raise InputError(f"{what}: a pair style whose factor differs from atom to atom has no energy")
         if any(t.molecules == "same" for t in terms):
             raise InputError(f"{what}: pair_style hybrid/molecular is not supported")
+        for t in terms:
+            if t.style.oriented:
+                raise InputError(f"{what}: pair style {t.style.name} depends on the orientation of atoms: use full_energy")
         if engine.many_terms:
             raise InputError(f"{what}: pair style {engine.many_terms[0].style.name} is a many-body potential, in which "
                              "an atom has no energy of pairs")
