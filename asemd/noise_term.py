@@ -9,6 +9,7 @@ from asemd.errors import InputError
 from asemd.kernels import pair_noise, pair_sums
 from asemd.kernels.generate import Builder
 from asemd.marsaglia import Marsaglia
+from asemd.oriented_term import TERMS
 from asemd.term import PairListTerm
 
 
@@ -66,4 +67,6 @@ def stream(seed: int) -> np.ndarray:
 
 def list_term(term) -> PairListTerm:
     """The term of a pair style over all pairs of a plain list."""
+    if term.style.oriented:
+        return TERMS[term.style.oriented](term)
     return NoiseTerm(term) if term.style.stirred else PairListTerm(term.style, term.tables, term.style.parts, "all", owner=term)
