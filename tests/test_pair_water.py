@@ -37,7 +37,8 @@ def data(path, last: str = "O H H") -> str:
         bonds += [f"{len(bonds) + k} 1 {ids['O']} {ids[h]}" for k, h in ((1, "H"), (2, "h"))]
         angles.append(f"{m + 1} 1 {ids['H']} {ids['O']} {ids['h']}")
     path.write_text("\n".join(["x", "", f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles", "2 atom types",
-                               "1 bond types", "1 angle types", *(f"0 {EDGE} {a}lo {a}hi" for a in "xyz"), "1.3 -0.8 0.9 xy xz yz", "", "Masses", "",
+                               "1 bond types", "1 angle types", *(f"0 {EDGE} {a}lo {a}hi" for a in "xyz"), "1.3 -0.8 0.9 xy xz yz", "", "Masses",
+                               "",
                                "1 16", "2 1", "", "Atoms", "", *atoms, "", "Bonds", "", *bonds, "", "Angles", "", *angles, ""]))
     return str(path)
 

@@ -1,7 +1,7 @@
 r"""pppm for four-site water (TIP4P): charges of oxygen atoms are on massless sites, whose forces their three atoms share.
 
-The water molecules are those of the pair style, see pair_style tip4p/long. LAMMPS leaves the correction of ``kspace_modify slab`` out of the
-energy of this style; here it is in, and forces are its gradient. Source: LAMMPS manual, kspace_style pppm/tip4p.
+The water molecules are those of the pair style, see pair_style tip4p/long. LAMMPS leaves the correction of ``kspace_modify slab`` out of
+the energy of this style; here it is in, and forces are its gradient. Source: LAMMPS manual, kspace_style pppm/tip4p.
 """
 from __future__ import annotations
 
