@@ -36,10 +36,10 @@ def data(path, last: str = "O H H") -> str:
             atoms.append(f"{ids[name]} {m + 1} {kind} {charge} " + " ".join(f"{v:.10f}" for v in places[name]))
         bonds += [f"{len(bonds) + k} 1 {ids['O']} {ids[h]}" for k, h in ((1, "H"), (2, "h"))]
         angles.append(f"{m + 1} 1 {ids['H']} {ids['O']} {ids['h']}")
-    path.write_text("\n".join(["x", "", f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles", "2 atom types",
-                               "1 bond types", "1 angle types", *(f"0 {EDGE} {a}lo {a}hi" for a in "xyz"), "1.3 -0.8 0.9 xy xz yz", "", "Masses",
-                               "",
-                               "1 16", "2 1", "", "Atoms", "", *atoms, "", "Bonds", "", *bonds, "", "Angles", "", *angles, ""]))
+    counts = [f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles", "2 atom types", "1 bond types", "1 angle types"]
+    box = [*(f"0 {EDGE} {a}lo {a}hi" for a in "xyz"), "1.3 -0.8 0.9 xy xz yz"]
+    path.write_text("\n".join(["x", "", *counts, "", *box, "", "Masses", "", "1 16", "2 1", "", "Atoms", "", *atoms, "", "Bonds", "",
+                               *bonds, "", "Angles", "", *angles, ""]))
     return str(path)
 
 
