@@ -78,17 +78,18 @@ EXTRA = {
     ("dihedral", "charmm"): CHARMM["charmm"], ("dihedral", "charmmfsw"): CHARMM["charmmfsw"],
 }
 
+# two atoms show what these do, in the units that their example is in
+PAIRS = ("buck", "coul/cut", "lepton", "lj/charmm/coul/charmm", "lj/charmmfsw/coul/charmmfsh", "lj/cut", "lj/cut/coul/cut", "lj/sdk",
+         "lj/spica", "lj96/cut", "morse", "soft", "table")
+
 
 def every_style() -> list[tuple[str, str]]:
     """(category, name) of all force-field styles, those included that are made of others or of nothing.
 
-    Many-body potentials are left out: their coefficients are files of many numbers. So are those of four-site water, which need molecules.
+    Of the pair styles those of `PAIRS` have a page; the others stand in the list of styles.
     """
-    def drawn(name: str) -> bool:
-        style = registry.find("pair", name)
-        return not style.many and not any(piece.on_sites for piece in style.pieces())
     return [(c, n) for c in CATEGORIES for n in catalog.names(c)
-            if c != "pair" or n in (*catalog.WRAPPERS, *HYBRIDS) or drawn(n)]
+            if c != "pair" or n in (*catalog.WRAPPERS, *HYBRIDS, *PAIRS)]
 
 
 def text_of(category: str, name: str) -> str:
