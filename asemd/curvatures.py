@@ -176,8 +176,13 @@ def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = Fa
                 a, b = 2.0 * one, 4.0 * two
             else:
                 a, b = one / q[:, 0], (two - one / q[:, 0]) / r2[m]
-            bare = (whole - weight[m]) * qq[m] / (r2[m] * np.sqrt(r2[m])) if part.long else 0.0
-            yield m, a + bare, b - 3.0 * bare / r2[m]
+            if part.long and part.charged:
+                power, bare = 1.0, (whole - weight[m]) * qq[m] / (r2[m] * np.sqrt(r2[m]))
+            elif part.long:
+                power, bare = 6.0, -6.0 * (whole - weight[m]) * tables.rows[row + 2, ti[m], tj[m]] / r2[m] ** 4
+            else:
+                power, bare = 0.0, 0.0
+            yield m, a + bare, b - (power + 2.0) * bare / r2[m]
         row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 
 

@@ -135,7 +135,7 @@ class Engine:
         terms += [EmbeddedTerm(t) if self.packed else many_term(t) for t in self.many_terms]
         terms += own_terms(self.pair_terms, self.system.counts["ntypes"], self.qqr2e)
         if self.solver is not None and self.solver.modify["compute"]:
-            terms.append(self.solver.term(self))
+            terms += self.solver.terms(self)
         return terms + [t for f in (bonded_terms, bond_terms) for t in f(self.system, self.interactions, self.pair_terms, self.units)]
 
     def set_box(self) -> None:

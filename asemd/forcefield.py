@@ -83,7 +83,7 @@ class Interactions:
     @property
     def needs_solver(self) -> bool:
         """Whether a pair style leaves a part to a long-range solver."""
-        return any(use.style.solvers for use in self.uses["pair"])
+        return any(use.style.needs(use.settings) for use in self.uses["pair"])
 
     def coulomb_constant(self, units) -> float:
         """The energy of two unit charges at unit distance for dielectric constant 1; some styles ask for CHARMM's number."""

@@ -41,7 +41,7 @@ class Part:
     coordinate: str              # "r" or "r2"
     charged: bool
     sized: bool = False          # it takes radius_i and radius_j, the radii of both atoms
-    long: bool = False           # the weight of a special pair is that of its bare Coulomb energy: a solver adds the rest of all pairs
+    long: bool = False           # the weight of a special pair is that of its bare energy: a solver adds the rest of all pairs
 
 
 @dataclass(frozen=True)
@@ -160,12 +160,16 @@ class PairStyle(Style):
         """Whether it works on plain lists of pairs only."""
         return self.sized
 
+    def needs(self, settings: Mapping[str, Any]) -> frozenset[str]:
+        """Kinds of kspace_style that complete the style with these settings; empty: none is needed."""
+        return self.solvers
+
     def functions(self):
         return tuple(p.function for p in self.parts)
 
     def works_with(self, settings: Mapping[str, Any]) -> frozenset[str]:
         """Kinds of kspace_style that may stand beside it: by default those that it needs."""
-        return self.solvers
+        return self.needs(settings)
 
     def variant(self, settings: Mapping[str, Any], compat: str = "") -> PairStyle:
         """The style whose parts are computed: this one, unless settings or ``compat="lammps"`` ask for other functions."""

@@ -41,7 +41,9 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
                 values = [qq] * part.charged + values
                 pieces.append((part.function, part.coordinate == "r2", cut2, offset, values,
                                whole if part.long else coulomb if part.charged else weight))
-                if part.long and coulomb != whole:
+                if part.long and not part.charged and weight != whole:
+                    pieces.append((lambda r, c=values[0] * (whole - weight): (c / r**6, -6.0 * c / r**7), False, cut2, 0.0, [], 1.0))
+                if part.long and part.charged and coulomb != whole:
                     pieces.append((lambda r, c=qq * (coulomb - whole): (c / r, -c / (r * r)), False, cut2, 0.0, [], 1.0))
             row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
 

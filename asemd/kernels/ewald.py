@@ -174,7 +174,7 @@ def fields(f, q, scale, numbers, waves, total, table, lo, hi, flat):
                 f[2, b + i] += w * fz[i]
 
 
-def shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, energy, virial):
+def shares(q, scale, numbers, waves, total, table, lo, hi, energy, virial):
     """Energies and virials of slots lo..hi-1."""
     re, im = np.empty(1), np.empty(1)
     for i in range(lo, hi):
@@ -189,14 +189,15 @@ def shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, ener
             energy[i] += e
             for k in range(6):
                 virial[k, i] += e * waves[m, 4 + k]
-        energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
 
 
-def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy):
+def slab(meeting, tid, x, f, q, least, lo, hi, scale, qsum, height, volume, sums, acc, energy):
     """Take the interaction of the periodic images of a charged or polar slab off (Yeh, Berkowitz, J. Chem. Phys. 111, 3155 (1999);
     Ballenegger, Arnold, Cerda, J. Chem. Phys. 131, 094107 (2009)); `sums (nth, 2)` is room for all threads."""
     dipole, second = 0.0, 0.0
     for i in range(lo, hi):
+        if abs(q[i]) <= least:
+            continue
         dipole += q[i] * x[2, i]
         second += q[i] * x[2, i] * x[2, i]
     sums[tid, 0], sums[tid, 1] = dipole, second
@@ -209,9 +210,13 @@ def slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, 
     if ENERGY and tid == 0:
         acc[0] += front * (dipole * dipole - qsum * second - qsum * qsum * height * height / 12.0)
     for i in range(lo, hi):
+        if abs(q[i]) <= least:
+            continue
         f[2, i] -= 2.0 * front * q[i] * (dipole - qsum * x[2, i])
     if PER_ATOM:
         for i in range(lo, hi):
+            if abs(q[i]) <= least:
+                continue
             energy[i] += front * q[i] * (x[2, i] * dipole - 0.5 * (second + qsum * x[2, i] * x[2, i]) - qsum * height * height / 12.0)
 
 
@@ -237,14 +242,14 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_wav
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
     `constants`: g_ewald, energy scale, sum of charges, sum of their squares, stretch of the third vector, 1 for a slab's correction or 2
-    for no force along z, then of the choice of waves: charges squared as energy times length, atoms, accuracy; `held (4, 3)`: the box that
-    the waves are for, its volume, and how many waves there are.
+    for no force along z, the charge up to which atoms are passed over, then of the choice of waves: charges squared as energy times length,
+    atoms, accuracy; `held (4, 3)`: the box that the waves are for, its volume, and how many waves there are.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     if tid == 0:
         if not is_same(box, stretch, held):
             stretched(box, stretch, held[:3], inverse)
-            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, constants[6], constants[7], constants[8], room, most))
+            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, constants[7], constants[8], constants[9], room, most))
             held[3, 0] = weigh(room[:int(held[3, 1])], held[:3], g, all_waves)
             top = table.shape[1] - 1
             for d in range(3):
@@ -267,10 +272,12 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_wav
                 acc[2 + k] += e * waves[m, 4 + k]
         acc[0] -= scale * (g * qsqsum / math.sqrt(math.pi) + 0.5 * math.pi * qsum * qsum / (g * g * volume))
     if PER_ATOM:
-        shares(q, scale, g, qsum, volume, numbers, waves, total, table, lo, hi, energy, virial)
+        shares(q, scale, numbers, waves, total, table, lo, hi, energy, virial)
+        for i in range(lo, hi):
+            energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
     if slabs == 1.0:
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
-        slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy)
+        slab(meeting, tid, x, f, q, constants[6], lo, hi, scale, qsum, height, volume, sums, acc, energy)
     barrier(meeting)
 
 

@@ -228,6 +228,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         w = "coul" if part.charged else "lj"
         slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
         if part.long:
+            bare, power = ("qq / math.sqrt(r2)", "bare") if part.charged else (f"-rows[{row + 2}, ti, tj] / (r2 * r2 * r2)", "6.0 * bare")
             near = getattr(part.function, "special", None)
             if near is not None:
                 b.function(near, f"special_{name}")
@@ -237,9 +238,9 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
                           f"        ec += whole * e{k}"]
             lines += [f"    {'if' if near is None else 'elif'} r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
-                      "        bare = (whole - coul) * qq / math.sqrt(r2) if coul != whole else 0.0",
-                      f"        fp += whole * {slope} - (bare / r2 if bare != 0.0 else 0.0)",
-                      f"        ec += whole * e{k} - bare"]
+                      f"        bare = (whole - {w}) * {bare} if {w} != whole else 0.0",
+                      f"        fp += whole * {slope} - ({power} / r2 if bare != 0.0 else 0.0)",
+                      f"        {'ec' if part.charged else 'ev'} += whole * e{k} - bare"]
         else:
             if core:
                 near = f"r2 + ({core} if coul != whole else 0.0)"

@@ -36,13 +36,13 @@ def find_rows(i, base, wrap, ny, length, step, rows):
             rows[p * ORDER + m] = (front + wrap[1, at1 + m]) * length + at2
 
 
-def spread(x, q, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, base, weight, brick):
-    """Charges of slots lo..hi-1 on the mesh; where they are and their weights stay for `gather`."""
+def spread(x, q, least, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, base, weight, brick):
+    """Charges of slots lo..hi-1 on the mesh, those above `least`; where they are and their weights stay for `gather`."""
     brick[:] = 0.0
     mesh, rows = brick.reshape(-1), np.empty(ORDER * ORDER, np.int64)
     half = (ORDER - 1) // 2
     for i in range(lo, hi):
-        if q[i] == 0.0:
+        if abs(q[i]) <= least:
             continue
         for d in range(3):
             dx, dy, dz = x[0, i] - origin[0], x[1, i] - origin[1], x[2, i] - origin[2]
@@ -181,11 +181,11 @@ def interleave(first, last, field, packed):
                     out[k * m + c] = row[k % nz]
 
 
-def gather(f, q, lo, hi, scale, wrap, base, weight, packed, flat):
+def gather(f, q, least, lo, hi, scale, wrap, base, weight, packed, flat):
     """Forces on slots lo..hi-1 from the gradient of the potential; `flat` leaves out the third component."""
     mesh, rows, sums = packed.reshape(-1), np.empty(ORDER * ORDER, np.int64), np.empty(3 * ORDER + WIDE)
     for i in range(lo, hi):
-        if q[i] == 0.0:
+        if abs(q[i]) <= least:
             continue
         find_rows(i, base, wrap, packed.shape[1], packed.shape[2], 3, rows)
         collect(mesh, rows, weight, i, sums, ORDER)
@@ -201,11 +201,11 @@ def gather(f, q, lo, hi, scale, wrap, base, weight, packed, flat):
             f[2, i] += c * fz
 
 
-def gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, field, energy, virial):
+def gather_shares(q, least, lo, hi, scale, wrap, base, weight, field, energy, virial):
     """Energies and virials of slots lo..hi-1 from seven meshes."""
     nz = field.shape[3]
     for i in range(lo, hi):
-        if q[i] == 0.0:
+        if abs(q[i]) <= least:
             continue
         w = weight[i]
         for c in range(7):
@@ -217,7 +217,6 @@ def gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, field, 
                                   * field[c, wrap[0, base[i, 0] + l], wrap[1, base[i, 1] + m], (base[i, 2] + n) % nz])
             if c == 0:
                 energy[i] += 0.5 * scale * q[i] * total
-                energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
             else:
                 virial[c - 1, i] += 0.5 * scale * q[i] * total
 
@@ -231,6 +230,7 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
     `backward_shares`: addresses of the transforms.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
+    least = constants[6]
     nth, nx = meeting.nth, numbers[0]
     first, last = nx * tid // nth, nx * (tid + 1) // nth
     same = is_same(box, stretch, held)
@@ -252,7 +252,7 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
             make_green(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green)
     volume = held[3, 0]
     points = numbers[0] * numbers[1] * numbers[2]
-    spread(x, q, lo, hi, origin, inverse, numbers, points / volume, pieces, wrap, base, weight, brick[tid])
+    spread(x, q, least, lo, hi, origin, inverse, numbers, points / volume, pieces, wrap, base, weight, brick[tid])
     barrier(meeting)
     add_bricks(first, last, brick, density)
     barrier(meeting)
@@ -275,9 +275,9 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
     interleave(first, last, field, packed)
     barrier(meeting)
     if AD:
-        gather_ad(x, f, q, lo, hi, numbers, lengths, scale, own, wrap, base, weight, packed, slabs == 2.0)
+        gather_ad(x, f, q, least, lo, hi, numbers, lengths, scale, own, wrap, base, weight, packed, slabs == 2.0)
     else:
-        gather(f, q, lo, hi, scale, wrap, base, weight, packed, slabs == 2.0)
+        gather(f, q, least, lo, hi, scale, wrap, base, weight, packed, slabs == 2.0)
     if ENERGY and tid == 0:
         for t in range(nth):
             acc[0] += 0.5 * scale * volume * sums[t, 0]
@@ -285,11 +285,14 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
                 acc[2 + m] += 0.5 * scale * volume * sums[t, 1 + m]
         acc[0] -= scale * (g * qsqsum / math.sqrt(math.pi) + 0.5 * math.pi * qsum * qsum / (g * g * volume))
     if PER_ATOM:
-        gather_shares(q, lo, hi, scale, g, qsum, volume, wrap, base, weight, share_field, energy, virial)
+        gather_shares(q, least, lo, hi, scale, wrap, base, weight, share_field, energy, virial)
+        for i in range(lo, hi):
+            if abs(q[i]) > least:
+                energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
     if slabs == 1.0:
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
         barrier(meeting)
-        slab(meeting, tid, x, f, q, lo, hi, scale, qsum, height, volume, sums, acc, energy)
+        slab(meeting, tid, x, f, q, least, lo, hi, scale, qsum, height, volume, sums, acc, energy)
     barrier(meeting)
 
 

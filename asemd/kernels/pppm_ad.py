@@ -117,10 +117,10 @@ def own_force(numbers, lengths, volume, green, own):
             own[d, s] *= math.pi / volume * numbers[d] / lengths[d] * (s + 1)
 
 
-def gather_ad(x, f, q, lo, hi, numbers, lengths, scale, own, wrap, base, weight, packed, flat):
+def gather_ad(x, f, q, least, lo, hi, numbers, lengths, scale, own, wrap, base, weight, packed, flat):
     """Forces on slots lo..hi-1 from the potential on the mesh."""
     for i in range(lo, hi):
-        if q[i] == 0.0:
+        if abs(q[i]) <= least:
             continue
         w, e0, e1, e2 = weight[i], 0.0, 0.0, 0.0
         b2 = base[i, 2]

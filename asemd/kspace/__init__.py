@@ -20,6 +20,7 @@ from asemd.kspace_settings import DEFAULTS
 from asemd.registry import class_of
 
 __all__ = ["KSpace", "solve"]
+EXAMPLES = ("pppm", "ewald", "pppm/disp", "ewald/disp", "msm")      # the first one that fits is named in messages
 
 
 class KSpace:
@@ -43,7 +44,10 @@ class KSpace:
 
     style = ""
     flag = ""                   # what a pair style must have in `solvers` to work with this one
+    partner = "lj/cut/coul/long"
     takes_slab = True
+    least = 0.0                 # charges not above are passed over
+    coulomb = True              # a pair style leaves it the Coulomb interaction
     g_ewald = 0.0
 
     def __init__(self, accuracy: float, modify: Mapping[str, Any] | None = None):
@@ -84,7 +88,7 @@ class KSpace:
         name, periodic = f"kspace_style {self.style}", np.array(system.box.periodic, bool)
         if system.dimension == 2:
             raise InputError(f"{name} needs three dimensions, this scene has two")
-        if system.q is None:
+        if system.q is None and self.coulomb:
             raise InputError(f"{name} needs atom attribute q: use atom_style charge or full")
         if self.slab is not None:
             if not self.takes_slab:
@@ -121,7 +125,7 @@ class KSpace:
             Of the pair style's Coulomb part.
         """
         self.check(system)
-        q = np.asarray(system.q, float)
+        q = np.asarray(system.q if self.coulomb else np.zeros(system.n), float)
         self.n, self.cutoff = max(system.n, 1), float(cutoff)
         self.qsum, self.qsqsum = float(q.sum()), float(q @ q)
         self.scale = interactions.coulomb_constant(units) / interactions.dielectric
@@ -175,6 +179,29 @@ class KSpace:
         """The `asemd.term.Term` of this solver."""
         raise NotImplementedError
 
+    def terms(self, engine) -> list:
+        """All terms, where there are several."""
+        return [self.term(engine)]
+
+    def take(self, uses, interactions, system) -> float:
+        """Look at the pair styles that leave their long-range part to this solver; returns the cutoff of that part.
+
+        Raises
+        ------
+        InputError
+            Cutoffs of several pair styles differ.
+        """
+        return self.cutoff_of([(use, part) for use in uses for part in use.style.variant(use.settings).parts
+                               if part.long or (part.charged and not use.style.solvers)])
+
+    def cutoff_of(self, parts) -> float:
+        """The cutoff that all of these parts have, pairs of a `Use` and a part of its style."""
+        cutoffs = {float(use.settings[part.cut]) for use, part in parts}
+        if len(cutoffs) > 1:
+            raise InputError(f"Coulomb cutoffs of the sub-styles differ ({', '.join(f'{c:g}' for c in sorted(cutoffs))}): "
+                             f"kspace_style {self.style} needs one")
+        return cutoffs.pop()
+
 
 def solve(system, interactions, units) -> KSpace | None:
     """The solver of a scene, ready; None without ``kspace_style``. `interactions.long_range` gets what pair styles must know.
@@ -185,21 +212,17 @@ def solve(system, interactions, units) -> KSpace | None:
         Solver and pair styles do not belong together, cutoffs of several pair styles differ, the box does not fit.
     """
     interactions.long_range = {}
-    uses = [use for use in interactions.uses["pair"] if use.style.solvers]
+    uses = [use for use in interactions.uses["pair"] if use.style.needs(use.settings)]
     if interactions.kspace == "none":
         if uses:
-            raise InputError(f"pair style {uses[0].style.name} needs a kspace_style, such as {next(iter(uses[0].style.solvers))} 1.0e-4")
+            example = next(name for name in EXAMPLES if name in uses[0].style.needs(uses[0].settings))
+            raise InputError(f"pair style {uses[0].style.name} needs a kspace_style, such as {example} 1.0e-4")
         return None
     name, *words = interactions.kspace.split()
     solver = class_of("kspace", name, KSpace).from_words(words, interactions.kspace_modify)
     mine = [use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings)]
     if not mine:
-        raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as lj/cut/coul/long")
-    cutoffs = {float(use.settings[part.cut]) for use in mine for part in use.style.parts
-               if part.long or (part.charged and not use.style.solvers)}
-    if len(cutoffs) > 1:
-        raise InputError(f"Coulomb cutoffs of the sub-styles differ ({', '.join(f'{c:g}' for c in sorted(cutoffs))}): "
-                         f"kspace_style {name} needs one")
-    solver.prepare(system, interactions, units, cutoffs.pop())
+        raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as {solver.partner}")
+    solver.prepare(system, interactions, units, solver.take(mine, interactions, system))
     interactions.long_range = solver.constants
     return solver

@@ -122,6 +122,12 @@ class PPPM(KSpace):
             return math.sqrt(quality / self.n) * self.q2 / self.volume
         return math.sqrt(sum(self.error(h, length) ** 2 for h, length in zip(self.spacing, self.prd)) / 3.0)
 
+    @property
+    def real_error(self) -> float:
+        """Estimated error of forces that the pair part makes; without the empty volume of a slab."""
+        volume = float(self.inner.prod())
+        return 2.0 * self.q2 * math.exp(-(self.g_ewald * self.cutoff) ** 2) / math.sqrt(self.n * self.cutoff * volume)
+
     def balance(self) -> None:
         """The splitting parameter for which pair part and mesh make the same error.
 
@@ -132,8 +138,7 @@ class PPPM(KSpace):
         """
         def difference(g: float) -> float:
             self.g_ewald = g
-            pair = 2.0 * self.q2 * math.exp(-(g * self.cutoff) ** 2) / math.sqrt(self.n * self.cutoff * self.inner.prod())
-            return pair - self.mesh_error
+            return self.real_error - self.mesh_error
 
         g, h = self.g_ewald, 1e-6
         for _ in range(10000):
@@ -170,46 +175,50 @@ def with_small_factors(n: int) -> int:
 class PPPMTerm(KSpaceTerm):
     """Mesh, weights and transforms."""
 
+    def __init__(self, solver):
+        super().__init__(solver)
+        self.order, self.mesh = solver.order, getattr(solver, "mesh", (1, 1, 1))
+
     def make_kernel(self, level):
         if level == 2 and not self.shares.size:
             self._make_shares()
-        return pppm.kernel(level, self.solver.order, self.solver.ad)
+        return pppm.kernel(level, self.order, self.solver.ad)
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads
-        nx, ny, nz = s.mesh
+        nx, ny, nz = self.mesh
         nh = nz // 2 + 1
-        self.numbers, self.pieces, self.aliases = np.array(s.mesh, np.int64), np.zeros((s.order, WIDE)), aliases(s.order)
-        self.pieces[:, :s.order] = pieces(s.order).T
+        self.numbers, self.pieces, self.aliases = np.array(self.mesh, np.int64), np.zeros((self.order, WIDE)), aliases(self.order)
+        self.pieces[:, :self.order] = pieces(self.order).T
         # a sum over images that LAMMPS's estimate finds large enough
         self.images = (np.abs(s.upright) @ (s.g_ewald / (math.pi * self.numbers)) * (-math.log(1e-7)) ** 0.25).astype(np.int64)
-        self.wrap = np.arange(3 * max(s.mesh) + 8)[None] % self.numbers[:, None]
+        self.wrap = np.arange(3 * max(self.mesh) + 8)[None] % self.numbers[:, None]
         self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
         self.lengths, self.own = np.zeros(3), np.zeros((3, 2))
-        self.brick, self.density = np.zeros((nth, nx, ny, nz + s.order + 8)), np.zeros((nx, ny, nz))
+        self.brick, self.density = np.zeros((nth, nx, ny, nz + self.order + 8)), np.zeros((nx, ny, nz))
         m = 1 if s.ad else 3
         self.wave, self.waves = np.zeros((nx, ny, nh), complex), np.zeros((m, nx, ny, nh), complex)
-        self.field, self.packed = np.zeros((m, nx, ny, nz)), np.zeros((nx, ny, (nz + s.order) * m + 16))
+        self.field, self.packed = np.zeros((m, nx, ny, nz)), np.zeros((nx, ny, (nz + self.order) * m + 16))
         self.shares, self.share_field = np.zeros((0, nx, ny, nh), complex), np.zeros((0, nx, ny, nz))
         self.sums = np.zeros((nth, 8))
         self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * WIDE))
         self.forward, self.backward, self.backward_shares = map(Callback, self._transforms(nth))
 
     def _make_shares(self) -> None:
-        nx, ny, nh = self.wave.shape
-        self.shares, self.share_field = np.zeros((7, nx, ny, nh), complex), np.zeros((7, *self.density.shape))
+        nx, ny, nh = self.wave.shape[-3:]
+        self.shares, self.share_field = np.zeros((7, nx, ny, nh), complex), np.zeros((7, *self.mesh))
 
     def _transforms(self, threads: int):
         from scipy import fft
 
         def forward():
-            self.wave[:] = fft.rfftn(self.density, workers=threads)
+            self.wave[:] = fft.rfftn(self.density, axes=(-3, -2, -1), workers=threads)
 
         def backward():
-            self.field[:] = fft.irfftn(self.waves, s=self.density.shape, axes=(1, 2, 3), workers=threads)
+            self.field[:] = fft.irfftn(self.waves, s=self.mesh, axes=(1, 2, 3), workers=threads)
 
         def backward_shares():
-            self.share_field[:] = fft.irfftn(self.shares, s=self.density.shape, axes=(1, 2, 3), workers=threads)
+            self.share_field[:] = fft.irfftn(self.shares, s=self.mesh, axes=(1, 2, 3), workers=threads)
         return forward, backward, backward_shares
 
     def make_room(self, slots):

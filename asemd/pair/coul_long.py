@@ -23,14 +23,14 @@ def coul_long_d2(r2, qq, g_ewald):
 
 
 def long_range(*solvers: str):
-    """Mark a Coulomb function as the part that these kinds of ``kspace_style`` leave to the pair style."""
+    """Mark a function as the part that these kinds of ``kspace_style`` leave to the pair style; one without charges has C6 first."""
     def mark(function):
         function.long, function.solvers = True, solvers
         return function
     return mark
 
 
-EWALD = ("pppm", "ewald")
+EWALD = ("pppm", "ewald", "ewald/disp")
 
 
 @pair("coul/long", settings="cut", coeff="", settings_example="10.0", example="", see="LAMMPS manual, pair_style coul/long",

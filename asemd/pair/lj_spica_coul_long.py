@@ -13,11 +13,11 @@ from asemd.style import register
 class SpicaLongPair(SpicaPair):
     """Words of lj/spica with a second cutoff."""
 
-    def __init__(self, name: str):
-        PairStyle.__init__(self, name, [(lj_spica, "cut_lj"), (coul_long, "cut_coul")], settings="cut_lj [cut_coul]",
+    def __init__(self, name: str, coulomb=coul_long, doc: str = inspect.getdoc(sys.modules[__name__])):
+        PairStyle.__init__(self, name, [(lj_spica, "cut_lj"), (coulomb, "cut_coul")], settings="cut_lj [cut_coul]",
                            coeff="lj_type epsilon sigma [cut_lj]", rows="front n m", defaults={"cut_coul": "cut_lj"},
                            units={"lj_type": "word", "epsilon": "energy"}, settings_example="8.0 10.0", example="lj9_6 0.1 3.0 7.5",
-                           see="LAMMPS manual, pair_style lj/spica/coul/long", doc=inspect.getdoc(sys.modules[__name__]))
+                           see=f"LAMMPS manual, pair_style {name}", doc=doc)
 
 
 style = register(SpicaLongPair("lj/spica/coul/long"))

@@ -1,0 +1,105 @@
+"""Sums over waves of charges or of the numbers whose products are C6, all with the same waves; see `asemd.kernels.ewald`."""
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from asemd.kernels.ewald import BLOCK, fields, first_two, is_same, phases, shares, slab, stretched, structure, weigh
+from asemd.kernels.generate import Builder
+from asemd.kernels.threads import barrier
+
+ENERGY = PER_ATOM = False
+
+
+def weigh_dispersion(numbers, volume, g, waves):
+    """Weights and virials of the attraction, for waves that `weigh` has seen."""
+    front = -math.pi * math.sqrt(math.pi) / (12.0 * volume)
+    for m in range(numbers.shape[0]):
+        w = waves[m]
+        k0, k1, k2 = w[1], w[2], w[3]
+        kk = k0 * k0 + k1 * k1 + k2 * k2
+        k = math.sqrt(kk)
+        b = 0.5 * k / g
+        bell, tail = math.exp(-b * b), math.sqrt(math.pi) * math.erfc(b)
+        value = k * kk * (tail + (0.5 / (b * b) - 1.0) / b * bell)
+        w[0] = front * value
+        v = 3.0 * k * (tail - bell / b) / value
+        w[4], w[5], w[6] = 1.0 + v * k0 * k0, 1.0 + v * k1 * k1, 1.0 + v * k2 * k2
+        w[7], w[8], w[9] = v * k0 * k1, v * k0 * k2, v * k1 * k2
+
+
+def sums_over_waves(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, signs, numbers, most, waves, held, inverse, table, values,
+                    all_sums, sums, constants, acc, energy, virial):
+    """All of it for one thread, of charges or, where `factors (ntypes + 1, n)` has rows, of these numbers; `signs (n,)` of
+    their products.
+
+    `constants` as in `asemd.kernels.ewald.ewald`, then the sums of C6 of all pairs and of atoms with themselves, and those of each of the
+    numbers.
+    """
+    g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
+    attraction = factors.shape[0] > 0
+    if tid == 0:
+        if not is_same(box, stretch, held):
+            stretched(box, stretch, held[:3], inverse)
+            held[3, 0] = weigh(numbers, held[:3], g, waves)
+            if attraction:
+                weigh_dispersion(numbers, held[3, 0], g, waves)
+    barrier(meeting)
+    volume, n = held[3, 0], values.shape[0]
+    self_energy, all_energy = -scale * g / math.sqrt(math.pi), -0.5 * scale * math.pi / (g * g * volume)
+    all_pressure = -all_energy        # LAMMPS's sign for charges that do not add up to 0
+    if attraction:
+        scale, self_energy, all_energy = 1.0, g**6 / 12.0, -math.pi * math.sqrt(math.pi) * g**3 / (6.0 * volume)
+        all_pressure = all_energy
+    for c in range(n):
+        for i in range(lo, hi):
+            values[c, i] = factors[types[i], c] if attraction else q[i]
+    phases(x, inverse, lo, hi, most, table)
+    for c in range(n):
+        structure(values[c], numbers, table, lo, hi, all_sums[tid, c])
+    barrier(meeting)
+    total = all_sums[0].copy()
+    for t in range(1, all_sums.shape[0]):
+        total += all_sums[t]
+    for c in range(n):
+        fields(f, values[c], signs[c] * scale, numbers, waves, total[c], table, lo, hi, slabs == 2.0)
+    if ENERGY and tid == 0:
+        for m in range(numbers.shape[0]):
+            e = 0.0
+            for c in range(n):
+                e += signs[c] * scale * waves[m, 0] * (total[c, m, 0] ** 2 + total[c, m, 1] ** 2)
+            acc[0] += e
+            for k in range(6):
+                acc[2 + k] += e * waves[m, 4 + k]
+        own, together = (constants[8], constants[7]) if attraction else (qsqsum, qsum * qsum)
+        acc[0] += self_energy * own + all_energy * together
+        for k in range(3):
+            acc[2 + k] += all_pressure * together
+    if PER_ATOM:
+        for c in range(n):
+            shares(values[c], signs[c] * scale, numbers, waves, total[c], table, lo, hi, energy, virial)
+            at_zero = signs[c] * constants[9 + c] if attraction else qsum
+            for i in range(lo, hi):
+                share = all_energy * values[c, i] * at_zero
+                energy[i] += signs[c] * self_energy * values[c, i] ** 2 + share
+                for k in range(3):
+                    virial[k, i] += share * all_pressure / all_energy
+    if slabs == 1.0 and not attraction:
+        height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
+        slab(meeting, tid, x, f, q, constants[6], lo, hi, scale, qsum, height, volume, sums, acc, energy)
+    barrier(meeting)
+
+
+@cache
+def kernel(level: int):
+    """`sums_over_waves` with that level, see `asemd.kspace.term.KSpaceTerm`."""
+    b = Builder("Ewald summation of charges and dispersion")
+    b.line("from asemd.kernels.threads import barrier")
+    b.constant("BLOCK", BLOCK)
+    b.constant("ENERGY", level > 0)
+    b.constant("PER_ATOM", level > 1)
+    for f in (weigh, weigh_dispersion, phases, first_two, structure, fields, shares, is_same, slab):
+        b.function(f, fast=True)
+    b.function(stretched)
+    b.function(sums_over_waves)
+    return b.build().sums_over_waves

@@ -1,0 +1,78 @@
+"""The attraction -C6 / r^6 as a sum of products of numbers that each type of atoms has, for solvers that go beyond the cutoff."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from asemd.errors import InputError
+from asemd.pairing import complete
+
+
+class Dispersion:
+    """C6 of types i and j as the sum over m of ``signs[m] * factors[i, m] * factors[j, m]``.
+
+    Parameters
+    ----------
+    rule : str
+        ``geometric`` takes one number, the root of C6 of i-i; ``arithmetic`` mixes epsilon and sigma of i-i and j-j; ``none`` takes C6
+        of all pairs of types as they are.
+    filled : mapping
+        (i, j) -> complete coefficients of the pairs that have the attraction.
+    derived : callable
+        ``derived(coefficients, settings)["C6"]``.
+
+    Attributes
+    ----------
+    factors (ntypes + 1, n), signs (n,), own (ntypes + 1,)
+        `own`: C6 of a type with itself.
+    """
+
+    def __init__(self, rule: str, filled, derived, settings, ntypes: int):
+        self.rule, c6 = rule, np.zeros((ntypes + 1, ntypes + 1))
+        for i, j in filled:
+            a, b = filled.get((i, i)), filled.get((j, j))
+            if rule == "none" or not a or not b:
+                value = derived(filled[i, j], settings)["C6"]
+            elif rule == "geometric":
+                value = math.sqrt(abs(derived(a, settings)["C6"])) * math.sqrt(abs(derived(b, settings)["C6"]))
+            elif "sigma" in a:
+                mixed = {"epsilon": math.sqrt(a["epsilon"] * b["epsilon"]), "sigma": 0.5 * (a["sigma"] + b["sigma"])}
+                value = derived(mixed, settings)["C6"]
+            else:
+                raise InputError("arithmetic mixing of dispersion needs a pair style with epsilon and sigma: use mix geometric")
+            c6[i, j] = c6[j, i] = value
+        self.own = np.diag(c6).copy()
+        if rule == "geometric":
+            self.factors, self.signs = np.sqrt(self.own)[:, None], np.ones(1)
+        else:
+            values, vectors = np.linalg.eigh(c6)
+            kept = abs(values) > 1e-15 * abs(values).max(initial=0.0)
+            self.factors, self.signs = np.ascontiguousarray(vectors[:, kept] * np.sqrt(abs(values[kept]))), np.sign(values[kept])
+
+    def sums(self, types) -> tuple[float, float, np.ndarray]:
+        """Sum of C6 over all pairs of atoms, ordered and with themselves; over atoms with themselves; of each factor over atoms."""
+        total = self.factors[types].sum(axis=0)
+        return float(self.signs @ (total * total)), float(self.own[types].sum()), total
+
+
+def dispersion_of(uses, interactions, system, style: str, mix: str = "pair") -> tuple[Dispersion | None, list]:
+    """The dispersion that pair styles leave to a solver, and its parts (`Use`, part); None if there is none; `mix`
+    as in ``kspace_modify mix/disp``.
+
+    Raises
+    ------
+    InputError
+        More than one pair style has it, or a rule of mixing that cannot be written as products.
+    """
+    parts = [(use, part) for use in uses for part in use.style.variant(use.settings).parts if part.long and not part.charged]
+    if not parts:
+        return None, []
+    if len(parts) > 1:
+        raise InputError(f"kspace_style {style}: only one pair style can have a long-range dispersion")
+    use = parts[0][0]
+    rule = {"pair": interactions.modified(use, "mix") or use.style.mix_rule, "geom": "geometric"}.get(mix, mix)
+    if rule not in ("geometric", "arithmetic", "none"):
+        raise InputError(f"kspace_style {style}: pair_modify mix must be geometric or arithmetic, not {rule}")
+    filled = next(filled for other, filled in complete(interactions, system.counts["ntypes"]) if other is use)
+    return Dispersion(rule, filled, use.style.derived, use.settings, system.counts["ntypes"]), parts
