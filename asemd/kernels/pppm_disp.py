@@ -231,7 +231,7 @@ def quality(numbers, lengths, g, attractive):
                                 s2 += u * term / qq * dot
                             s3 += u
                             s4 += u * qq
-                total += s1 - s2 * s2 / (s3 * (s4 if AD else kk))
+                total += s1 - s2 * s2 / (s3 * (s4 if AD else s3 * kk))
     return total
 
 
