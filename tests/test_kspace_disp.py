@@ -37,7 +37,7 @@ CASES = {
     "pppm/disp, C6 as given": case("lj/long/coul/long long off 5.0", "kspace_style pppm/disp 1e-4",
                                    f"kspace_modify {FORCES} mix/disp none", coeff=[*LJ, "pair_coeff 1 2 0.2 2.5"]),
     "pppm/cg": case("lj/cut/coul/long 5.0", "set type 3 charge 0.01", "kspace_style pppm/cg 1e-4 0.1", modify="pair_modify table 0"),
-    "msm": case("lj/cut/coul/msm 5.0", "kspace_style msm 1e-4",
+    "msm": case("lj/cut/coul/msm 5.0", "set atom 1*32 charge 0.4", "set atom 33*64 charge -0.4", "kspace_style msm 1e-4",
                 "kspace_modify compute no cutoff/adjust no pressure/scalar no order 8", modify="pair_modify table 0"),
 }
 
@@ -82,8 +82,10 @@ LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
     (["kspace_style pppm/cg 1e-4 0.1 3"], "smallest charge, got 3 words"),
     (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "run 0"], "compute no"),
     (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "kspace_modify compute no", "run 0"], "cutoff/adjust no"),
-    (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "kspace_modify compute no cutoff/adjust no order 5", "run 0"],
-     "order must be 4, 6, 8 or 10")])
+    (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "kspace_modify compute no cutoff/adjust no", "run 0"],
+     "add up to 2"),
+    (["set atom 2 charge -1", "pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4",
+      "kspace_modify compute no cutoff/adjust no order 5", "run 0"], "order must be 4, 6, 8 or 10")])
 def test_what_is_refused(lines, message):
     lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
     for line in SCENE:

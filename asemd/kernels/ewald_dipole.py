@@ -156,8 +156,8 @@ def ewald_dipole(meeting, tid, x, f, q, lo, hi, box, origin, mu, row, torque, ro
     if tid == 0:
         if not is_same(box, stretch, held):
             stretched(box, stretch, held[:3], inverse)
-            density = constants[6] / size(held[:3])
-            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, density, constants[7], constants[8], room, most))
+            density = constants[7] / size(held[:3])
+            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, density, constants[8], constants[9], room, most))
             held[3, 0] = weigh(room[:int(held[3, 1])], held[:3], g, all_waves)
             top = table.shape[1] - 1
             for d in range(3):

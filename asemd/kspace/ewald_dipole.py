@@ -99,7 +99,7 @@ class EwaldDipoleTerm(EwaldTerm):
     def prepare(self, engine):
         super().prepare(engine)
         self.sfac = np.zeros((*self.sfac.shape[:2], 6))
-        self.constants[[2, 3, 6]] = 0.0, self.solver.squares, self.solver.mu2
+        self.constants[[2, 3, 7]] = 0.0, self.solver.squares, self.solver.mu2
 
     def of_solver(self, engine, tid):
         return engine.system.extra["mu"], engine.state.row, engine.buffers[tid, 3:], *super().of_solver(engine, tid)

@@ -34,6 +34,8 @@ class MSM(KSpace):
         return 0.0
 
     def choose(self, system):
+        if abs(self.qsum) > 1e-5:
+            raise InputError(f"kspace_style {self.style}: charges must add up to 0, here they add up to {self.qsum:g}")
         order = self.modify["order"] or 10
         if order not in (4, 6, 8, 10):
             raise InputError(f"kspace_style {self.style}: order must be 4, 6, 8 or 10, not {order}")
