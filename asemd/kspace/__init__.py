@@ -215,7 +215,8 @@ def solve(system, interactions, units) -> KSpace | None:
     uses = [use for use in interactions.uses["pair"] if use.style.needs(use.settings)]
     if interactions.kspace == "none":
         if uses:
-            example = next(name for name in EXAMPLES if name in uses[0].style.needs(uses[0].settings))
+            needed = uses[0].style.needs(uses[0].settings)
+            example = next((name for name in EXAMPLES if name in needed), min(needed))
             raise InputError(f"pair style {uses[0].style.name} needs a kspace_style, such as {example} 1.0e-4")
         return None
     name, *words = interactions.kspace.split()
