@@ -78,6 +78,108 @@ thermo 50
 """
 
 
+MOLECULE = """SPC/E water
+
+3 atoms
+2 bonds
+1 angles
+
+Coords
+
+1 0.0 0.0 0.0
+2 0.81649 0.57736 0.0
+3 -0.81649 0.57736 0.0
+
+Types
+
+1 1
+2 2
+3 2
+
+Charges
+
+1 -0.8476
+2 0.4238
+3 0.4238
+
+Bonds
+
+1 1 1 2
+2 1 1 3
+
+Angles
+
+1 1 2 1 3
+
+Special Bond Counts
+
+1 2 0 0
+2 1 1 0
+3 1 1 0
+
+Special Bonds
+
+1 2 3
+2 1 3
+3 1 2
+"""
+WATER_STYLES = """pair_style lj/cut/coul/long 10.0
+bond_style harmonic
+angle_style harmonic
+special_bonds lj/coul 0.0 0.0 0.0
+kspace_style pppm 1.0e-4
+"""
+WATER_COEFFICIENTS = """pair_coeff * * 0.0 1.0
+pair_coeff 1 1 0.15535 3.166
+bond_coeff 1 600.0 1.0
+angle_coeff 1 75.0 109.47
+neighbor 2.0 bin
+"""
+RELAX = """units real
+atom_style full
+region box block 0 34.1 0 34.1 0 34.1
+create_box 2 box bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 1 extra/special/per/atom 2
+molecule water {molecule}
+lattice sc 3.1
+create_atoms 0 box mol water 4711
+mass 1 15.9994
+mass 2 1.008
+{styles}{coefficients}timestep 0.5
+fix 1 all nve/limit 0.05
+fix 2 all langevin 300.0 300.0 50.0 4711
+thermo 100
+run 2000
+write_data {data}
+"""
+WATER = """units real
+atom_style full
+{styles}read_data {data} nocoeff
+{coefficients}replicate {copies}
+neigh_modify every 1 delay 2 check yes
+velocity all create 300.0 6244325 loop geom
+fix 1 all shake 0.0001 20 0 b 1 a 1
+fix 2 all nve
+timestep 2.0
+thermo 100
+"""
+
+
+def water(copies: str = "2 2 2") -> str:
+    """SPC/E water held by SHAKE, charges on a mesh: 31,944 atoms (1331 molecules, eight times); the data file is kept in the temporary
+    folder."""
+    folder = kept()
+    data = folder / "water.data"
+    if not data.exists():
+        (folder / "water.molecule").write_text(MOLECULE)
+        text = RELAX.format(molecule=folder / "water.molecule", data=folder / "water.new", styles=WATER_STYLES,
+                            coefficients=WATER_COEFFICIENTS)
+        (folder / "in.relax").write_text(text)
+        subprocess.run([sys.executable, "-m", "asemd.cli", "run", str(folder / "in.relax"), "--quiet"], check=True, cwd=folder,
+                       env={**os.environ, "PYTHONPATH": str(ROOT)})
+        os.replace(folder / "water.new", data)
+    return WATER.format(styles=WATER_STYLES, data=data, coefficients=WATER_COEFFICIENTS, copies=copies)
+
+
 def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
     """The melt of LAMMPS's ``bench/in.lj``: 4 atoms per cell, 32,000 by default."""
     return LJ.format(cells=cells, neigh=neigh)
