@@ -122,7 +122,7 @@ class Topology:
     def __post_init__(self):
         for kind, width in WIDTHS.items():
             atoms, types = getattr(self, kind + "s"), getattr(self, kind + "_types")
-            if isinstance(atoms, tuple) and not atoms:
+            if isinstance(atoms, tuple) and not atoms and (types is None or np.size(types) == 0):
                 setattr(self, kind + "s", np.zeros((0, width), np.int32))
                 setattr(self, kind + "_types", np.zeros(0, np.int32))
                 continue

@@ -71,7 +71,7 @@ line("plural", "groups g type 1", "group")
 line("wrong suffix of a style", "fix 2 all nve/omp/gpu", "nve/omp/gpu")
 line("style of another category", "fix 2 all temp", "temp")
 line("bond style for a pair", "pair_style harmonic 2.5", "harmonic")
-line("style that is missing here", "pair_style eam/alloy", "eam/alloy;not supported")
+line("style that is missing here", "pair_style comb", "comb")
 
 # ---- scripts: words in another order
 line("dump file before the interval", "dump d all atom x.dump 100", "x.dump")

@@ -34,7 +34,7 @@ def gather_all(b, table, entries, o, shifts):
 
 @njit
 def scatter(b, table, entries):
-    scatter8(b, 8, ROW, table, entries, 3, MASK)
+    scatter8(b, 8, ROW, table, entries, 3, MASK, 3)
 
 
 @pytest.fixture

@@ -87,7 +87,7 @@ def test_settings_travel_and_end_with_the_style(tmp_path):
 
 def test_dry_tells_mistakes_in_both_lines(tmp_path, capsys):
     script = tmp_path / "in.x"
-    script.write_text("units real\nkspace_style pppm 1e-4\nkspace_modify order 4\nkspace_modify ordr 5\n")
+    script.write_text("units real\nkspace_style pppn 1e-4\nkspace_modify order 4\nkspace_modify ordr 5\n")
     assert cli.main(["run", "--dry", str(script)]) == 1
     err = capsys.readouterr().err
-    assert "pppm is not supported" in err and "did you mean order" in err and "before a kspace_style" not in err and err.count("ERROR") == 2
+    assert "did you mean pppm" in err and "did you mean order" in err and "before a kspace_style" not in err and err.count("ERROR") == 2

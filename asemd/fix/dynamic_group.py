@@ -63,9 +63,15 @@ class DynamicGroup(Fix):
     def setup(self, loop):
         self.choose(loop, False)
 
+    def post_integrate(self, loop):
+        """Under ``run_style respa``, after each of the innermost moves of its steps."""
+        if hasattr(loop, "levels") and loop.step % self.every == 0:
+            self.choose(loop)
+
     def pre_force(self, loop):
         """On its steps, when atoms have come and gone."""
-        self.choose(loop)
+        if not hasattr(loop, "levels"):
+            self.choose(loop)
 
     def choose(self, loop, moved: bool = True) -> None:
         """Set the group, here and in the loop; `moved`: the system and what formulas see are not of this step yet."""
