@@ -217,6 +217,7 @@ class Box:
             for step, off in ((1.0, new >= hi), (-1.0, new < lo)):     # rounding next to a face
                 new[off] -= step * length
                 n[off] += step
+            n[new >= hi] += 1.0        # neither here nor a period down: at the lower face
             new = np.where((new < lo) | (new >= hi), lo, new)
             x[out, k] = new
             image[out, k] += n.astype(image.dtype)
