@@ -279,7 +279,8 @@ class _Reader(DataText):
         system = System(
             box=whole.shrink_wrapped(x), x=x, id=ids, type=a["type"][order], image=image, v=v, mass=mass, topology=top, counts=counts,
             molecule=a["molecule"][order] if "molecule" in a else None, q=a["q"][order] if "q" in a else None, labels=self.labels,
-            units=self.units, atom_style=self.atom_style, dimension=self.dimension, rmass=rmass, extra=extra, rotation=rotation)
+            units=self.units, atom_style=self.atom_style, dimension=self.dimension, rmass=rmass, rotation=rotation,
+            extra={name: np.ascontiguousarray(values) for name, values in extra.items()})
         if flagged and self.onto is None:
             self.check_images(system, line)
         return system
