@@ -33,6 +33,7 @@ says, special_bonds weights other than 0 do not matter, and there is no energy o
 from __future__ import annotations
 
 import inspect
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -43,7 +44,7 @@ from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 from asemd.potential_file import PotentialFile
 
 
-class ManyBody(PairStyle):
+class ManyBody(PairStyle, ABC):
     """A many-body pair style.
 
     Parameters
@@ -78,13 +79,13 @@ class ManyBody(PairStyle):
 
     # ------------------------------------------------------------------ for styles to write ---
 
+    @abstractmethod
     def read(self, file: PotentialFile, elements: tuple[str, ...], settings: Mapping[str, Any]) -> Any:
         """What the file says about the elements (without NULL, each once)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def pack_pairs(self, settings, filled, ntypes, units, shift=False) -> PairTables:
         """Squared cutoffs by pair of types as ``rows[0]`` (0: no interaction), constants and arrays of the kernel."""
-        raise NotImplementedError
 
     def fits(self, tables: PairTables) -> bool:
         """Whether `block` can compute with these tables."""

@@ -9,6 +9,7 @@ Whatever decides about digits is LAMMPS's: choice of the parameters, estimates o
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -23,7 +24,7 @@ __all__ = ["KSpace", "solve"]
 EXAMPLES = ("pppm", "ewald", "pppm/disp", "ewald/disp", "msm")      # the first one that fits is named in messages
 
 
-class KSpace:
+class KSpace(ABC):
     """A long-range solver.
 
     Parameters
@@ -157,9 +158,9 @@ class KSpace:
         g = self.accuracy * math.sqrt(self.n * self.cutoff * self.inner.prod()) / (2.0 * self.q2)
         return (1.35 - 0.15 * math.log(self.accuracy)) / self.cutoff if g >= 1.0 else math.sqrt(-math.log(g)) / self.cutoff
 
+    @abstractmethod
     def choose(self, system) -> None:
         """Vectors or mesh for the accuracy."""
-        raise NotImplementedError
 
     @property
     def constants(self) -> dict[str, float]:
@@ -175,13 +176,9 @@ class KSpace:
         """What LAMMPS's log says of the solver."""
         return []
 
-    def term(self, engine):
-        """The `asemd.term.Term` of this solver."""
-        raise NotImplementedError
-
+    @abstractmethod
     def terms(self, engine) -> list:
-        """All terms, where there are several."""
-        return [self.term(engine)]
+        """The `asemd.term.Term` of this solver, or several."""
 
     def take(self, uses, interactions, system) -> float:
         """Look at the pair styles that leave their long-range part to this solver; returns the cutoff of that part.

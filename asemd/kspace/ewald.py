@@ -38,8 +38,8 @@ class Ewald(KSpace):
                 f"  KSpace vectors: actual max1d max3d = {self.waves} {most} {4 * most**3 + 6 * most**2 + 3 * most}",
                 f"                  kxmax kymax kzmax  = {' '.join(map(str, self.most[0]))}"]
 
-    def term(self, engine):
-        return EwaldTerm(self)
+    def terms(self, engine):
+        return [EwaldTerm(self)]
 
 
 class EwaldTerm(KSpaceTerm):

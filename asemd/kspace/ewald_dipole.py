@@ -87,8 +87,8 @@ class EwaldDipole(Ewald):
         return ["EwaldDipole initialization ...", table, vectors, "  estimated absolute RMS force accuracy = 0",
                 "  estimated relative force accuracy = 0", *rest]
 
-    def term(self, engine):
-        return EwaldDipoleTerm(self)
+    def terms(self, engine):
+        return [EwaldDipoleTerm(self)]
 
 
 class EwaldDipoleTerm(EwaldTerm):

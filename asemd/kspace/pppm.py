@@ -156,8 +156,8 @@ class PPPM(KSpace):
                 f"  stencil order = {self.order}", f"  estimated absolute RMS force accuracy = {total:.8g}",
                 f"  estimated relative force accuracy = {total / self.two_charges:.8g}"]
 
-    def term(self, engine):
-        return PPPMTerm(self)
+    def terms(self, engine):
+        return [PPPMTerm(self)]
 
 
 def with_small_factors(n: int) -> int:

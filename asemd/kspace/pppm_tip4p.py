@@ -21,8 +21,8 @@ class PPPMTIP4P(PPPM):
         self.sites = use.style.sites(use.settings, interactions)
         super().prepare(system, interactions, units, cutoff)
 
-    def term(self, engine):
-        return TIP4PTerm(self)
+    def terms(self, engine):
+        return [TIP4PTerm(self)]
 
 
 class TIP4PTerm(OnSites, PPPMTerm):

@@ -1,6 +1,7 @@
 """A long-range solver as a term of the engine."""
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 
 import numpy as np
@@ -45,9 +46,9 @@ class KSpaceTerm(Term):
         return (engine.meeting, tid, s.x, engine.buffers[tid], s.q, ns * tid // nth, ns * (tid + 1) // nth, s.box.vectors,
                 s.box.origin, *self.of_solver(engine, tid), engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid])
 
+    @abstractmethod
     def of_solver(self, engine, tid: int) -> tuple:
         """Arguments of this solver's kernels."""
-        raise NotImplementedError
 
     def describe(self, engine, item, value):
         return SimulationError(f"kspace_style {self.solver.style}: the energy is not finite")

@@ -14,7 +14,7 @@ sys.path.insert(0, str(HERE.parent))
 import transport  # noqa: E402
 
 ROUTES = {name: (f"in.{name}", {}) for name in ("shear", "exchange", "green-kubo", "cosine", "sllod")}
-QUICK = {"cells": 4, "equil": 500, "block": 1000, "steps": 4000, "repeat": 205}
+QUICK = {"cells": 4, "equil": 1000, "block": 2000, "steps": 16000, "repeat": 205}
 RATE, A, CUT = 0.1, 0.03, 4.0       # of the scripts; end of the integral of Green and Kubo, time units
 PUBLISHED = {"Lautenschlaeger and Hasse 2019": 0.837, "Galliero et al. 2005, no cutoff": 0.820}
 
