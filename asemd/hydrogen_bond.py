@@ -31,6 +31,7 @@ class HydrogenBond(PairStyle):
     """
 
     many = True
+    restarts = False
     elements = False
     exact = True
     extra = 2                 # numbers for compute pair: bonds, and their energy

@@ -64,6 +64,7 @@ class ManyBody(PairStyle, ABC):
     """
 
     many = True
+    restarts = False               # potential files are not kept
     block_helpers: tuple[Callable, ...] = ()       # functions that `block` calls
 
     def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,

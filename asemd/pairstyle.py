@@ -118,6 +118,7 @@ class PairStyle(Style):
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
+    restarts = True                  # restart files keep settings and coefficients
     needs_newton = False             # newton off is refused, as by LAMMPS
     on_sites = False                 # it acts on charges that are not on atoms, see `asemd.charge_sites`
 

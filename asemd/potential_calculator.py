@@ -10,7 +10,8 @@ from asemd.registry import find
 
 SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.mod": "tersoff/mod", ".tersoff.modc": "tersoff/mod/c",
             ".tersoff.zbl": "tersoff/zbl", ".gw": "gw", ".gw.zbl": "gw/zbl", ".vashishta": "vashishta", ".edip": "edip/multi",
-            ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic"}
+            ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic",
+            ".extep": "extep", ".3b": "threebody/table"}
 
 
 class Potential(ForceField):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from asemd.errors import InputError, Where
 from asemd.tabulated import find_file
@@ -42,9 +43,9 @@ class Record:
     def whole(self, name: str = "a whole number") -> int:
         return self._as(int, name, "a whole number")
 
-    def numbers(self, names: str) -> dict[str, float]:
-        """As many numbers as there are names, by name."""
-        return {name: self.number(name) for name in names.split()}
+    def numbers(self, names: str) -> dict[str, Any]:
+        """As many numbers as there are names, by name; ``*name`` is a word."""
+        return {name.lstrip("*"): self.word(name[1:]) if name[0] == "*" else self.number(name) for name in names.split()}
 
     def _as(self, kind: Callable, name: str, expected: str):
         word = self.word(name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -74,7 +74,8 @@ def find_file(name: str, what: str) -> Path:
     raise InputError(f"{what}: cannot open file {name}: no such file")
 
 
-def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str, texts: Collection[str] = ()) -> Section:
+def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str, texts: Collection[str] = (),
+                 lines_of: Callable[[int], int] = int) -> Section:
     """Read one section of a table file.
 
     Parameters
@@ -89,6 +90,8 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         Command and style, for messages.
     texts : collection of str, optional
         Further parameters that are followed by one word, such as a file name.
+    lines_of : callable, optional
+        How many lines of numbers there are for N; N of them by default.
 
     Raises
     ------
@@ -142,17 +145,19 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         if re.fullmatch(r"\d+", rows[0][1][0]):
             raise wrong(f"the line after the parameters of table {keyword} must be blank", k + 1)
         rows = rows[1:]
+    n = lines_of(n)
+    total = f"N = {n}" if lines_of is int else str(n)
     rows = rows[:n]
     values = np.zeros((n, columns))
     for m, (k, row) in enumerate(rows):
         if not re.fullmatch(r"\d+", row[0]):
-            raise wrong(f"table {keyword} has {m} of N = {n} lines", k)
+            raise wrong(f"table {keyword} has {m} of {total} lines", k)
         try:
             values[m] = [float(w) for w in row[:columns]]
         except ValueError:
             raise wrong(f"line {m + 1} of table {keyword} must have {columns} numbers", k) from None
     if len(rows) < n:
-        raise wrong(f"table {keyword} has {len(rows)} of N = {n} lines: the file ends too early", rows[-1][0] if rows else k)
+        raise wrong(f"table {keyword} has {len(rows)} of {total} lines: the file ends too early", rows[-1][0] if rows else k)
     if not np.isfinite(values).all():
         raise wrong(f"table {keyword} has a number that is not finite", rows[int(np.argwhere(~np.isfinite(values))[0, 0])][0])
     return Section(name, keyword, parameters, values, found[1] if found else "", Where(name, at + 1, lines[at]),

