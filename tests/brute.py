@@ -58,6 +58,29 @@ def images(cell: np.ndarray, periodic, reach: float) -> np.ndarray:
     return np.array(list(itertools.product(*(range(-c, c + 1) for c in counts))), float) @ cell
 
 
+def pairs(x, cell, periodic, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """All pairs closer than `reach`, each once, over all images: i <= j, and the vector from j to i, in no order.
+
+    Atoms may stand anywhere. Of an atom and its own image, the vector whose image comes first is kept.
+    """
+    x, cell, periodic = np.asarray(x, float).reshape(-1, 3), np.asarray(cell, float), np.asarray(periodic, bool)
+    inverse = np.linalg.inv(cell)
+    base = np.where(periodic, np.floor(x @ inverse), 0.0) @ cell      # so that images are few
+    shifts, y, found = images(cell, periodic, reach), x - base, ([], [], [])
+    square = (y * y).sum(axis=1)
+    for number, shift in enumerate(shifts):
+        z = y + shift
+        rough = square[:, None] + (z * z).sum(axis=1)[None] - 2.0 * y @ z.T
+        slack = 1e-9 * (square.max(initial=0.0) + (z * z).sum(axis=1).max(initial=0.0))
+        i, j = np.nonzero(rough < reach * reach + slack)
+        keep = (i < j) | ((i == j) & (number < len(shifts) // 2))
+        d = y[i[keep]] - z[j[keep]]
+        near = (d * d).sum(axis=1) < reach * reach
+        for out, values in zip(found, (i[keep][near], j[keep][near], d[near])):
+            out.append(values)
+    return np.concatenate(found[0]), np.concatenate(found[1]), np.concatenate(found[2])
+
+
 def lj_coul(x, cell, periodic, type_, q, epsilon, sigma, cut, cut_coul=0.0, qqr2e=1.0, special=None, excluded=None) -> Sum:
     """The sum.
 
