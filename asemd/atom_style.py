@@ -10,10 +10,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.quaternion import turned, unit
 
 POSITION = ("x", "y", "z")
 DIPOLE, SPIN = ("mux", "muy", "muz"), ("wx", "wy", "wz")
+MOMENTUM = ("lx", "ly", "lz")
 SPHERE = ("diameter", "density")
+ELLIPSOID = ("ellipsoid", "density")
+SPINS = {"omega": SPIN, "angmom": MOMENTUM}
+SHAPE, TURN = ("shapex", "shapey", "shapez"), ("quatw", "quati", "quatj", "quatk")      # of section Ellipsoids
 COLUMNS = {
     "atomic": ("id", "type", *POSITION),
     "charge": ("id", "type", "q", *POSITION),
@@ -23,13 +28,16 @@ COLUMNS = {
     "full": ("id", "molecule", "type", "q", *POSITION),
     "dipole": ("id", "type", "q", *POSITION, *DIPOLE),
     "sphere": ("id", "type", *SPHERE, *POSITION),
+    "ellipsoid": ("id", "type", *ELLIPSOID, *POSITION),
 }
 # what an atom style can be bonded by
 BONDED = {"bond": ("bond",), "angle": ("bond", "angle"), "molecular": ("bond", "angle", "dihedral", "improper"),
           "full": ("bond", "angle", "dihedral", "improper"), "template": ("bond", "angle", "dihedral", "improper")}
+UPRIGHT = (1.0, 0.0, 0.0, 0.0)      # the orientation of a body whose axes are x, y and z
 NAMES = (*COLUMNS, "hybrid")
 # per-atom arrays beside those every system has -> their unit
-UNITS = {"mu": "dipole", "torque": "energy", "radius": "distance", "omega": "1/time"}
+UNITS = {"mu": "dipole", "torque": "energy", "radius": "distance", "omega": "1/time", "shape": "distance", "quaternions": "",
+         "angmom": "mass*distance*velocity"}
 
 
 def parts(style: str) -> tuple[str, ...]:
@@ -51,7 +59,8 @@ def columns(style: str) -> tuple[str, ...]:
 
 def velocity_columns(style: str) -> tuple[str, ...]:
     """The columns of section Velocities."""
-    return ("id", "vx", "vy", "vz", *(SPIN if "sphere" in parts(style) else ()))
+    more = {"sphere": SPIN, "ellipsoid": MOMENTUM}
+    return ("id", "vx", "vy", "vz", *(c for name in parts(style) for c in more.get(name, ())))
 
 
 def bonded(style: str) -> tuple[str, ...]:
@@ -74,8 +83,14 @@ def volume(radius: np.ndarray) -> np.ndarray:
     return np.where(radius > 0.0, 4.0 / 3.0 * math.pi * radius**3, 1.0)
 
 
+def ellipsoid_volume(shape: np.ndarray) -> np.ndarray:
+    """Volumes of ellipsoids with diameters (n, 3); 1 for points, whose density is their mass."""
+    return np.where(shape[:, 0] > 0.0, math.pi / 6.0 * shape.prod(axis=1), 1.0)
+
+
 def fresh(style: str, n: int) -> dict:
-    """Charges, masses and further arrays of `n` new atoms, as arguments of `asemd.system.System`: spheres have diameter and density 1."""
+    """Charges, masses and further arrays of `n` new atoms, as arguments of `asemd.system.System`: spheres have diameter and density 1,
+    those of style ellipsoid are points of mass 1."""
     out: dict = {"atom_style": style, "q": np.zeros(n) if has(style, "q") else None, "extra": {}}
     if has(style, "mux"):
         out["extra"] |= {"mu": np.zeros((n, 3)), "torque": np.zeros((n, 3))}
@@ -83,11 +98,38 @@ def fresh(style: str, n: int) -> dict:
         radius = np.full(n, 0.5)
         out["rmass"] = volume(radius)
         out["extra"] |= {"radius": radius, "omega": np.zeros((n, 3)), "torque": np.zeros((n, 3))}
+    if has(style, "ellipsoid"):
+        last = next(name for name in reversed(parts(style)) if "density" in COLUMNS[name])      # of a hybrid the last one counts
+        if last == "ellipsoid":
+            out["rmass"] = np.ones(n)
+        out["extra"] |= {"shape": np.zeros((n, 3)), "quaternions": np.tile(UPRIGHT, (n, 1)), "angmom": np.zeros((n, 3)),
+                         "torque": np.zeros((n, 3))}
     return out
 
 
-def properties(columns: Mapping[str, np.ndarray], omega: np.ndarray) -> dict[str, np.ndarray]:
-    """Dipoles, radii and masses from the columns of a data file, as arrays (n, ...) by name.
+def with_orientations(extra: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Arrays of ellipsoids with what is missing: upright ones, also where the quaternion is zero, at rest."""
+    new = fresh("ellipsoid", len(extra["shape"]))["extra"] | dict(extra)
+    q = new["quaternions"]
+    new["quaternions"] = unit(np.where(q.any(axis=1, keepdims=True), q, UPRIGHT))
+    return new
+
+
+def rotated(extra: Mapping[str, np.ndarray], rotation: np.ndarray) -> dict[str, np.ndarray]:
+    """Those of further arrays that turn with the atoms, when positions become ``x @ rotation``."""
+    out = {name: extra[name] @ rotation for name in ("mu", "omega", "angmom") if name in extra}
+    return out | ({"quaternions": turned(extra["quaternions"], rotation)} if "quaternions" in extra else {})
+
+
+def properties(columns: Mapping[str, np.ndarray], spin: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Dipoles, radii, shapes and masses from the columns of a data file, as arrays (n, ...) by name.
+
+    Parameters
+    ----------
+    columns : mapping
+        Those of section Atoms, and of section Ellipsoids by the rows of the atoms.
+    spin : mapping
+        ``omega`` and ``angmom`` (n, 3), by whether the atom style has them.
 
     Raises
     ------
@@ -97,13 +139,20 @@ def properties(columns: Mapping[str, np.ndarray], omega: np.ndarray) -> dict[str
     out: dict[str, np.ndarray] = {}
     if "mux" in columns:
         out["mu"] = np.column_stack([columns[c] for c in DIPOLE])
+    for name, least in (("diameter", 0.0), ("density", np.nextafter(0.0, 1.0))):
+        if name in columns and not (columns[name] >= least).all():
+            row = int(np.argmin(columns[name] >= least))
+            error = InputError(f"invalid {name} {columns[name][row]:g} of atom {int(columns['id'][row])}")
+            error.row = row
+            raise error
+    out |= spin
+    if "density" in columns:
+        out["rmass"] = columns["density"].copy()
     if "diameter" in columns:
-        for name, good in (("diameter", columns["diameter"] >= 0.0), ("density", columns["density"] > 0.0)):
-            if not good.all():
-                row = int(np.argmin(good))
-                error = InputError(f"invalid {name} {columns[name][row]:g} of atom {int(columns['id'][row])}")
-                error.row = row
-                raise error
-        out |= {"radius": 0.5 * columns["diameter"], "omega": omega}
-        out["rmass"] = columns["density"] * volume(out["radius"])
-    return out | ({"torque": np.zeros((len(omega), 3))} if out else {})
+        out["radius"] = 0.5 * columns["diameter"]
+        out["rmass"] *= volume(out["radius"])
+    if "ellipsoid" in columns:
+        out["shape"] = np.column_stack([columns[c] for c in SHAPE])
+        out["quaternions"] = np.column_stack([columns[c] for c in TURN])
+        out["rmass"] *= ellipsoid_volume(out["shape"])
+    return out | ({"torque": np.zeros((len(columns["id"]), 3))} if out else {})

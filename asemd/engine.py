@@ -26,7 +26,7 @@ from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 SLOTTED = 9           # the first fields of a `State`, those by slot
-TURNING = {"torque", "mu", "omega"}      # atoms that have one of these feel torques
+TURNING = {"torque", "mu", "omega", "angmom"}      # atoms that have one of these feel torques
 ENERGIES = ("evdwl", "ecoul", "ebond", "eangle", "edihed", "eimp", "elong", "etail")
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asemd import units as unit_styles
-from asemd.atom_style import UNITS, bonded
+from asemd.atom_style import UNITS, bonded, with_orientations
 from asemd.box import Box
 from asemd.errors import InputError, InputWarning
 from asemd.topology import KINDS, Topology, rows_of
@@ -300,9 +300,9 @@ class System:
         Parameters
         ----------
         atoms : ase.Atoms
-            Its arrays ``id``, ``type``, ``mol-id``, ``image``, ``initial_charges``, ``masses``, ``momenta``, ``mu`` (dipoles) and its
-            ``topology`` (see
-            `asemd.atoms.Atoms`) are used where they exist.
+            Its arrays ``id``, ``type``, ``mol-id``, ``image``, ``initial_charges``, ``masses``, ``momenta``, ``mu`` (dipoles),
+            ``radius``, ``omega`` (spheres), ``shape``, ``quaternions``, ``angmom`` (diameters, orientations w i j k and angular momenta of
+            ellipsoids; shape 0 is a point) and its ``topology`` (see `asemd.atoms.Atoms`) are used where they exist.
         types : sequence of str, optional
             Chemical symbols in the order of type numbers. By default the array ``type`` gives the numbers, or else the sorted symbols.
         units : str
@@ -354,15 +354,18 @@ class System:
         bonded = not system.topology.is_empty
         system.atom_style = like.atom_style if like is not None else {
             (False, False): "atomic", (False, True): "charge", (True, False): "molecular", (True, True): "full"}[bonded, system.has_charge]
+        if "shape" in system.extra:
+            system.extra, system.rmass = with_orientations(system.extra), atom_mass
+            if like is None:
+                system.atom_style = "ellipsoid" if system.atom_style == "atomic" else f"hybrid {system.atom_style} ellipsoid"
         box.wrap(system.x, system.image)
         return system
 
     def to_ase(self) -> Atoms:
         """`asemd.atoms.Atoms` in ASE's units, rows in the same order.
 
-        Positions are those of `x`, with the image flags in the array ``image``; further arrays are ``id``, ``type``, ``mol-id``, charges,
-        masses and momenta; where atoms have them also ``mu``, ``torque``, ``radius`` and ``omega``. The origin of the box becomes celldisp.
-        Elements come from type labels, else from masses, else X.
+        Positions are those of `x`, with the image flags in the array ``image``; further arrays are those that `from_ase` takes, and where
+        atoms turn ``torque``. The origin of the box becomes celldisp. Elements come from type labels, else from masses, else X.
         """
         from asemd.atoms import Atoms, elements
         u = {d: unit_styles.factor(d, self.units) for d in ("distance", "mass", "velocity", "charge")}

@@ -257,7 +257,8 @@ BAD = {   # name: (text, line of the place or text in it, words of the message)
     "bounds": (swap("0.0 10.0 ylo yhi", "10.0 10.0 ylo yhi"), "ylo yhi", ["ylo", "less than"]),
     "section word": (swap("Bonds\n", "Bond\n"), "Bond\n", ["Bond", "did you mean Bonds"]),
     "section twice": (GOOD + "\nMasses\n\n1 1.0\n2 2.0\n", 59, ["Masses", "twice", "17 and 59"]),
-    "ellipsoids": (GOOD + "\nEllipsoids\n\n1 1 1 1 1 0 0 0\n", "Ellipsoids", ["ellipsoid", "not supported"]),
+    "ellipsoids": (GOOD + "\nEllipsoids\n\n1 1 1 1 1 0 0 0\n", "Ellipsoids", ["ellipsoids are not possible", "atom_style"]),
+    "bodies": (GOOD + "\nBodies\n\n1 1 1\n", "Bodies", ["body", "not supported"]),
     "bodies header": (swap("4 atoms", "4 atoms\n2 bodies"), "2 bodies", ["body", "not supported"]),
     "mass missing": (swap("2 2.0\n", ""), "Masses", ["no mass", "type 2"]),
     "mass twice": (swap("2 2.0\n", "1 2.0\n"), "1 2.0", ["type 1", "twice"]),
@@ -291,8 +292,8 @@ def test_missing_file_and_binary_file(tmp_path):
         read_data("nosuch.data")
     with pytest.raises(InputError, match="not a text file"):
         load(tmp_path, b"\0\1\2")
-    with pytest.raises(InputError, match="atom_style ellipsoid is not supported"):
-        load(tmp_path, GOOD, atom_style="ellipsoid")
+    with pytest.raises(InputError, match="atom_style body is not supported"):
+        load(tmp_path, GOOD, atom_style="body")
     with pytest.raises(InputError, match="bonds are not possible with atom_style charge"):
         load(tmp_path, GOOD, atom_style="charge")
     with pytest.raises(InputError, match="2d system"):

@@ -68,7 +68,7 @@ def test_compute_round_trip(line, session):
     ("gjf 1 1 1 1 method 9", "from 1 to 8"), ("gjf 1 1 1 1 method 7", "2 values"), ("gjf 1 1 1 1 method 7 1.0", "between 0 and 1"),
     ("gjf 1 1 1 1 method x", "whole"), ("gjf 1 1 1 1 vel", "1 value"), ("gjf 1 1 1 1 zero yes", "unknown keyword"),
     ("baoab -1 1 1 1", "negative"), ("langevin 1 1 1 1 omega yes gjf vhalf", "does not go with gjf"),
-    ("langevin 1 1 1 1 angmom 3.3", "ellipsoid"),
+    ("langevin 1 1 1 1 angmom -3.3", "must not be negative"), ("langevin 1 1 1 1 angmom yes", "number"),
     ("langevin -1 1 1 1", "negative"), ("langevin 1 1 1 1 talli yes", "did you mean tally"), ("langevin 1 1 1 1 scale 1", "2 values"),
     ("langevin 1 1 1 1 tally maybe", "yes or no"), ("langevin v_b 1 1 1", "undefined variable b"), ("temp/rescale 0 1 1 1 1", "at least 1"),
     ("temp/rescale 1 1 1 1 2", "fraction"), ("temp/rescale 1 1 1", "needs N"), ("temp/berendsen 1 1", "needs"),

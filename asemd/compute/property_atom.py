@@ -2,7 +2,8 @@
 
 Attributes: id mol proc type mass, x y z (as they are), xs ys zs (scaled), xu yu zu (unwrapped), ix iy iz (images), vx vy vz, fx fy fz, q,
 nbonds (bonds that belong to the atom: those of which it is the first one, or with ``newton off`` all), and where the atom style has them
-mux muy muz mu, radius diameter, omegax omegay omegaz, tqx tqy tqz, angmomx angmomy angmomz; i_name, d_name, i2_name[k], d2_name[k] of fix
+mux muy muz mu, radius diameter, omegax omegay omegaz, tqx tqy tqz, angmomx angmomy angmomz, shapex shapey shapez, quatw quati quatj quatk
+(points of style ellipsoid count as upright ones of diameter 1, as in LAMMPS); i_name, d_name, i2_name[k], d2_name[k] of fix
 property/atom.
 
 Source: LAMMPS manual, compute property/atom.
@@ -13,12 +14,14 @@ import re
 
 import numpy as np
 
+from asemd.atom_style import SHAPE, TURN, UPRIGHT
 from asemd.compute import Compute
 from asemd.dump._columns import COLUMNS, LABELS, View
 from asemd.errors import InputError, nearest
 
 LEFT_OUT = {"element", "procp1", *LABELS, *(f"{a}su" for a in "xyz")}
-ATTRIBUTES = (*(c for c in COLUMNS if c not in LEFT_OUT), "nbonds")
+SOLID = {name: (array, k) for array, own in (("shape", SHAPE), ("quaternions", TURN)) for k, name in enumerate(own)}
+ATTRIBUTES = (*(c for c in COLUMNS if c not in LEFT_OUT), "nbonds", *SOLID)
 CUSTOM = re.compile(r"[id](_\w+|2_\w+\[\d+\])")
 
 
@@ -69,6 +72,12 @@ class PropertyAtom(Compute):
             topology, n = view.system.topology, view.system.n
             bonds = topology.bonds[topology.bond_types != 0]
             return np.bincount((bonds[:, 0] if self.newton else bonds.ravel()), minlength=n).astype(float)[view.rows]
+        if name in SOLID:
+            extra, (array, k) = view.system.extra, SOLID[name]
+            if array not in extra:
+                raise InputError(f"compute property/atom {name}: atom style {view.system.atom_style} has no ellipsoids")
+            point = UPRIGHT[k] if array == "quaternions" else 1.0
+            return np.where(extra["shape"][view.rows, 0] > 0.0, extra[array][view.rows, k], point)
         try:
             values = view.custom(name) if CUSTOM.fullmatch(name) else COLUMNS[name][1](view)
         except InputError as e:

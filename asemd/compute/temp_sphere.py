@@ -35,6 +35,7 @@ class TempSphere(Temp):
     """
 
     style = "temp/sphere"
+    needed = "radius", "a radius", "sphere"     # the array it takes of the atoms, in words, and the atom style with it
 
     def __init__(self, group: str = "all", rotation_only: bool = False, without: Temp | None = None, extra_dof: float | None = None):
         super().__init__(group, extra_dof)
@@ -45,30 +46,44 @@ class TempSphere(Temp):
     def from_lammps(cls, group, words, session):
         rotate, without = False, None
         while words:
-            value = take(words[1:], 1, f"compute temp/sphere {words[0]}")[0]
+            value, what = take(words[1:], 1, f"compute {cls.style} {words[0]}")[0], f"compute {cls.style} {words[0]}"
             if words[0] == "bias":
-                without = find_temperature(value, session, "compute temp/sphere bias")
+                without = find_temperature(value, session, what)
                 if not without.bias:
-                    raise InputError(f"compute temp/sphere bias: compute {value} (style {without.style}) removes no bias")
+                    raise InputError(f"{what}: compute {value} (style {without.style}) removes no bias")
                 if without.hides:
-                    raise InputError(f"compute temp/sphere bias: the bias must be a flow, as of temp/com, not that of {without.style}")
+                    raise InputError(f"{what}: the bias must be a flow, as of temp/com, not that of {without.style}")
                 if without.group != group:
-                    raise InputError(f"compute temp/sphere bias: compute {value} is of group {without.group}, not of {group}")
+                    raise InputError(f"{what}: compute {value} is of group {without.group}, not of {group}")
             elif words[0] == "dof":
-                rotate = choice(value, ("all", "rotate"), "compute temp/sphere dof") == "rotate"
+                rotate = choice(value, ("all", "rotate"), what) == "rotate"
             else:
-                raise InputError(f"compute temp/sphere: unknown keyword {words[0]!r}{nearest(words[0], ('bias', 'dof'))}")
+                raise InputError(f"compute {cls.style}: unknown keyword {words[0]!r}{nearest(words[0], ('bias', 'dof'))}")
             words = words[2:]
-        if "radius" not in session.scene.need_system("compute temp/sphere").extra:
-            raise InputError("compute temp/sphere needs atoms with a radius: use atom_style sphere, or hybrid with it")
+        kind, has, style = cls.needed
+        if kind not in session.scene.need_system(f"compute {cls.style}").extra:
+            raise InputError(f"compute {cls.style} needs atoms with {has}: use atom_style {style}, or hybrid with it")
         return cls(group, rotate, without)
 
     def to_lammps(self) -> list[str]:
         return (["bias", self.without.id] if self.without is not None else []) + ["dof", "rotate"] * self.rotation_only
 
+    def turning(self, state) -> int:
+        """How many atoms of the group turn."""
+        return int(np.count_nonzero(state.groups[self.group] & (state.system.extra["radius"] > 0.0)))
+
+    def rotation(self, state) -> np.ndarray:
+        """(n,) twice the energy of rotation of each atom, zero outside the group."""
+        return energies(state, self.group, f"compute {self.style}")
+
+    def rotation_tensor(self, state) -> np.ndarray:
+        """(6,) sum of I w w in energy units: xx yy zz xy xz yz."""
+        system, w = state.system, state.system.extra["omega"]
+        inertia = np.where(state.mask(self.group), INERTIA * system.atom_masses() * system.extra["radius"] ** 2, 0.0)
+        return state.units.mvv2e * np.array([np.einsum("i,i,i->", inertia, w[:, i], w[:, j]) for i, j in COMPONENTS])
+
     def dof(self, state) -> float:
-        mask, system = state.groups[self.group], state.system
-        turning = float(np.count_nonzero(mask & (system.extra["radius"] > 0.0))) * (3 if system.dimension == 3 else 1)
+        turning = float(self.turning(state)) * (3 if state.system.dimension == 3 else 1)
         return turning if self.rotation_only else super().dof(state) + turning
 
     def remove_bias(self, state) -> np.ndarray:
@@ -80,10 +95,7 @@ class TempSphere(Temp):
             return 0.0
         v = self.remove_bias(state)
         twice = 0.0 if self.rotation_only else state.units.mvv2e * np.einsum("i,ij,ij->", self._weights(state), v, v)
-        return float((twice + energies(state, self.group, "compute temp/sphere").sum()) / (dof * state.units.boltz))
+        return float((twice + self.rotation(state).sum()) / (dof * state.units.boltz))
 
     def vector(self, state) -> np.ndarray:
-        tensor = np.zeros(6) if self.rotation_only else super().vector(state)
-        system, w = state.system, state.system.extra["omega"]
-        inertia = np.where(state.mask(self.group), INERTIA * system.atom_masses() * system.extra["radius"] ** 2, 0.0)
-        return tensor + state.units.mvv2e * np.array([np.einsum("i,i,i->", inertia, w[:, i], w[:, j]) for i, j in COMPONENTS])
+        return (np.zeros(6) if self.rotation_only else super().vector(state)) + self.rotation_tensor(state)

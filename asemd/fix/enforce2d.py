@@ -26,11 +26,11 @@ class Enforce2D(Fix):
     def parameters(self, loop) -> np.ndarray:
         if loop.system.dimension != 2:
             raise InputError("fix enforce2d is for systems of two dimensions; say dimension 2 before the box is created")
-        return np.array([loop.group_bit(self.group), "omega" in loop.system.extra], float)
+        return np.array([loop.group_bit(self.group), *(name in loop.system.extra for name in ("omega", "angmom"))], float)
 
     def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
-        """Angular velocities of spheres."""
-        return (loop.system.extra.get("omega", np.zeros((1, 3))),)
+        """Angular velocities of spheres, angular momenta of ellipsoids."""
+        return tuple(loop.system.extra.get(name, np.zeros((1, 3))) for name in ("omega", "angmom"))
 
     @hook
     def post_force(th, s, p, a):
@@ -39,8 +39,8 @@ class Enforce2D(Fix):
             if s.mask[i] & bit != 0:
                 s.v[2, i] = 0.0
                 s.f[2, i] = 0.0
-                if p[1] != 0.0:
-                    r = s.row[i]
-                    for d in range(2):
-                        a[0][r, d] = 0.0
-                        s.torque[d, i] = 0.0
+                for k in range(2):
+                    if p[1 + k] != 0.0:
+                        for d in range(2):
+                            a[k][s.row[i], d] = 0.0
+                            s.torque[d, i] = 0.0

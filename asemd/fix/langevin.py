@@ -11,7 +11,8 @@ With ``omega yes`` spheres have the same for their rotation,
 
 .. math:: T_i \leftarrow T_i - \tfrac{10}{3} \frac{I_i}{\tau_i} \omega_i + \sqrt{\frac{80 k_B T_0 I_i}{\tau_i \Delta t}}\, u
 
-whose factor 10/3 is that of Stokes's friction; the tally is without it.
+whose factor 10/3 is that of Stokes's friction; the tally is without it. With ``angmom C`` ellipsoids have the same with the factor C (for
+each component in space LAMMPS takes the moment of inertia about the axis of that number of the body, and so does this fix).
 
 That holds for small steps. For harmonic forces of frequency :math:`\omega` the positions are too warm by the factor
 :math:`1 / (1 - \omega^2 \Delta t^2 / (4 - 2 \Delta t / \tau))`, and the velocities grow without bound from
@@ -32,7 +33,9 @@ import numpy as np
 from asemd.errors import InputError, nearest
 from asemd.fix import gronbech_jensen as gj
 from asemd.fix import hook
+from asemd.fix.ellipsoids import USES
 from asemd.fix.formula import write
+from asemd.fix.langevin_spins import check_turning, push_ellipsoids, push_spheres, spins
 from asemd.fix.thermostat import Thermostat, thermal_velocities
 from asemd.kernels.random import uniform
 from asemd.kernels.threads import reduce_sum
@@ -106,50 +109,20 @@ def tally_work(th, s, p, a):
         p[12] = work
 
 
-def push_spheres(th, s, p, a, omega, radius):
-    """Friction and noise on the rotation of spheres."""
-    bit, seed, step = np.int32(np.int64(p[0])), np.int64(p[1]), th.step
-    done = 0.0
-    if th.end != th.begin:
-        done = (step - th.begin) / (th.end - th.begin)
-    root = math.sqrt(p[5] + done * (p[6] - p[5]))
-    friction, noise = (10.0 / 3.0) * p[7], math.sqrt((10.0 / 3.0) * p[8] / th.dt)
-    for i in range(th.lo, th.hi):
-        if s.mask[i] & bit != 0:
-            r = s.row[i]
-            inertia = 0.4 * s.mass[i] * radius[r] * radius[r]
-            ratio, size = p[16 + s.type[i]], a[r, 3] if p[4] != 0.0 else root
-            for d in range(3):
-                kick = noise * math.sqrt(inertia / ratio) * size * (uniform(seed, step, r, 3 + d) - 0.5)
-                s.torque[d, i] += kick - friction * inertia / ratio * omega[r, d]
-
-
 class Turning:
-    """Hooks with ``omega yes``; `a` holds the numbers by atom, angular velocities and radii."""
+    """Hooks with ``omega yes`` or ``angmom``; `a` holds the numbers by atom, and the arrays of `asemd.fix.langevin_spins`."""
 
-    @hook(uses=[push_points, push_spheres])
+    @hook(uses=[push_points, push_spheres, push_ellipsoids, *USES])
     def post_force(th, s, p, a):
         push_points(th, s, p, a[0])
-        push_spheres(th, s, p, a[0], a[1], a[2])
+        if a[6][0] != 0.0:
+            push_spheres(th, s, p, a[0], a[1], a[2])
+        if a[6][1] != 0.0:
+            push_ellipsoids(th, s, p, a[0], a[3], a[4], a[5], a[6][1])
 
     @hook(uses=[tally_work])
     def end_of_step(th, s, p, a):
         tally_work(th, s, p, a[0])
-
-
-def check_turning(fix, loop) -> None:
-    """Whether all atoms of the group are spheres.
-
-    Raises
-    ------
-    InputError
-    """
-    system = loop.system
-    if "omega" not in system.extra:
-        raise InputError("fix langevin omega yes needs atoms with a radius: use atom_style sphere, or hybrid with it")
-    points = loop.groups[fix.group] & ~(system.extra["radius"] > 0.0)
-    if points.any():
-        raise InputError(f"fix langevin omega yes: atom {system.id[points].min()} is a point, all atoms of the group need a radius")
 
 
 class Langevin(Thermostat):
@@ -172,6 +145,8 @@ class Langevin(Thermostat):
         Add up the energy; remove the mean of the noise.
     omega : bool
         Torques on spheres, too.
+    angmom : float
+        Torques on ellipsoids, too, times this factor; 0: none.
     gjf : str
         ``vhalf`` or ``vfull``: the discretisation of Gronbech-Jensen and Farago, with these velocities; ``no``: the plain one.
 
@@ -186,7 +161,7 @@ class Langevin(Thermostat):
     takes_bias = True
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, seed: int = 1, scale: dict[int, float] | None = None,
-                 tally: bool = False, zero: bool = False, gjf: str = "no", omega: bool = False):
+                 tally: bool = False, zero: bool = False, gjf: str = "no", omega: bool = False, angmom: float = 0.0):
         super().__init__(group, temperature, damping)
         if seed <= 0:
             raise InputError(f"fix langevin: seed must be a positive whole number, got {seed}")
@@ -195,15 +170,18 @@ class Langevin(Thermostat):
                 raise InputError(f"fix langevin: the scale ratio of type {kind} must be positive, got {ratio:g}")
         if gjf not in (*gj.VELOCITIES, "no"):
             raise InputError(f"fix langevin: gjf must be no, vhalf or vfull, got {gjf}{nearest(gjf, gj.VELOCITIES)}")
-        if omega and gjf != "no":
-            raise InputError("fix langevin: omega does not go with gjf, whose steps are for positions; leave one of the two out")
-        self.omega = omega
+        if (omega or angmom) and gjf != "no":
+            word = "omega" if omega else "angmom"
+            raise InputError(f"fix langevin: {word} does not go with gjf, whose steps are for positions; leave one of the two out")
+        if angmom < 0.0:
+            raise InputError(f"fix langevin: the factor of angmom must not be negative, got {angmom:g}")
+        self.omega, self.angmom = omega, angmom
         self.seed, self.scale, self.tally, self.zero, self.gjf = seed, dict(scale or {}), tally, zero, gjf
         self.p, self.a = np.zeros(TYPES), np.zeros((1, 4))
         if gjf != "no":
             self.levels = ""
             self.initial_integrate, self.post_force, self.end_of_step = (getattr(gj.Hooks, n) for n in GJF_HOOKS)
-        elif omega:
+        elif omega or angmom:
             self.post_force, self.end_of_step = Turning.post_force, Turning.end_of_step
 
     @classmethod
@@ -227,8 +205,8 @@ class Langevin(Thermostat):
                 flags["gjf"] = GJF_WORDS.get(values[0], values[0])
             elif keyword == "omega":
                 flags["omega"] = yes_no(values[0], what)
-            elif values[0] not in ("no", "off", "false"):
-                raise InputError("fix langevin: angmom needs atom_style ellipsoid; for spheres there is omega yes")
+            elif values[0] != "no":
+                flags["angmom"] = number(values[0], what)
         return cls(group, ramp, damping, seed, scale, **flags)
 
     def to_lammps(self) -> list[str]:
@@ -236,15 +214,15 @@ class Langevin(Thermostat):
         for kind, ratio in self.scale.items():
             words += ["scale", str(kind), repr(ratio)]
         words += ["tally", "yes"] * self.tally + ["zero", "yes"] * self.zero
-        return words + ["gjf", self.gjf] * (self.gjf != "no") + ["omega", "yes"] * self.omega
+        return words + ["gjf", self.gjf] * (self.gjf != "no") + ["omega", "yes"] * self.omega + (
+            ["angmom", repr(self.angmom)] if self.angmom else [])
 
     def parameters(self, loop) -> np.ndarray:
         ntypes, u = loop.system.counts["ntypes"], loop.units
         wrong = [kind for kind in self.scale if not 1 <= kind <= ntypes]
         if wrong:
             raise InputError(f"fix langevin: scale names atom type {wrong[0]}, there are types 1 to {ntypes}")
-        if self.omega:
-            check_turning(self, loop)
+        check_turning(self, loop)
         ratios = [float(self.temp.bias)] + [self.scale.get(kind, 1.0) for kind in range(1, ntypes + 1)]
         constant = not callable(self.start)
         ramp = (self.start, self.stop) if constant else (0.0, 0.0)
@@ -259,21 +237,20 @@ class Langevin(Thermostat):
 
     def atom_arrays(self, loop):
         """Columns: added force (for the tally), square root of the target temperature (for a variable), velocity without the bias; with
-        ``omega yes`` angular velocities and radii besides."""
+        ``omega`` or ``angmom`` what turns besides."""
         if self.gjf != "no":
             if self.a.shape != (loop.system.n, gj.COLUMNS):
                 self.a = np.full((loop.system.n, gj.COLUMNS), gj.NONE)
             self.a[:, 9] = 0.0
         elif self.tally or self.follows:
             self.a = np.zeros((loop.system.n, 7))
-        elif self.omega:
+        elif self.omega or self.angmom:
             self.a = np.zeros((1, 7))
         else:
             return None
         if self.follows:
             self._follow(loop)
-        extra = loop.system.extra
-        return (self.a, extra["omega"], extra["radius"]) if self.omega else self.a
+        return (self.a, *spins(self, loop.system.extra)) if self.omega or self.angmom else self.a
 
     def resize(self, loop) -> None:
         self.p[9] = max(np.count_nonzero(loop.groups[self.group]), 1)

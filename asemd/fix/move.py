@@ -113,6 +113,8 @@ class Move(Fix):
 
     # ---- numbers ------------------------------------------------------------------------------------------------------------------------
     def parameters(self, loop) -> np.ndarray:
+        if "shape" in loop.system.extra and self.kind in ("rotate", "transrot"):
+            raise InputError(f"fix move {self.kind} does not turn ellipsoids: use fix nve/asphere/noforce, or other atoms")
         if self.origin is None:
             self.origin = loop.step
         kind = list(KINDS).index(self.kind)

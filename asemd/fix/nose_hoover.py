@@ -94,8 +94,8 @@ class NoseHoover(Thermostat):
     brings = ("temp",)
     takes_bias = True
     kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate",
-             "temp/sphere", "viscosity/cos", "temp/region", "temp/deform")      # of the temperature it takes
-    turns = False       # whether it moves spheres that turn: fixes nvt/sphere ...
+             "temp/sphere", "temp/asphere", "viscosity/cos", "temp/region", "temp/deform")      # of the temperature it takes
+    turns = False       # whether it moves bodies that turn: fixes nvt/sphere, nvt/asphere ...
 
     def modify_option(self, keyword, value, session):
         if keyword == "temp" and find_temperature(value, session, "fix_modify temp").style not in self.kinds:

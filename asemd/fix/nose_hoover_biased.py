@@ -9,7 +9,6 @@ import numpy as np
 
 from asemd.fix.barostat import barostat_chain, dilate_box, measure_pressure, push_box, target_pressure
 from asemd.fix.nose_hoover import NoseHoover, nose_hoover_chain
-from asemd.fix.spheres import kick_spheres, turn_dipoles
 from asemd.fix.thermostat import scale_thermal
 from asemd.kernels.box import follow
 
@@ -18,28 +17,26 @@ LIVE = ("temp/ramp", "temp/region", "temp/deform", "viscosity/cos")
 
 
 def scale(fix, loop, factor: float) -> None:
-    """The thermostat's factor: of velocities without their bias, and of the angular velocities of spheres."""
+    """The thermostat's factor: of velocities without their bias, and of what turns."""
     scale_thermal(loop, fix.temp, fix.group, factor)
     if fix.turns:
-        fix.spheres[0][loop.groups[fix.group]] *= factor
+        fix.turning[0][loop.groups[fix.group]] *= factor
 
 
 def kick(fix, loop, bit: int) -> None:
-    """Half a step of the forces, and of the torques on spheres."""
+    """Half a step of the forces, and of the torques."""
     s = loop.state
     if fix.turns:
-        omega, radius, _, o = fix.spheres
-        kick_spheres(loop._thread(), s, bit, 1.0, omega, radius, o)
+        fix.kick_turning(loop, bit)
     mine = (s.mask & bit) != 0
     s.v[:, mine] += 0.5 * loop.dt * s.inverse_mass[mine] * s.f[:, mine]
 
 
 def move(fix, loop, bit: int) -> None:
-    """The positions, and dipoles that turn."""
+    """The positions and orientations."""
     s = loop.state
     if fix.turns:
-        omega, _, mu, o = fix.spheres
-        turn_dipoles(loop._thread(), s, bit, omega, mu, o)
+        fix.turn(loop, bit)
     mine = (s.mask & bit) != 0
     s.x[:, mine] += loop.dt * s.v[:, mine]
 

@@ -21,18 +21,18 @@ from asemd.fix.barostat import barostat_chain, drag_velocities, measure_pressure
 from asemd.fix.nose_hoover import nose_hoover_chain
 from asemd.fix.npt import BOX, NPT, kick_group, move_in_box, step_box
 from asemd.fix.sphere_bath import SphereBath
-from asemd.fix.spheres import TURNS, kick_spheres, scale_spheres, spheres_tensor, turn_dipoles
+from asemd.fix.spheres import TURNS, kick_spins, scale_spins, spins_tensor, turn_along
 from asemd.kernels.threads import barrier
 
 
-def measure_spheres(th, s, p, q, b, omega, radius, o, begins):
+def measure_spins(th, s, p, q, b, omega, radius, mu, o, begins):
     """Kinetic tensors now; that of a temperature which is the pressure's alone is measured where a step begins, as in LAMMPS. For a box
     that changes isotropically the mean of the diagonal counts, with the rotation about an axis out of the plane."""
     terms, dimension = 3 if q[0] < 3.0 else 6, int(q[26])
     for k in range(2):
         if k == 0 or (q[33] != 0.0 and begins):
             out, bit = b[9 + k], np.int32(np.int64(p[1] if k == 0 else q[25]))
-            spheres_tensor(th, s, bit, terms, p[4], omega, radius, o[3 + 2 * k], o[4 + 2 * k], out)
+            spins_tensor(th, s, bit, terms, p[4], omega, radius, mu, o[3 + 2 * k], o[4 + 2 * k], out)
             if q[0] == 1.0 and th.tid == 0:
                 mean = (out[0] + out[1] + out[2]) / dimension
                 out[0], out[1], out[2] = mean, mean, mean if dimension == 3 else 0.0
@@ -40,10 +40,10 @@ def measure_spheres(th, s, p, q, b, omega, radius, o, begins):
         b[10, :] = b[9, :]
 
 
-SPHERES = [*BOX, *TURNS, scale_spheres, spheres_tensor, measure_spheres]
+SPHERES = [*BOX, *TURNS, scale_spins, spins_tensor, measure_spins]
 
 
-def start_spheres(th, s, p, a):
+def start_spins(th, s, p, a):
     """Velocities and angular velocities of the first half of a step."""
     q, b, e, w, m, omega, radius, mu, o = a
     bit = np.int32(np.int64(p[0]))
@@ -55,8 +55,8 @@ def start_spheres(th, s, p, a):
         if q[28] != 0.0:
             nose_hoover_chain(th, p)
     barrier(th)
-    scale_spheres(th, s, bit, p[12], omega)
-    measure_spheres(th, s, p, q, b, omega, radius, o, True)
+    scale_spins(th, s, bit, p[12], omega)
+    measure_spins(th, s, p, q, b, omega, radius, mu, o, True)
     if th.tid == 0:
         measure_pressure(s, q, b, w)
         target_pressure(th, s, q, b, m)
@@ -64,7 +64,7 @@ def start_spheres(th, s, p, a):
     barrier(th)
     drag_velocities(th, s, bit, b, q[0] == 3.0)
     kick_group(th, s, bit, 1.0)
-    kick_spheres(th, s, bit, 1.0, omega, radius, o)
+    kick_spins(th, s, bit, 1.0, omega, radius, o)
 
 
 class InnerSpheres:
@@ -75,17 +75,17 @@ class InnerSpheres:
         q, b, e, w, m, omega, radius, mu, o = a
         bit = np.int32(np.int64(p[0]))
         kick_group(th, s, bit, 1.0)
-        kick_spheres(th, s, bit, 1.0, omega, radius, o)
+        kick_spins(th, s, bit, 1.0, omega, radius, o)
         barrier(th)
         step_box(th, s, q, b, m)
         move_in_box(th, s, bit, q, b, m)
-        turn_dipoles(th, s, bit, omega, mu, o)
+        turn_along(th, s, bit, omega, radius, mu, o)
 
     @hook(uses=SPHERES)
     def final_integrate(th, s, p, a):
         bit = np.int32(np.int64(p[0]))
         kick_group(th, s, bit, 1.0)
-        kick_spheres(th, s, bit, 1.0, a[5], a[6], a[8])
+        kick_spins(th, s, bit, 1.0, a[5], a[6], a[8])
 
 
 class NPTSphere(SphereBath, NPT):
@@ -128,28 +128,28 @@ class NPTSphere(SphereBath, NPT):
         self.temp = TempSphere("all")
         self.press = Pressure("all", self.temp, ())
 
-    @hook(uses=[*SPHERES, start_spheres])
+    @hook(uses=[*SPHERES, start_spins])
     def initial_integrate(th, s, p, a):
         q, b, e, w, m, omega, radius, mu, o = a
         bit = np.int32(np.int64(p[0]))
-        start_spheres(th, s, p, a)
+        start_spins(th, s, p, a)
         barrier(th)
         step_box(th, s, q, b, m)
         move_in_box(th, s, bit, q, b, m)
-        turn_dipoles(th, s, bit, omega, mu, o)
+        turn_along(th, s, bit, omega, radius, mu, o)
 
-    @hook(uses=[*SPHERES, start_spheres])
+    @hook(uses=[*SPHERES, start_spins])
     def outer_initial(th, s, p, a):
-        start_spheres(th, s, p, a)
+        start_spins(th, s, p, a)
 
     @hook(uses=SPHERES)
     def final_integrate(th, s, p, a):
         q, b, e, w, m, omega, radius, mu, o = a
         bit = np.int32(np.int64(p[0]))
         kick_group(th, s, bit, 1.0)
-        kick_spheres(th, s, bit, 1.0, omega, radius, o)
+        kick_spins(th, s, bit, 1.0, omega, radius, o)
         drag_velocities(th, s, bit, b, q[0] == 3.0)
-        measure_spheres(th, s, p, q, b, omega, radius, o, False)
+        measure_spins(th, s, p, q, b, omega, radius, mu, o, False)
         if th.tid == 0:
             p[11] = (b[9, 0] + b[9, 1] + b[9, 2]) / (p[2] * p[3]) if p[2] > 0.0 else 0.0
             measure_pressure(s, q, b, w)
@@ -161,4 +161,4 @@ class NPTSphere(SphereBath, NPT):
                 barostat_chain(th, q, b, e, p[3] * p[13])
         barrier(th)
         if q[28] != 0.0:
-            scale_spheres(th, s, bit, p[12], omega)
+            scale_spins(th, s, bit, p[12], omega)

@@ -14,7 +14,7 @@ import numpy as np
 
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, hook
-from asemd.fix.spheres import TURNS, UPDATES, check_radii, check_spheres, kick_spheres, sphere_arrays, turn_dipoles
+from asemd.fix.spheres import TURNS, UPDATES, check_radii, check_spheres, kick_spins, sphere_arrays, turn_along
 from asemd.words import take
 
 
@@ -82,8 +82,8 @@ class NVESphere(Fix):
                 if mask[i] & bit != 0:
                     v[i] += half * inverse_mass[i] * f[i]
                     x[i] += th.dt * v[i]
-        kick_spheres(th, s, bit, 1.0, omega, radius, o)
-        turn_dipoles(th, s, bit, omega, mu, o)
+        kick_spins(th, s, bit, 1.0, omega, radius, o)
+        turn_along(th, s, bit, omega, radius, mu, o)
 
     @hook(uses=TURNS)
     def final_integrate(th, s, p, a):
@@ -95,4 +95,4 @@ class NVESphere(Fix):
             for i in range(v.size):
                 if mask[i] & bit != 0:
                     v[i] += half * inverse_mass[i] * f[i]
-        kick_spheres(th, s, bit, 1.0, omega, radius, o)
+        kick_spins(th, s, bit, 1.0, omega, radius, o)

@@ -19,7 +19,7 @@ from asemd.fix.npt import kick_group
 from asemd.fix.nve_sphere import NVESphere
 from asemd.fix.nvt import NVT
 from asemd.fix.sphere_bath import SphereBath
-from asemd.fix.spheres import TURNS, kick_spheres, move_spheres, scale_spheres, spheres_tensor, turn_dipoles
+from asemd.fix.spheres import TURNS, kick_spins, move_spheres, scale_spins, spins_tensor, turn_along
 from asemd.kernels.threads import barrier
 
 
@@ -64,9 +64,9 @@ class NVTSphere(SphereBath, NVT):
         barrier(th)
         bit, factor, omega = np.int32(np.int64(p[0])), p[12], a[0]
         kick_group(th, s, bit, factor)
-        kick_spheres(th, s, bit, factor, omega, a[1], a[3])
+        kick_spins(th, s, bit, factor, omega, a[1], a[3])
         move_spheres(th, s, bit)
-        turn_dipoles(th, s, bit, omega, a[2], a[3])
+        turn_along(th, s, bit, omega, a[1], a[2], a[3])
 
     @hook(uses=[*TURNS, nose_hoover_chain, kick_group])
     def outer_initial(th, s, p, a):
@@ -76,17 +76,17 @@ class NVTSphere(SphereBath, NVT):
         barrier(th)
         bit, factor = np.int32(np.int64(p[0])), p[12]
         kick_group(th, s, bit, factor)
-        kick_spheres(th, s, bit, factor, a[0], a[1], a[3])
+        kick_spins(th, s, bit, factor, a[0], a[1], a[3])
 
-    @hook(uses=[*TURNS, nose_hoover_chain, kick_group, scale_spheres, spheres_tensor])
+    @hook(uses=[*TURNS, nose_hoover_chain, kick_group, scale_spins, spins_tensor])
     def final_integrate(th, s, p, a):
         bit, seen, twice = np.int32(np.int64(p[0])), np.int32(np.int64(p[1])), np.zeros(3)
         omega, radius, mu, o = a
         kick_group(th, s, bit, 1.0)
-        kick_spheres(th, s, bit, 1.0, omega, radius, o)
-        spheres_tensor(th, s, seen, 3, p[4], omega, radius, o[3], o[4], twice)
+        kick_spins(th, s, bit, 1.0, omega, radius, o)
+        spins_tensor(th, s, seen, 3, p[4], omega, radius, mu, o[3], o[4], twice)
         if th.tid == 0:
             p[11] = (twice[0] + twice[1] + twice[2]) / (p[2] * p[3]) if p[2] > 0.0 else 0.0
             nose_hoover_chain(th, p)
         barrier(th)
-        scale_spheres(th, s, bit, p[12], omega)
+        scale_spins(th, s, bit, p[12], omega)

@@ -6,7 +6,7 @@ import numpy as np
 from asemd.compute.temp import Temp
 from asemd.compute.temp_sphere import TempSphere
 from asemd.errors import InputError, nearest
-from asemd.fix.spheres import UPDATES, check_radii, check_spheres, sphere_arrays
+from asemd.fix.spheres import UPDATES, check_radii, check_spheres, kick_spins, sphere_arrays, turn_along
 
 
 def countable(temp) -> bool:
@@ -51,5 +51,15 @@ class SphereBath:
 
     def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
         """Of a barostat its own numbers first, then those of the spheres."""
-        self.spheres = sphere_arrays(self, loop)
-        return (super().atom_arrays(loop) or ()) + self.spheres
+        self.turning = sphere_arrays(self, loop)
+        return (super().atom_arrays(loop) or ()) + self.turning
+
+    def kick_turning(self, loop, bit: int) -> None:
+        """Half a step of the torques, not compiled."""
+        omega, radius, _, o = self.turning
+        kick_spins(loop._thread(), loop.state, bit, 1.0, omega, radius, o)
+
+    def turn(self, loop, bit: int) -> None:
+        """A step of the dipoles, not compiled."""
+        omega, radius, mu, o = self.turning
+        turn_along(loop._thread(), loop.state, bit, omega, radius, mu, o)

@@ -1,8 +1,9 @@
 r"""What integrators of spheres share in compiled code: kicks of the angular velocities by torques, and dipoles that turn along.
 
-`o` has 0 the moment of inertia per mass and radius squared, 1 how dipoles turn (`NONE`, `PLAIN`, `DLM`), 2 ftm2v, then for a thermostat
-whether 3 translation and 4 rotation count in its temperature, 5 and 6 the same for the temperature of the pressure. Angular velocities
-`omega`, dipoles `mu` (n, 3) and radii (n,) stand by row.
+Functions of the same names and arguments are in `asemd.fix.ellipsoids` for other bodies. `o` has 0 the moment of inertia per mass and
+radius squared, 1 how dipoles turn (`NONE`, `PLAIN`, `DLM`), 2 ftm2v, then for a thermostat whether 3 translation and 4 rotation count in
+its temperature, 5 and 6 the same for the temperature of the pressure. Angular velocities `omega`, dipoles `mu` (n, 3) and radii (n,)
+stand by row.
 """
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ def turn(q, w, axis, angle):
         q[j, d], q[k, d] = c * qj + s * qk, -s * qj + c * qk
 
 
-def kick_spheres(th, s, bit, factor, omega, radius, o):
+def kick_spins(th, s, bit, factor, omega, radius, o):
     """Angular velocities times a factor, then half a step of the torques."""
     for i in range(th.lo, th.hi):
         if s.mask[i] & bit != 0:
@@ -53,7 +54,7 @@ def move_spheres(th, s, bit):
                 x[i] += th.dt * v[i]
 
 
-def scale_spheres(th, s, bit, factor, omega):
+def scale_spins(th, s, bit, factor, omega):
     """Velocities and angular velocities times a factor."""
     for i in range(th.lo, th.hi):
         if s.mask[i] & bit != 0:
@@ -63,7 +64,7 @@ def scale_spheres(th, s, bit, factor, omega):
                 omega[r, d] *= factor
 
 
-def turn_dipoles(th, s, bit, omega, mu, o):
+def turn_along(th, s, bit, omega, radius, mu, o):
     """A step of the dipoles with their spheres."""
     if o[1] == 0.0:
         return
@@ -105,7 +106,7 @@ def turn_dipoles(th, s, bit, omega, mu, o):
             mu[r, d] = length * q[2, d]
 
 
-def spheres_tensor(th, s, bit, terms, unit, omega, radius, moving, turning, out):
+def spins_tensor(th, s, bit, terms, unit, omega, radius, mu, moving, turning, out):
     """Sum of `moving` m v v and `turning` I w w over a group into ``out``: xx yy zz, and xy xz yz with six terms."""
     for k in range(terms):
         first, second = k, k
@@ -122,7 +123,7 @@ def spheres_tensor(th, s, bit, terms, unit, omega, radius, moving, turning, out)
             out[k] = unit * total
 
 
-TURNS = [turn, turn_dipoles, kick_spheres]
+TURNS = [turn, turn_along, kick_spins]
 
 
 def check_spheres(fix, system) -> None:

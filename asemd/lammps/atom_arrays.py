@@ -30,7 +30,7 @@ class AtomArrays:
         elif name == "mu" and "mu" in system.extra:      # with its length, as LAMMPS keeps it
             return np.column_stack([system.extra["mu"], np.linalg.norm(system.extra["mu"], axis=1)])
         else:
-            values = system.extra.get(name)
+            values = system.extra.get({"quat": "quaternions"}.get(name, name))
         if values is None:
             raise InputError(f"atoms of style {system.atom_style} have no property {name!r}")
         return values

@@ -48,7 +48,6 @@ PARTIAL = {
     ("fix", "ehex"): "no constrain, com (clusters of fix shake)",
     ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
     ("fix", "external"): "no energies or virials by atom, no virial",
-    ("fix", "langevin"): "no angmom, which is for ellipsoids",
     ("fix", "shake"): "run_style verlet",
     ("fix", "rattle"): "run_style verlet",
 }

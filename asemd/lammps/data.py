@@ -14,6 +14,7 @@ from asemd import atom_style as atom_styles
 from asemd.box import FARTHEST, Box
 from asemd.errors import InputError, Where, nearest
 from asemd.lammps.data_box import general_box, is_general, same_frame
+from asemd.lammps.data_ellipsoids import read_ellipsoids
 from asemd.lammps.data_format import COEFFS, IMAGE, KIND_OF, LABELS, REAL_HEADER, TOPOLOGY
 from asemd.lammps.data_table import parse_table
 from asemd.lammps.data_text import DataText
@@ -160,10 +161,9 @@ class _Reader(DataText):
         for name, array in values.items():
             if array.dtype == float and not np.isfinite(array).all():
                 row = int(np.argmin(np.isfinite(array)))
-                value = "NaN" if np.isnan(array[row]) else "infinite"
-                what = {"q": "charge"}.get(name, f"velocity {name}" if name.startswith("v") else f"coordinate {name}")
-                owner = f" of atom {values['id'][row]}" if "id" in values else ""
-                raise self.fail(f"{section} section: {what}{owner} is {value}, not a number", where(row))
+                what = {"q": "charge"}.get(name, ("velocity " if name[0] == "v" else "coordinate " if name in "xyz" else "") + name)
+                what += f" of atom {values['id'][row]}" if "id" in values else ""
+                raise self.fail(f"{section} section: {what} is {'NaN' if np.isnan(array[row]) else 'infinite'}, not a number", where(row))
         return values, where
 
     def in_range(self, section: str, types: np.ndarray, kind: str, where) -> None:
@@ -265,15 +265,15 @@ class _Reader(DataText):
         if far.any():
             row = int(np.argmax(far.any(axis=1)))
             raise self.fail(f"atom {ids[row]} is more than {FARTHEST:g} boxes away", line(row))
-        v, omega = self.read_velocities(ids)
+        v, spin = self.read_velocities(ids)
+        a |= read_ellipsoids(self, a, order, where) if "ellipsoid" in a else {}
         try:
-            extra = atom_styles.properties({name: array[order] for name, array in a.items()}, omega)
+            extra = atom_styles.properties({name: array[order] for name, array in a.items()}, spin)
         except InputError as e:
             raise self.fail(f"Atoms section: {e.message}", line(e.row)) from None
         rmass = extra.pop("rmass", None)
         if rotation is not None:
-            v = v @ rotation
-            extra |= {name: extra[name] @ rotation for name in ("mu", "omega") if name in extra}
+            v, extra = v @ rotation, extra | atom_styles.rotated(extra, rotation)
         whole.wrap(x, image)
         top = self.read_topology(ids)
         system = System(
@@ -317,22 +317,23 @@ class _Reader(DataText):
         self.warn(f"inconsistent image flags: bond {bad[0] + 1} (atoms {system.id[i]}-{system.id[j]}): image flags put the atoms "
                   f"{np.linalg.norm(far[1] - far[0]):g} apart, more than half the box{more}", line(suspect))
 
-    def read_velocities(self, ids: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Velocities and angular velocities."""
-        v = np.zeros((len(ids), 6))
-        if "Velocities" not in self.sections:
-            return v[:, :3], v[:, 3:]
+    def read_velocities(self, ids: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Velocities, and angular velocities or momenta where atoms have them."""
         columns = atom_styles.velocity_columns(self.atom_style)
+        v = np.zeros((len(ids), len(columns) - 1))
+        spin = {name: v[:, columns.index(own[0]) - 1:][:, :3] for name, own in atom_styles.SPINS.items() if own[0] in columns}
+        if "Velocities" not in self.sections:
+            return v[:, :3], spin
         a, where = self.table("Velocities", columns, len(ids))
         rows = self.rows("Velocities", a["id"][:, None], ids, where)[:, 0]
         order = np.argsort(rows, kind="stable")
         twice = np.flatnonzero(np.diff(rows[order]) == 0)
         if len(twice):
-            first, second = (where(int(r)) for r in order[twice[0]:twice[0] + 2])
-            name = ids[rows[order[twice[0]]]]
-            raise self.fail(f"Velocities section: atom ID {name} appears on lines {first + 1} and {second + 1}", second)
-        v[rows, :len(columns) - 1] = np.column_stack([a[c] for c in columns[1:]])
-        return v[:, :3], v[:, 3:]
+            twin = order[twice[0]:twice[0] + 2]
+            lines = " and ".join(str(where(int(r)) + 1) for r in twin)
+            raise self.fail(f"Velocities section: atom ID {ids[rows[twin[0]]]} appears on lines {lines}", where(int(twin[1])))
+        v[rows] = np.column_stack([a[c] for c in columns[1:]])
+        return v[:, :3], spin
 
     def rows(self, section: str, atoms: np.ndarray, ids: np.ndarray, where) -> np.ndarray:
         """Rows of atom ids (m, k)."""
@@ -394,7 +395,6 @@ class _Reader(DataText):
             out.append((self.where(i), [*map(str, types), *words[1 + pairs:]]))
         want = ntypes * (ntypes + 1) // 2 if pairs else ntypes
         if len(out) != want:
-            place = self.sections[name].line
-            raise self.fail(f"{name} section has {len(out)} line{'s' * (len(out) != 1)}, but {want} "
-                            f"{'pairs of ' * pairs}{kind} types need {'a line' if want == 1 else 'lines'}", place)
+            raise self.fail(f"{name} section has {len(out)} line{'s' * (len(out) != 1)}, but {want} {'pairs of ' * pairs}{kind} types need "
+                            f"{'a line' if want == 1 else 'lines'}", self.sections[name].line)
         return out

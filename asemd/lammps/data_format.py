@@ -1,14 +1,15 @@
 """What stands in a LAMMPS data file: header lines, sections and kinds of columns. Those of an atom style: `asemd.atom_style`."""
 from __future__ import annotations
 
-from asemd.atom_style import DIPOLE, SPHERE, SPIN
+from asemd.atom_style import DIPOLE, MOMENTUM, SHAPE, SPHERE, SPIN, TURN
 
 IMAGE = ("nx", "ny", "nz")
 
 # column -> "id", "whole", "type" or "real"
 KIND_OF = {"id": "id", "molecule": "whole", "type": "type", "q": "real", "x": "real", "y": "real", "z": "real", "nx": "whole",
            "ny": "whole", "nz": "whole", "vx": "real", "vy": "real", "vz": "real", "number": "whole", "atom1": "id",
-           "atom2": "id", "atom3": "id", "atom4": "id", **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE), "real")}
+           "atom2": "id", "atom3": "id", "atom4": "id", **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE, *MOMENTUM, *SHAPE, *TURN), "real"),
+           "ellipsoid": "whole"}
 
 # header line -> number of values
 HEADER = {
@@ -32,5 +33,5 @@ COEFFS = {
     "AngleTorsion Coeffs": ("dihedral", "at"), "AngleAngleTorsion Coeffs": ("dihedral", "aat"), "BondBond13 Coeffs": ("dihedral", "bb13"),
     "Improper Coeffs": ("improper", ""), "AngleAngle Coeffs": ("improper", "aa"),
 }
-UNSUPPORTED = {"Ellipsoids": "ellipsoid", "Lines": "line", "Triangles": "tri", "Bodies": "body"}
-SECTIONS = ("Masses", *LABELS, *COEFFS, "Atoms", "Velocities", *TOPOLOGY, *UNSUPPORTED)
+UNSUPPORTED = {"Lines": "line", "Triangles": "tri", "Bodies": "body"}
+SECTIONS = ("Masses", *LABELS, *COEFFS, "Atoms", "Velocities", "Ellipsoids", *TOPOLOGY, *UNSUPPORTED)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asemd.atom_style import bonded
+from asemd.atom_style import bonded, has
 from asemd.errors import InputError, InputWarning, Where, nearest
 from asemd.lammps.data_format import COEFFS, HEADER, LABELS, REAL_HEADER, SECTIONS, TOPOLOGY, UNSUPPORTED
 from asemd.lammps.data_lines import read_lines
@@ -150,13 +150,16 @@ class DataText:
                 raise self.fail(f"{plural} need atom_style {word}, which is not supported", self.header_line[plural])
         kinds = bonded(self.atom_style)
         first = self.sections.get("Atoms")
-        for section in ("Velocities", *TOPOLOGY):
+        for section in ("Velocities", "Ellipsoids", *TOPOLOGY):
             there = self.sections.get(section)
             if first and there and there.line < first.line:
                 raise self.fail(f"section {section} must come after the section Atoms (line {first.line + 1})", there.line)
-        for section, word in (("Atoms", "atoms"), *((s, k + "s") for s, k in TOPOLOGY.items())):
+        if has(self.atom_style, "ellipsoid"):
+            kinds = (*kinds, "ellipsoid")
+        several = {"Ellipsoids": "ellipsoid", **TOPOLOGY}
+        for section, word in (("Atoms", "atoms"), *((s, k + "s") for s, k in several.items())):
             n, there = self.number(word), self.sections.get(section)
-            if section in TOPOLOGY and (n or there) and TOPOLOGY[section] not in kinds:
+            if section in several and (n or there) and several[section] not in kinds:
                 place = there.line if there else self.header_line[word]
                 raise self.fail(f"{word} are not possible with atom_style {self.atom_style}", place)
             if n and not there:

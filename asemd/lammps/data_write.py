@@ -86,7 +86,7 @@ def _general_frame(system: System) -> System:
     out, back = system.copy(), system.rotation.T
     out.box = Box(system.box.origin, system.box.cell @ back, system.box.boundary, True)
     out.x, out.v = (system.x - system.box.origin) @ back + system.box.origin, system.v @ back
-    out.extra |= {name: system.extra[name] @ back for name in ("mu", "omega") if name in system.extra}
+    out.extra |= atom_styles.rotated(system.extra, back)
     return out
 
 
@@ -117,7 +117,7 @@ def _lammps_frame(system: System) -> System:
     if not system.box.is_lammps_frame:
         out.box, rotation = system.box.to_lammps()
         out.x, out.v = (system.x - system.box.origin) @ rotation, system.v @ rotation
-        out.extra |= {name: system.extra[name] @ rotation for name in ("mu", "omega") if name in system.extra}
+        out.extra |= atom_styles.rotated(system.extra, rotation)
     out.box.wrap(out.x, out.image)
     out.box = out.box.shrink_wrapped(out.x)
     return out
@@ -134,6 +134,8 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
         if kind in atom_styles.bonded(s.atom_style) and s.counts[f"n{kind}types"]:
             yield f"{np.count_nonzero(s.topology.items(kind)[1]) + len(_torn(s, kind))} {section.lower()}"
             yield f"{s.counts[f'n{kind}types']} {kind} types"
+    if atom_styles.has(s.atom_style, "ellipsoid"):
+        yield f"{np.count_nonzero(s.extra['shape'][:, 0])} ellipsoids"
     yield from own
     yield ""
     yield from _box(s.box, general)
@@ -153,8 +155,12 @@ def _file(s: System, interactions: Interactions | None, pair: str, types: str, l
     told = _Told(progress, 2 * s.n + sum(len(atoms) for _, atoms, _ in s.topology))
     if s.n:
         yield from _section(f"Atoms # {s.atom_style.split()[0]}", _table(_atoms(s), {"type": names["atom"]}, told))
-        v = np.hstack([s.v, s.extra["omega"]]) if atom_styles.has(s.atom_style, "diameter") else s.v
+        spins = {own[0]: name for name, own in atom_styles.SPINS.items()}
+        v = np.hstack([s.v, *(s.extra[spins[c]] for c in atom_styles.velocity_columns(s.atom_style) if c in spins)])
         yield from _section("Velocities", _table({"id": s.id, **dict(enumerate(v.T))}, {}, told))
+    if atom_styles.has(s.atom_style, "ellipsoid") and (solid := s.extra["shape"][:, 0] > 0.0).any():
+        columns = [s.id[solid], *s.extra["shape"][solid].T, *s.extra["quaternions"][solid].T]
+        yield from _section("Ellipsoids", _table(dict(enumerate(columns)), {}, told))
     for section, kind in TOPOLOGY.items():
         atoms, item_types = s.topology.items(kind)
         on = item_types != 0
@@ -232,8 +238,13 @@ def _atoms(s: System) -> dict[str, np.ndarray]:
     known = {"id": s.id, "molecule": s.molecule, "type": s.type, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T))}
     if "mu" in s.extra:
         known |= dict(zip(atom_styles.DIPOLE, s.extra["mu"].T))
+    if s.rmass is not None:
+        known["density"] = s.rmass
     if "radius" in s.extra:
-        known |= {"diameter": 2.0 * s.extra["radius"], "density": s.atom_masses() / atom_styles.volume(s.extra["radius"])}
+        known |= {"diameter": 2.0 * s.extra["radius"], "density": known["density"] / atom_styles.volume(s.extra["radius"])}
+    if "shape" in s.extra:
+        known |= {"ellipsoid": (s.extra["shape"][:, 0] > 0.0).astype(int),
+                  "density": known["density"] / atom_styles.ellipsoid_volume(s.extra["shape"])}
     return {c: known[c] for c in atom_styles.columns(s.atom_style)} | dict(zip(IMAGE, s.image.T))
 
 

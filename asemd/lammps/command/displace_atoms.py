@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.quaternion import product
 from asemd.random import position_seeds, uniform_at
 from asemd.words import choice, number, take, whole
 
@@ -82,3 +83,6 @@ def _rotate(system, x, image, rows, words, spacings, what) -> None:
     across = d - along
     x[rows] = point + along + across * math.cos(angle) + np.cross(axis, across) * math.sin(angle)
     image[rows] = 0
+    if "quaternions" in system.extra:
+        turn = [math.cos(0.5 * angle), *(axis * math.sin(0.5 * angle))]
+        system.extra["quaternions"][rows] = product(np.array(turn), system.extra["quaternions"][rows])

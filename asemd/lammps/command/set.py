@@ -5,8 +5,9 @@ import re
 
 import numpy as np
 
-from asemd.atom_style import volume
+from asemd.atom_style import ellipsoid_volume, volume
 from asemd.errors import InputError, nearest
+from asemd.lammps.set_ellipsoids import set_ellipsoids
 from asemd.marsaglia import Marsaglia
 from asemd.random import position_seeds, uniform_at
 from asemd.words import bounds, number, take, whole
@@ -14,9 +15,8 @@ from asemd.words import bounds, number, take, whole
 LARGEST = 2**62     # no id is above
 CUSTOM = re.compile(r"([id])(2?)_(\w+)(?:\[(\d+)\])?")      # properties of fix property/atom
 KEYWORDS = {"type": 1, "type/fraction": 3, "type/ratio": 3, "type/subset": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1,
-            "charge": 1, "mass": 1, "image": 3,
-            "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1,
-            "density/disc": 1, "omega": 3, "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
+            "charge": 1, "mass": 1, "image": 3, "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1, "density/disc": 1,
+            "omega": 3, "angmom": 3, "shape": 3, "quat": 4, "quat/random": 1, "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
 
 
 def run(session, args):
@@ -73,8 +73,10 @@ class Setter:
             return self._fraction(values)
         if key in ("type/ratio", "type/subset"):
             return self._subset(key, values)
-        if key == "omega":
-            return self._omega(values)
+        if key in ("omega", "angmom"):
+            return self._spin(key, values)
+        if key in ("shape", "quat", "quat/random"):
+            return set_ellipsoids(self, key, values)
         if key in ("dipole", "dipole/random"):
             return self._dipole(key, values)
         if key in ("diameter", "density", "density/disc"):
@@ -171,10 +173,11 @@ class Setter:
         self.system.type[self.rows[Marsaglia(seed).subset(len(self.rows), count)]] = kind
         return count
 
-    def _omega(self, values: list[str]) -> int:
-        if "omega" not in self.system.extra:
-            raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no angular velocities")
-        self.system.extra["omega"][self.rows] = np.column_stack([self._values(word) for word in values])
+    def _spin(self, key: str, values: list[str]) -> int:
+        if key not in self.system.extra:
+            kind = {"omega": "velocities", "angmom": "momenta"}[key]
+            raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no angular {kind}")
+        self.system.extra[key][self.rows] = np.column_stack([self._values(word) for word in values])
         return len(self.rows)
 
     def _dipole(self, key: str, values: list[str]) -> int:
@@ -196,7 +199,7 @@ class Setter:
     def _sphere(self, key: str, word: str) -> int:
         """Diameters leave the masses as they are; a density gives the mass with the present diameter."""
         extra, new = self.system.extra, self._values(word)
-        if "radius" not in extra:
+        if "radius" not in extra and ("shape" not in extra or key == "diameter"):
             raise InputError(f"{self.what}: atom_style {self.system.atom_style} has no {key}")
         if (new < 0.0).any() or (key != "diameter" and (new == 0.0).any()):
             raise InputError(f"{self.what}: a {key} must be {'0 or more' if key == 'diameter' else 'positive'}, got {word}")
@@ -205,11 +208,17 @@ class Setter:
         elif key == "density/disc":
             if self.system.dimension == 3:
                 raise InputError(f"{self.what} is for 2d simulations only: use density")
-            radius = extra["radius"][self.rows]
-            self.system.rmass[self.rows] = new * np.where(radius > 0.0, np.pi * radius**2, 1.0)
+            radius = extra["radius"][self.rows] if "radius" in extra else np.zeros(len(self.rows))
+            self.system.rmass[self.rows] = new * np.where(radius > 0.0, np.pi * radius**2, self._ellipsoids())
         else:
-            self.system.rmass[self.rows] = new * volume(extra["radius"][self.rows])
+            radius = extra["radius"][self.rows] if "radius" in extra else np.zeros(len(self.rows))
+            self.system.rmass[self.rows] = new * np.where(radius > 0.0, volume(radius), self._ellipsoids())
         return len(self.rows)
+
+    def _ellipsoids(self) -> np.ndarray | float:
+        """Volumes, 1 for points."""
+        extra = self.system.extra
+        return ellipsoid_volume(extra["shape"][self.rows]) if "shape" in extra else 1.0
 
     def _image(self, values: list[str]) -> int:
         for k, word in enumerate(values):
