@@ -47,10 +47,10 @@ def add(engine: Engine, result: Result, energies: bool = True, virials: bool = T
     shares: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     for t in engine.terms:
         if t.category not in shares:
-            shares[t.category] = np.zeros(n), np.zeros((n, 6))
+            shares[t.category] = np.zeros(n if energies else 0), np.zeros((n if virials else 0, 6))
         of = _of_pairs if isinstance(t, (PairTerm, PairRowsTerm)) else _of_others
         if isinstance(t, OnSites):
-            mine = np.zeros(n), np.zeros((n, 6))
+            mine = np.zeros(n if energies else 0), np.zeros((n if virials else 0, 6))
             of(engine, t, energies, virials, *mine)
             t.hand_over(engine, *mine)
             for total, part in zip(shares[t.category], mine):

@@ -1,6 +1,7 @@
 """The engine: atom data in slots, neighbour list, terms; energy, forces and virial of a `System`."""
 from __future__ import annotations
 
+import math
 import time
 
 import numpy as np
@@ -12,10 +13,12 @@ from asemd.bond_term import Bonds, bond_terms
 from asemd.embedded_term import EmbeddedTerm
 from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
+from asemd.kernels.rows import of_slots
 from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import lanes
 from asemd.kernels.team import Team
 from asemd.kspace import solve
+from asemd.late import Late
 from asemd.manybody_term import all_pairs, many_term
 from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
 from asemd.noise_term import list_term
@@ -197,11 +200,9 @@ class Engine:
         """Positions and velocities of the system into slots, and a fresh list, unless one is made anyway before the next forces."""
         n = self.system.n
         if self.state is None or self.state.x.shape[1] < n + 8:
-            self.ns = 0
-            self.state = None
+            self.ns, self.state = 0, None
             self._allocate(n + 8 + n // 8)
-        self.ns = n
-        s = self.state
+        self.ns, s = n, self.state
         s.row[:] = -1
         s.row[:n] = np.arange(n, dtype=np.int32)
         s.x[:, :n] = self.system.x.T
@@ -327,11 +328,9 @@ class Engine:
                         self.bad[:] = 0.0
                         raise t.describe(self, item, value)
 
-    def collect(self) -> Result:
-        """The result of the last evaluation with energies."""
-        acc = self.acc.sum(axis=0)
-        energy = dict.fromkeys(ENERGIES, 0.0)
-        virial_of = {}
+    def collect(self, late: bool = False) -> Result:
+        """The result of the last evaluation with energies; `late` as for `store`."""
+        acc, energy, virial_of = self.acc.sum(axis=0), dict.fromkeys(ENERGIES, 0.0), {}
         for t in self.terms:
             a = acc[t.index]
             if t.category == "pair":
@@ -345,22 +344,24 @@ class Engine:
         if self.state.virial.any():
             virial_of["fix"] = self.state.virial.sum(axis=0)
         virial = sum(virial_of.values(), np.zeros(6))
-        self.store()        # the box too, which the tail depends on
+        self.store(late)        # the box too, which the tail depends on
         if self.interactions.tail and self.has_pairs:
             energy["etail"], p = self.interactions.tail_correction(self.system, self.units)
             p *= abs(np.linalg.det(self.vectors)) / self.units.nktv2p
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])
-        if not np.isfinite(acc).all() or not np.isfinite(self.system.f).all():
+        if not np.isfinite(acc).all() or not (math.isfinite(self.state.f[:, :self.ns].sum()) or np.isfinite(self.system.f).all()):
             raise faults.not_finite(self)
-        self.result = Result(energy, virial, virial_of, self.system.f)
+        self.result = Result(energy, virial, virial_of, self.system)
         return self.result
 
-    def store(self) -> None:
-        """Slots back into the system: positions, velocities, forces."""
+    def store(self, late: bool = False) -> None:
+        """Slots back into the system: positions, velocities, forces; if `late`, each of them when somebody reads it."""
         s, y = self.state, self.system
         if self.box_moves:
             live_box.take(self)
-        self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
+        y.late = Late(lambda name, out: of_slots(self.slot_of, getattr(self.state, name), out), "xvf") if late else None
+        if not late:
+            self.k.store(s.x, s.v, s.f, s.row, self.ns, y.x, y.v, y.f)
         store_torques(s, self.ns, y)
         self.bonds.carry_back()
 
@@ -393,8 +394,7 @@ class Engine:
         """Energy, forces and virial at the system's positions; per-atom shares when asked for."""
         self.load()
         self.forces(True)
-        result = self.collect()
-        return self.per_atom(result, ["energies"] * energies + ["virials"] * virials)
+        return self.per_atom(self.collect(), ["energies"] * energies + ["virials"] * virials)
 
 
 __all__ = ["Engine", "Result", "Settings", "Snapshot"]

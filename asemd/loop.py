@@ -118,9 +118,9 @@ class Loop:
         a = fix.atom_arrays(self)
         return a if isinstance(a, tuple) else np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)
 
-    def _collect(self) -> Result:
+    def _collect(self, late: bool = False) -> Result:
         """The result of this step, whose energies were computed."""
-        self.result, self._collected = self.engine.collect(), self.step
+        self.result, self._collected = self.engine.collect(late), self.step
         return self.result
 
     def _make_module(self) -> None:
@@ -209,14 +209,14 @@ class Loop:
         """The `end_of_step` hooks in Python that are due."""
         began = time.perf_counter()
         if needs:
-            self._collect()
+            self._collect(late=True)
             self.engine.per_atom(self.result, needs)
             self._in_sync = True
         for n in self._ends:
             if self.fixes[n].next_end(self.step - 1) == self.step:
                 self._in_sync = bool(self._in_sync) if self.fixes[n].observes else None
                 self.fixes[n].end_of_step(self)
-        self._in_sync = None
+        self._in_sync = self.system.late = None
         self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _segment(self, last: int, energy: bool) -> None:
@@ -364,7 +364,7 @@ class Loop:
     def sync_out(self) -> None:
         """Positions, velocities and forces of the slots into the system; observers of a step one after the other share them."""
         if not self._in_sync:
-            self.engine.store()
+            self.engine.store(late=self._in_sync is not None)
             self._in_sync = self._in_sync is not None or None
 
     def evaluate(self) -> Result:

@@ -70,11 +70,16 @@ class Result:
     energy: dict[str, float]
     virial: np.ndarray
     virial_of: dict[str, np.ndarray]
-    forces: np.ndarray
+    system: object = field(repr=False)
     energies: np.ndarray | None = None
     virials: np.ndarray | None = None
     energies_of: dict[str, np.ndarray] = field(default_factory=dict)
     virials_of: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @property
+    def forces(self) -> np.ndarray:
+        """(n, 3) by atom row, until the next computation."""
+        return self.system.f
 
     @property
     def potential(self) -> float:

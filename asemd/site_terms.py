@@ -61,9 +61,9 @@ class OnSites:
                 self.half, engine.state.box.vectors, self._seen, self._on_sites[tid], super().arguments(self.sighted(engine), tid))
 
     def hand_over(self, engine, energy: np.ndarray, virial: np.ndarray) -> None:
-        """Shares of energy (n,) and virial (n, 6) of the sites, by row of their oxygen atoms, go to the three atoms."""
+        """Shares of energy (n,) and virial (n, 6), if any, of the sites, by row of their oxygen atoms, go to the three atoms."""
         oxygen, *hydrogens = self._atoms.T
-        for a in (energy, virial):
+        for a in (a for a in (energy, virial) if len(a)):
             part = self.half * a[oxygen]
             a[oxygen] -= 2.0 * part
             for row in hydrogens:

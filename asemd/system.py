@@ -13,6 +13,7 @@ from asemd import units as unit_styles
 from asemd.atom_style import UNITS, bonded, with_orientations
 from asemd.box import Box
 from asemd.errors import InputError, InputWarning
+from asemd.late import late_arrays
 from asemd.topology import KINDS, Topology, rows_of
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ def __getattr__(name: str):
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
+@late_arrays("x", "v", "f")       # within a run
 @dataclass(eq=False)
 class System:
     """Atoms in a fixed order (rows count from 0), in the units of one unit style.
@@ -94,8 +96,7 @@ class System:
         self.type = np.array(np.broadcast_to(self.type, n), np.int32)
         self.id = np.arange(1, n + 1, dtype=np.int64) if self.id is None else np.array(self.id, np.int64)
         self.image = np.zeros((n, 3), np.int32) if self.image is None else np.array(self.image, np.int32)
-        self.v = np.zeros((n, 3)) if self.v is None else np.array(self.v, float)
-        self.f = np.zeros((n, 3)) if self.f is None else np.array(self.f, float)
+        self.v, self.f = (np.zeros((n, 3)) if a is None else np.array(a, float) for a in (self.v, self.f))
         self.molecule = np.zeros(n, np.int64) if self.molecule is None else np.array(self.molecule, np.int64)
         self.q = None if self.q is None else np.array(np.broadcast_to(self.q, n), float)
         self.rmass = None if self.rmass is None else np.array(np.broadcast_to(self.rmass, n), float)
@@ -117,7 +118,7 @@ class System:
     @property
     def n(self) -> int:
         """Number of atoms."""
-        return len(self.x)
+        return len(self.id)
 
     @property
     def has_charge(self) -> bool:

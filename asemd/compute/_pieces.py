@@ -8,6 +8,7 @@ import numpy as np
 from asemd.compute._original import unwrapped
 from asemd.kernels import observe
 
+NOTHING = np.zeros(0, np.int32)
 SINGULAR = 1e-6     # determinants and relative moments of inertia below: about that axis nothing turns
 
 
@@ -25,9 +26,17 @@ class Pieces:
 
     def __init__(self, system, index: np.ndarray, count: int = 1):
         self.system, self.count = system, count
-        self._index, self._whole = index, np.count_nonzero(index) == len(index)
-        self.at = self._mine(np.asarray(index)).astype(np.int64, copy=False) - 1
-        self.m = self._mine(system.atom_masses())
+        self._index, self._whole = np.asarray(index), np.count_nonzero(index) == len(index)
+
+    @cached_property
+    def at(self) -> np.ndarray:
+        """(m,) the piece of each of the atoms `rows`, from 0."""
+        return self._mine(self._index).astype(np.int64, copy=False) - 1
+
+    @cached_property
+    def m(self) -> np.ndarray:
+        """(m,) their masses."""
+        return self._mine(self.system.atom_masses())
 
     @cached_property
     def rows(self) -> np.ndarray:
@@ -72,10 +81,20 @@ class Pieces:
     def v(self) -> np.ndarray:
         return self._mine(self.system.v)
 
+    @property
+    def _atoms(self) -> tuple[np.ndarray, ...]:
+        """Pieces, masses, and places of all atoms, for compiled sums."""
+        s = self.system
+        masses = (s.rmass, NOTHING) if s.rmass is not None else (s.mass, s.type)
+        return self._index, *masses, s.x, s.image, s.box.cell
+
     @cached_property
     def com(self) -> np.ndarray:
         """(count, 3) centres of mass."""
-        return self.mean(self.x)
+        mass, out = np.zeros(self.count), np.zeros((self.count, 3))
+        observe.centres(*self._atoms, mass, out)
+        self.mass = mass
+        return out
 
     @cached_property
     def vcm(self) -> np.ndarray:
@@ -89,7 +108,7 @@ class Pieces:
     def gyration(self) -> np.ndarray:
         """(count, 3, 3) tensors of the squared radius of gyration."""
         out = np.zeros((self.count, 3, 3))
-        observe.moments(self.at, self.m, self.x, self.com, out)
+        observe.moments(*self._atoms, self.com, out)
         return self._by_mass(out)
 
     def inertia(self) -> np.ndarray:

@@ -37,7 +37,7 @@ class PEAtom(EnergyTerms):
             of = state.result.energies_of
             energies = sum((of[term] for term in self.terms if term in of), np.zeros(state.system.n))
         else:
-            energies = state.result.energies.copy()
+            energies = state.result.energies
         if not self.terms or "fix" in self.terms:
             for fix in state.fixes:
                 if fix.thermo_energy and hasattr(fix, "energies"):

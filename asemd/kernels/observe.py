@@ -99,6 +99,15 @@ def flux(v, energy, more, stresses, lower, mask, out):
 
 
 @njit(cache=True, nogil=True)
+def same(a, b):
+    """Whether whole numbers are the same."""
+    for i in range(len(a)):
+        if a[i] != b[i]:
+            return False
+    return len(a) == len(b)
+
+
+@njit(cache=True, nogil=True)
 def within(numbers, known, highest, out):
     """Numbers of atoms that are known and from 1 to the highest one; 0 for the others."""
     for i in range(len(numbers)):
@@ -140,6 +149,25 @@ def weighted(at, masses, values, out):
 
 
 @njit(cache=True, nogil=True)
+def centres(index, masses, types, x, image, cell, mass, out):
+    """Mass and centre of mass, of unwrapped positions, of each piece into `mass (pieces,)` and `out (pieces, 3)`, 0 without atoms.
+
+    `index (n,)`: the piece from 1 on, 0 for none; `masses`: of atoms, or of `types (n,)` if there are any.
+    """
+    for i in range(len(x)):
+        k = np.int64(index[i]) - 1
+        if k >= 0:
+            a, b, c = float(image[i, 0]), float(image[i, 1]), float(image[i, 2])
+            m = masses[types[i]] if len(types) else masses[i]
+            mass[k] += m
+            for d in range(3):
+                out[k, d] += m * (x[i, d] + (a * cell[0, d] + b * cell[1, d] + c * cell[2, d]))
+    for k in range(len(mass)):
+        for d in range(3):
+            out[k, d] = out[k, d] / mass[k] if mass[k] > 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True)
 def heat(at, masses, v, out):
     """Sum of m v^2 of each piece."""
     for i in range(len(at)):
@@ -148,13 +176,16 @@ def heat(at, masses, v, out):
 
 
 @njit(cache=True, nogil=True)
-def moments(at, masses, x, centres, out):
-    """Sum of m d d of each piece, d from its centre, into `out (pieces, 3, 3)`."""
-    for i in range(len(at)):
-        k = at[i]
+def moments(index, masses, types, x, image, cell, centres, out):
+    """Sum of m d d of each piece, d from its centre, into `out (pieces, 3, 3)`; arguments as for `centres`."""
+    for i in range(len(x)):
+        k = np.int64(index[i]) - 1
         if k >= 0:
-            m = masses[i]
-            a, b, c = x[i, 0] - centres[k, 0], x[i, 1] - centres[k, 1], x[i, 2] - centres[k, 2]
+            m = masses[types[i]] if len(types) else masses[i]
+            p, q, r = float(image[i, 0]), float(image[i, 1]), float(image[i, 2])
+            a = x[i, 0] + (p * cell[0, 0] + q * cell[1, 0] + r * cell[2, 0]) - centres[k, 0]
+            b = x[i, 1] + (p * cell[0, 1] + q * cell[1, 1] + r * cell[2, 1]) - centres[k, 1]
+            c = x[i, 2] + (p * cell[0, 2] + q * cell[1, 2] + r * cell[2, 2]) - centres[k, 2]
             out[k, 0, 0] += m * a * a
             out[k, 1, 1] += m * b * b
             out[k, 2, 2] += m * c * c

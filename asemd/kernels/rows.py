@@ -7,6 +7,14 @@ from asemd.kernels.target import njit
 
 
 @njit(cache=True, nogil=True)
+def of_slots(slot_of, values, out):
+    """Vectors ``(3, slots)`` of atoms as `out (n, 3)`."""
+    for r in range(len(slot_of)):
+        s = np.uint64(slot_of[r])
+        out[r, 0], out[r, 1], out[r, 2] = values[0, s], values[1, s], values[2, s]
+
+
+@njit(cache=True, nogil=True)
 def of_tables(slot_of, front, back, scale, column, virials, energy, virial):
     """Add `scale` times tables ``(threads, slots, 4)``, xx yy zz and xy xz yz, to `virial (n, 6)`, by atom row, and that column of the
     first one to `energy (n,)`, unless it is below 0."""
@@ -27,14 +35,16 @@ def of_tables(slot_of, front, back, scale, column, virials, energy, virial):
 @njit(cache=True, nogil=True)
 def of_columns(slot_of, atom_energy, atom_virial, scale, energy, virial):
     """Add `scale` times ``atom_energy (threads, slots)`` and ``atom_virial (threads, 6, slots)`` to `energy (n,)` and `virial (n, 6)`, by
-    atom row."""
+    atom row; to those of them that are not empty."""
     for t in range(atom_energy.shape[0]):
         for r in range(len(slot_of)):
             s = np.uint64(slot_of[r])
-            energy[r] += scale * atom_energy[t, s]
+            if len(energy):
+                energy[r] += scale * atom_energy[t, s]
             atom_energy[t, s] = 0.0
             for c in range(6):
-                virial[r, c] += scale * atom_virial[t, c, s]
+                if len(virial):
+                    virial[r, c] += scale * atom_virial[t, c, s]
                 atom_virial[t, c, s] = 0.0
 
 

@@ -1,5 +1,5 @@
 """What sampling costs: processor time of steps with it less that of steps without, asemd and LAMMPS in turns, 32,000 atoms that stand
-still (a Lennard-Jones melt, bead-spring chains), samples every 10 steps unless the case says otherwise.
+still (a Lennard-Jones melt, bead-spring chains), samples every 2 steps.
 
 For each case the milliseconds that a sample adds, LAMMPS's in terms of asemd's (above 1: asemd is faster), and the same for all the steps
 with it. ``python -m tests.benchmarks.sampling [cases...]``: those whose names contain one of the words.
@@ -12,6 +12,8 @@ from pathlib import Path
 
 from tests.benchmarks import compare, scenes
 
+EVERY = 2       # the steps between find the caches as a run leaves them; more samples in as many steps tell better what one costs
+OFTEN = f"{EVERY} 1 {EVERY}"
 STILL = "displace_atoms all random 0.1 0.1 0.1 4321\n"
 FLUX = ["compute k all ke/atom", "compute e all pe/atom"]
 ONE, THREE = "c_c[1]", "c_c[1] c_c[2] c_c[3]"
@@ -21,21 +23,21 @@ REGIONS = {"block": ["block 5 15 5 15 5 15"], "sphere": ["sphere 10 10 10 8"], "
 MOLECULES = "compute m all chunk/atom molecule"
 
 
-def averaged(compute: str, values: str = "c_c", mode: str = "scalar", before=(), every: int = 10) -> tuple[int, list[str]]:
+def averaged(compute: str, values: str = "c_c", mode: str = "scalar", before=()) -> list[str]:
     """A compute under fix ave/time."""
-    return every, [*before, f"compute c all {compute}", f"fix s all ave/time {every} 1 {every} {values} mode {mode}"]
+    return [*before, f"compute c all {compute}", f"fix s all ave/time {OFTEN} {values} mode {mode}"]
 
 
-def chunks(bins: str, values: str, *more: str, before=()) -> tuple[int, list[str]]:
+def chunks(bins: str, values: str, *more: str, before=()) -> list[str]:
     """Averages over bins."""
-    return 10, [*before, f"compute c all chunk/atom bin/{bins} {BINS[bins]} units reduced",
-                " ".join(["fix s all ave/chunk 10 1 10 c", values, *more])]
+    return [*before, f"compute c all chunk/atom bin/{bins} {BINS[bins]} units reduced",
+            " ".join([f"fix s all ave/chunk {OFTEN} c", values, *more])]
 
 
-def region(*shapes: str) -> tuple[int, list[str]]:
+def region(*shapes: str) -> list[str]:
     """A group of the atoms in a region; of several shapes the last word is that of the region."""
     names = [f"region r{k} {shape}" for k, shape in enumerate(shapes)]
-    return 10, [*names, f"group g dynamic all region r{len(shapes) - 1} every 10"]
+    return [*names, f"group g dynamic all region r{len(shapes) - 1} every {EVERY}"]
 
 
 STRESS = ["compute p all stress/atom NULL"]
@@ -45,19 +47,20 @@ MELT = {
     "rdf": averaged("rdf 100", "c_c[*]", "vector"),
     "coord/atom": averaged("reduce ave c_p", before=["compute p all coord/atom cutoff 1.5"]),
     "reduce": averaged("reduce sum vx vy vz", THREE),
-    "ave/time of scalars": (10, ["fix s all ave/time 10 1 10 c_thermo_temp c_thermo_pe c_thermo_press"]),
-    "ave/correlate of pressures": (5, ["fix s all ave/correlate 5 100 1000 c_thermo_press[4] c_thermo_press[5] c_thermo_press[6]"]),
-    "ave/histo": (10, ["fix s all ave/histo 10 1 10 -5 5 100 vx vy vz mode vector"]),
+    "ave/time of scalars": [f"fix s all ave/time {OFTEN} c_thermo_temp c_thermo_pe c_thermo_press"],
+    "ave/correlate of pressures": [f"fix s all ave/correlate {EVERY} 100 {100 * EVERY} "
+                                   "c_thermo_press[4] c_thermo_press[5] c_thermo_press[6]"],
+    "ave/histo": [f"fix s all ave/histo {OFTEN} -5 5 100 vx vy vz mode vector"],
     "ave/chunk bin/1d": chunks("1d", "density/number temp vx"),
     "ave/chunk bin/2d": chunks("2d", "density/number temp vx"),
     "ave/chunk bin/3d": chunks("3d", "density/number temp vx"),
     "ave/chunk bin/3d to a file": chunks("3d", "density/number temp vx", "file chunks"),
     "ave/chunk of stress/atom": chunks("1d", "c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]", before=STRESS),
-    "ave/atom of stress/atom": (10, [*STRESS, "fix s all ave/atom 10 1 10 c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]"]),
+    "ave/atom of stress/atom": [*STRESS, f"fix s all ave/atom {OFTEN} c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]"],
     "stress/atom": averaged("reduce sum c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]", THREE, before=STRESS),
     "pe/atom": averaged("reduce sum c_p", before=["compute p all pe/atom"]),
-    "heat/flux": averaged("heat/flux k e p", THREE, before=[*FLUX, "compute p all stress/atom NULL virial"], every=5),
-    "heat/flux of centroids": averaged("heat/flux k e p", THREE, before=[*FLUX, "compute p all centroid/stress/atom NULL virial"], every=5),
+    "heat/flux": averaged("heat/flux k e p", THREE, before=[*FLUX, "compute p all stress/atom NULL virial"]),
+    "heat/flux of centroids": averaged("heat/flux k e p", THREE, before=[*FLUX, "compute p all centroid/stress/atom NULL virial"]),
     **{f"region {name}": region(*shapes) for name, shapes in REGIONS.items()},
     "region union": region("sphere 10 10 10 8", "block 5 15 5 15 5 15", "union 2 r0 r1"),
     "region intersect": region("sphere 10 10 10 8", "block 5 15 5 15 5 15", "intersect 2 r0 r1"),
@@ -67,7 +70,7 @@ CHAINS = {
     "com/chunk": averaged("com/chunk m", "c_c[*]", "vector", [MOLECULES]),
     "vcm/chunk": averaged("vcm/chunk m", "c_c[*]", "vector", [MOLECULES]),
     "msd/chunk": averaged("msd/chunk m", "c_c[4]", "vector", [MOLECULES]),
-    "ave/chunk of molecules": (10, [MOLECULES, "fix s all ave/chunk 10 1 10 m temp vx"]),
+    "ave/chunk of molecules": [MOLECULES, f"fix s all ave/chunk {OFTEN} m temp vx"],
     "stress/atom of chains": averaged("reduce sum c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]", THREE, before=STRESS),
     "reduce of bond/local": averaged("reduce ave c_b[1] c_b[2] inputs local", "c_c[1] c_c[2]",
                                      before=["compute b all bond/local dist engpot"]),
@@ -106,7 +109,7 @@ def measure(samples: int = 5, steps: int = 100, cells=(20, 20, 20), chains: int 
                 for r in running:
                     r.do([*scene().splitlines(), "run 1"])
                 for name in chosen:
-                    out[name] = _of_case(running, *own[name], samples, steps)
+                    out[name] = _of_case(running, own[name], samples, steps)
                     if say:
                         say(name, out[name])
             finally:
@@ -115,7 +118,7 @@ def measure(samples: int = 5, steps: int = 100, cells=(20, 20, 20), chains: int 
     return out
 
 
-def _of_case(running: list, every: int, lines: list[str], samples: int, steps: int) -> dict:
+def _of_case(running: list, lines: list[str], samples: int, steps: int) -> dict:
     """Each engine's milliseconds per sample; LAMMPS's time for samples and for all steps with them in terms of asemd's."""
     without: dict[str, list[float]] = {r.contender.name: [] for r in running}
     total: dict[str, list[float]] = {r.contender.name: [] for r in running}
@@ -127,7 +130,7 @@ def _of_case(running: list, every: int, lines: list[str], samples: int, steps: i
                 without[r.contender.name].append(spent[0])
                 total[r.contender.name].append(spent[1])
     # least times: other work on the machine only adds to them
-    cost = {name: {"ms": 1e3 * (min(with_it) - min(without[name])) * every / steps, "all": min(with_it)} for name, with_it in total.items()}
+    cost = {name: {"ms": 1e3 * (min(with_it) - min(without[name])) * EVERY / steps, "all": min(with_it)} for name, with_it in total.items()}
     ours, *others = cost
     return {**{f"{name} ms": of["ms"] for name, of in cost.items()},
             **{f"{word} {name}": cost[name][key] / max(cost[ours][key], 1e-6) for word, key in (("added", "ms"), ("all", "all"))
