@@ -56,6 +56,8 @@ class Interactions:
         Words of ``kspace_style``.
     kspace_modify : dict
         Keyword -> value of `asemd.kspace_settings`, those that were given since the style was chosen.
+    kspace_factor : float
+        Of the Coulomb part of the solver; ``fix adapt`` changes it for the time of a run.
     long_range : dict
         What pair styles must know of the solver, such as ``g_ewald``; `asemd.kspace.solve` sets it before forces are computed.
     """
@@ -76,6 +78,7 @@ class Interactions:
     dielectric: float = 1.0
     kspace: str = "none"
     kspace_modify: dict[str, Any] = field(default_factory=dict)
+    kspace_factor: float = field(default=1.0, compare=False)
     long_range: dict[str, float] = field(default_factory=dict, compare=False)
 
     bond, angle, dihedral, improper, pair = map(_property, CATEGORIES)

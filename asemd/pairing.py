@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from asemd import coulomb_table, modifiers
+from asemd import coulomb_scale, coulomb_table, modifiers
 from asemd.errors import InputError, InputWarning
 from asemd.pairstyle import PairStyle, PairTables, missing_pairs
 
@@ -141,6 +141,8 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
                 if interactions.table.get("table") and "g_ewald" in settings:
                     style = coulomb_table.tabled(style)
                     settings, arrays = coulomb_table.settings_of(style, settings, interactions.table)
+                if use.coulomb:
+                    style, filled = coulomb_scale.factored(style), coulomb_scale.with_factors(filled, use.coulomb)
                 tables = style.pack_pairs(settings, filled, ntypes, units, shift)
                 tables = replace(tables, arrays=tables.arrays + arrays)
                 out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))

@@ -26,6 +26,8 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.style import Parameter, Style, register, units_of
 
+SCALE = "coulomb_scale"      # a row of Coulomb parts, see `asemd.coulomb_scale`
+
 
 @dataclass(frozen=True)
 class Part:
@@ -107,6 +109,8 @@ class PairStyle(Style):
         ``derived(coeff, settings)``: mapping of these names to their values for one pair of types; without it `pack_pairs` makes them.
     shifts : bool
         ``pair_modify shift yes`` has an effect.
+    scales : bool
+        Coulomb parts can have a factor for each pair of types, ``scale`` of ``fix adapt``.
     """
 
     solvers: frozenset[str] = frozenset()      # kinds of kspace_style that complete the parts; empty: none is needed
@@ -124,12 +128,12 @@ class PairStyle(Style):
 
     def __init__(self, name: str, parts, *, settings="", coeff="", defaults=MappingProxyType({}), mix=MappingProxyType({}),
                  mix_rule="geometric", tail=None, units=MappingProxyType({}), rows="", splits=False, derived=None,
-                 shifts=True, **options):
+                 shifts=True, scales=False, **options):
         notes = dict(units)
         for function, _ in parts:
             notes = {**units_of(function), **notes}
         self.mix, self.mix_rule, self.tail, self.splits = dict(mix), mix_rule, tail, splits
-        self.derived, self.shifts = derived, shifts
+        self.derived, self.shifts, self.scales = derived, shifts, scales
 
         def parameters(spec):
             return tuple(Parameter(n, notes.get(n) or ("distance" if n.startswith(("cut", "inner", "outer")) else ""), optional,

@@ -30,6 +30,7 @@ from __future__ import annotations
 import copy
 import inspect
 import math
+import textwrap
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -334,3 +335,8 @@ def dihedral(name: str, **options):
 def improper(name: str, **options):
     """Register ``f(phi | chi, ...) -> E, dE/d...`` as improper style `name`."""
     return _bonded("improper", name, options)
+
+
+def text_of(function: Callable) -> str:
+    """Source of a function: of its file, or the attribute ``source`` of one that was written by a program."""
+    return getattr(function, "source", None) or textwrap.dedent(inspect.getsource(inspect.unwrap(function)))

@@ -33,6 +33,8 @@ class Use:
     scale : float or str
         Of a sub-style of ``hybrid/scaled``: a factor or a variable, ``v_name``, whose present value is `factor`; a value for each atom (n,)
         scales the forces on the atoms, and there is no energy.
+    coulomb : dict
+        (i, j), i <= j -> factor of the Coulomb interaction, which ``scale`` of ``fix adapt`` sets; others have 1.
     memory : dict
         What a bond style remembers from run to run: reference lengths, broken bonds.
     """
@@ -45,6 +47,7 @@ class Use:
     special: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     scale: float | str = 1.0
     factor: Any = field(default=1.0, repr=False, compare=False)
+    coulomb: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
     memory: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self):

@@ -174,7 +174,7 @@ REFUSED = {
     "property/atom d_a ghost": "yes or no",
     "adapt 1": "at least one", "adapt 1 pair lj/cut epsilon 1": "needs 5 values", "adapt 1 pair lj/cut eps 1 1 v_v": "no coefficient 'eps'",
     "adapt 1 pair lj/cutt epsilon 1 1 v_v": "no pair style", "adapt 1 pair lj/cut epsilon 1 3 v_v": "valid range",
-    "adapt 1 pair lj/cut epsilon 1 1 2.0": "v_name", "adapt 1 kspace v_v": "kspace", "adapt 1 atom charge v_v": "no charges",
+    "adapt 1 pair lj/cut epsilon 1 1 2.0": "v_name", "adapt 1 kspace": "needs 1 value", "adapt 1 atom charge v_v": "no charges",
     "adapt -1 pair lj/cut epsilon 1 1 v_v": "negative", "controller 5 1 1 1 1 c_t 1": "needs 8 values",
     "controller 0 1 1 1 1 c_t 1 c": "undefined variable c", "controller 5 1 1 1 1 c_t 1 v": "internal",
     "ave/moments 2 3 10 c_t": "needs 5 values", "ave/moments 2 3 10 c_t men": "unknown keyword 'men'",

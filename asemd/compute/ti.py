@@ -2,8 +2,8 @@ r"""Derivative of the energy by a coupling parameter, for thermodynamic integrat
 
 .. math:: \frac{dU}{d\lambda} = \sum \frac{U_s}{f(\lambda)} \frac{df}{d\lambda}
 
-summed over terms: pair styles whose energy :math:`U_s` is scaled by :math:`f(\lambda)` (as with fix adapt), and the tail correction. Of a
-pair style count the shares of the atoms of some types. A term whose f is zero counts as zero.
+summed over terms: pair styles whose energy :math:`U_s` is scaled by :math:`f(\lambda)` (as with fix adapt), the long-range solver, and the
+tail correction. Of pair styles and solver count the shares of the atoms of some types. A term whose f is zero counts as zero.
 
 Source: LAMMPS manual, compute ti; Eike and Maginn, J. Chem. Phys. 124, 164503 (2006). Units: energy.
 """
@@ -24,7 +24,7 @@ class TI(Compute):
     group : str
         Makes no difference.
     terms : sequence of (name, types, f, slope)
-        Pair style or ``tail``, type or range, names of equal-style variables (``v_name``).
+        Pair style, ``tail`` or ``kspace``, type or range, names of equal-style variables (``v_name``).
     variables : asemd.variable.Variables
         Where they are.
 
@@ -42,6 +42,8 @@ class TI(Compute):
         super().__init__(group)
         if not terms:
             raise InputError("compute ti needs at least one term: pair style, types, v_name1, v_name2")
+        if any(name == "kspace" for name, *_ in terms):
+            self.needs = self.needs | {"energies"}
         self.terms, self.variables = [(plain_name(name), str(types), f, slope) for name, types, f, slope in terms], variables
         for *_, f, slope in self.terms:
             for word in (f, slope):
@@ -58,12 +60,9 @@ class TI(Compute):
         if len(words) % 4:
             raise InputError(f"compute ti: each term needs 4 words (pair style, types, v_name1, v_name2), got {' '.join(words)}")
         terms = [take(words[k:], 4, "compute ti") for k in range(0, len(words), 4)]
-        for name, *_ in terms:
-            if name == "kspace":
-                raise InputError("compute ti kspace: there is no kspace style")
         out = cls(group, terms, session.variables)
         for name, types, *_ in out.terms:
-            if name != "tail":
+            if name not in ("tail", "kspace"):
                 _chosen(session.scene.interactions, name)
             low, high = _types(session.scene.need_system("compute ti"), types)
             if name == "tail" and (low, high) != (1, session.scene.system.counts["ntypes"]):
@@ -72,6 +71,11 @@ class TI(Compute):
 
     def to_lammps(self) -> list[str]:
         return [word for term in self.terms for word in term]
+
+    def setup(self, state) -> None:
+        """Refuse a long-range part that is not there."""
+        if any(name == "kspace" for name, *_ in self.terms) and (state.engine is None or state.engine.solver is None):
+            raise InputError("compute ti kspace needs a kspace_style")
 
     def scalar(self, state) -> float:
         """dU/dlambda."""
@@ -85,6 +89,9 @@ class TI(Compute):
             low, high = _types(state.system, types)
             if name == "tail":
                 energy = state.result.energy["etail"]
+            elif name == "kspace":
+                inside = (low <= state.system.type) & (state.system.type <= high)
+                energy = state.result.energy["elong"] if inside.all() else float(state.result.energies_of["kspace"][inside].sum())
             else:
                 if pairs is None:
                     pairs = half(state, force_cutoff(state, "compute ti"))

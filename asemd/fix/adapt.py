@@ -1,9 +1,10 @@
 """Change coefficients of the force field, charges or diameters during a run, by variables.
 
-``pair STYLE COEFFICIENT I J v_name``, ``bond|angle|dihedral|improper STYLE COEFFICIENT TYPE v_name``, ``atom charge|diameter v_name``; on
-the first step of a run and on multiples of N (N = 0: on the first step only). ``scale yes``: the variable multiplies what the coefficient
-was. Pairs of types without own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. Masses follow
-diameters and densities stay, unless ``mass no``.
+``pair STYLE COEFFICIENT I J v_name``, ``bond|angle|dihedral|improper STYLE COEFFICIENT TYPE v_name``, ``atom charge|diameter v_name``,
+``kspace v_name`` (a factor of the Coulomb part of the long-range solver, 1 again in a run without it); on the first step of a run and on
+multiples of N (N = 0: on the first step only). ``scale yes``: the variable multiplies what the coefficient was. Pairs of types without
+own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. Masses follow diameters and densities stay,
+unless ``mass no``. LAMMPS's ewald/disp keeps the energy of charges by themselves as it was when the run began; here it follows.
 
 Source: LAMMPS manual, fix adapt.
 """
@@ -11,12 +12,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.compute._perturbed import spelled, uses_of
+from asemd.compute._perturbed import held, spelled, uses_of
 from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
 from asemd.fix.formula import Formula
 from asemd.kernels.pair import uniform_rows, varying_rows
+from asemd.kspace.term import KSpaceTerm
 from asemd.population import retie
 from asemd.words import bounds, take, whole, yes_no
 
@@ -38,6 +40,8 @@ class Adapt(Fix):
     bond, angle, dihedral, improper : sequence of (style, coefficient, type, value)
     charge, diameter : callable, optional
         Functions of the loop that return a number or one per atom.
+    kspace : callable, optional
+        A function of the loop that returns the factor of the long-range solver.
     scale, reset, mass : bool
         Values are factors; what was changed goes back after a run; masses follow diameters.
 
@@ -51,15 +55,15 @@ class Adapt(Fix):
     levels = "outermost"
 
     def __init__(self, group: str = "all", every: int = 1, pair=(), bond=(), angle=(), dihedral=(), improper=(), charge=None, diameter=None,
-                 scale: bool = False, reset: bool = False, mass: bool = True):
+                 kspace=None, scale: bool = False, reset: bool = False, mass: bool = True):
         super().__init__(group)
         if every < 0:
             raise InputError(f"fix adapt: N must not be negative, got {every}")
         self.adapt_every, self.pair = every, [tuple(p) for p in pair]
         self.bonded = {c: [tuple(b) for b in given] for c, given in zip(BONDED, (bond, angle, dihedral, improper))}
-        self.charge, self.diameter, self.scale, self.reset, self.mass = charge, diameter, scale, reset, mass
-        if not self.pair and not any(self.bonded.values()) and charge is None and diameter is None:
-            raise InputError("fix adapt needs at least one of pair, bond, angle, dihedral, improper, atom")
+        self.charge, self.diameter, self.kspace, self.scale, self.reset, self.mass = charge, diameter, kspace, scale, reset, mass
+        if not self.pair and not any(self.bonded.values()) and charge is None and diameter is None and kspace is None:
+            raise InputError("fix adapt needs at least one of pair, bond, angle, dihedral, improper, kspace, atom")
         self._kept: list[tuple] = []        # dictionaries of coefficients, or arrays, and what they had
 
     @classmethod
@@ -91,9 +95,10 @@ class Adapt(Fix):
                 given[name] = cls._variable(value, session, atoms=True)
                 left = left[2:]
             elif key == "kspace":
-                raise InputError(f"{what} kspace: there is no kspace_style that could be scaled; run this script with LAMMPS")
+                given[key] = cls._variable(take(left, 1, f"{what} {key}")[0], session)
+                left = left[1:]
             else:
-                raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, ('pair', *BONDED, 'atom', *OPTIONS))}")
+                raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, ('pair', *BONDED, 'atom', 'kspace', *OPTIONS))}")
         options = {k: yes_no(v[0], f"{what} {k}") for k, v in sampled.keywords(left, OPTIONS, what).items()}
         fix = cls(group, every, **given, **options)
         fix.words = list(words)
@@ -129,6 +134,8 @@ class Adapt(Fix):
     def setup(self, loop) -> None:
         """The first change; forces are computed again."""
         self._check(loop.interactions)
+        if self.kspace is not None and loop.engine.solver is None:
+            raise InputError("fix adapt kspace needs a kspace_style")
         self._kept = []
         self._change(loop)
         loop.engine.forces(True)
@@ -144,6 +151,8 @@ class Adapt(Fix):
         self._change(loop)
 
     def finish(self, loop) -> None:
+        if self.kspace is not None:
+            loop.interactions.kspace_factor = 1.0
         if self.reset:
             for holder, key, value in reversed(self._kept):
                 _put(holder, key, value)
@@ -175,8 +184,9 @@ class Adapt(Fix):
             for use in uses_of(loop.interactions, "pair", style, name, "fix adapt"):
                 name = spelled(use.style, name)
                 for pair in pairs:
-                    if name in use.coeff.get(pair, ()):
-                        self._set(use.coeff[pair], name, number)
+                    if place := held(use, pair, name):
+                        place[0].setdefault(*place[1:])
+                        self._set(*place[:2], number)
                         coefficients = True
         for category, given in self.bonded.items():
             for style, name, t, value in given:
@@ -191,6 +201,11 @@ class Adapt(Fix):
             self._change_atoms(loop)
         if coefficients or self.charge is not None:
             self._follow(loop)
+        if self.kspace is not None:
+            loop.interactions.kspace_factor = float(self.kspace(loop))
+            for term in loop.engine.terms:
+                if isinstance(term, KSpaceTerm):
+                    term.set_factor(loop.interactions.kspace_factor)
 
     def _change_atoms(self, loop) -> None:
         system, mask = loop.system, loop.groups[self.group]
@@ -272,7 +287,7 @@ def _in_place(e: Engine, interactions, system) -> bool:
                     t.rows = varying_rows(old.tables.rows, t.uniform)
                 t.p = t.scalars()
     for t in e.terms:
-        if getattr(t, "packed", None) is not None:
+        if hasattr(getattr(t, "packed", None), "coeff"):
             fresh = t.style.pack(t.use.settings, t.use.coeff, t.packed.coeff.shape[1] - 1, e.units)
             if fresh.coeff.shape != t.packed.coeff.shape or len(fresh.arrays):
                 return False

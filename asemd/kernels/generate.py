@@ -18,7 +18,6 @@ import os
 import re
 import sys
 import tempfile
-import textwrap
 import types
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -27,6 +26,7 @@ from types import MappingProxyType
 import numpy as np
 
 from asemd.cache_folder import cache_folder
+from asemd.style import text_of
 
 PACKAGE = "asemd_kernels"
 FAST = "{'contract', 'reassoc', 'nsz', 'arcp'}"
@@ -135,11 +135,6 @@ def _is_one(node) -> bool:
 
 def _one_and_more(node) -> bool:
     return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) and _is_one(node.left)
-
-
-def text_of(function: Callable) -> str:
-    """Source of a function: of its file, or the attribute ``source`` of one that was written by a program."""
-    return getattr(function, "source", None) or textwrap.dedent(inspect.getsource(inspect.unwrap(function)))
 
 
 def plain_source(function: Callable, name: str | None = None, real: bool = False, vector: bool = False,

@@ -9,7 +9,8 @@ from types import ModuleType
 import numpy as np
 
 from asemd.kernels import packed, random
-from asemd.kernels.generate import FAST, Builder, plain_source, text_of
+from asemd.kernels.generate import FAST, Builder, plain_source
+from asemd.style import text_of
 
 INNER = "no_cpython_wrapper=True"       # called by compiled code only
 COMPILED = {"barrier": "asemd.kernels.threads", "reduce_sum": "asemd.kernels.threads"}

@@ -8,9 +8,10 @@ from functools import cache
 import numpy as np
 
 from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, vector_math
-from asemd.kernels.generate import Builder, text_of
+from asemd.kernels.generate import Builder
 from asemd.kernels.target import lanes
-from asemd.pairstyle import PairStyle
+from asemd.pairstyle import SCALE, PairStyle
+from asemd.style import text_of
 
 ROWS = (608, 1120, 2144, 4192, 8288, 16480, 32864)
 
@@ -228,7 +229,9 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
         w = "coul" if part.charged else "lj"
         slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
         if part.long:
-            bare, power = ("qq / math.sqrt(r2)", "bare") if part.charged else (f"-rows[{row + 2}, ti, tj] / (r2 * r2 * r2)", "6.0 * bare")
+            factor = f" * rows[{row + 1 + len(part.rows)}, ti, tj]" if SCALE in part.rows else ""
+            bare, power = ((f"qq{factor} / math.sqrt(r2)", "bare") if part.charged
+                           else (f"-rows[{row + 2}, ti, tj] / (r2 * r2 * r2)", "6.0 * bare"))
             near = getattr(part.function, "special", None)
             if near is not None:
                 b.function(near, f"special_{name}")

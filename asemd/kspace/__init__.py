@@ -47,6 +47,7 @@ class KSpace(ABC):
     flag = ""                   # what a pair style must have in `solvers` to work with this one
     partner = "lj/cut/coul/long"
     takes_slab = True
+    groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
     g_ewald = 0.0
@@ -131,6 +132,7 @@ class KSpace(ABC):
         self.qsum, self.qsqsum = float(q.sum()), float(q @ q)
         self.scale = interactions.coulomb_constant(units) / interactions.dielectric
         self.q2 = self.qsqsum * self.scale
+        self.factor = interactions.kspace_factor
         a, b, c = system.box.cell
         lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
         lengths[2] = abs(np.linalg.det(system.box.cell)) / (lengths[0] * lengths[1])

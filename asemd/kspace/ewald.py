@@ -20,6 +20,7 @@ class Ewald(KSpace):
     """``kspace_style ewald accuracy``."""
 
     style = flag = "ewald"
+    groups = True
 
     def choose(self, system):
         self.kmax = np.array(self.modify["kmax/ewald"], np.int64)

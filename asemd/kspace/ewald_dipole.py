@@ -23,6 +23,7 @@ class EwaldDipole(Ewald):
     """``kspace_style ewald/dipole accuracy``."""
 
     style = flag = "ewald/dipole"
+    groups = False
 
     def check(self, system):
         super().check(system)

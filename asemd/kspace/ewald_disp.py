@@ -26,6 +26,7 @@ class EwaldDisp(Ewald):
     """``kspace_style ewald/disp accuracy``."""
 
     style = flag = "ewald/disp"
+    groups = False
     partner = "lj/long/coul/long"
     dispersion = None
 
@@ -115,6 +116,12 @@ class WavesTerm(KSpaceTerm):
     def __init__(self, solver, dispersion):
         super().__init__(solver)
         self.dispersion = dispersion
+        if dispersion is not None:
+            self.constants[1] = solver.scale
+
+    def set_factor(self, factor):
+        if self.dispersion is None:
+            super().set_factor(factor)
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads

@@ -58,6 +58,7 @@ class PPPM(KSpace):
     """``kspace_style pppm accuracy``."""
 
     style = flag = "pppm"
+    groups = True
 
     def choose(self, system):
         self.order = self.modify["order"] or 5

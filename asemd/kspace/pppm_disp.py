@@ -22,6 +22,7 @@ class PPPMDisp(PPPM):
     """``kspace_style pppm/disp accuracy``."""
 
     style = flag = "pppm/disp"
+    groups = False
     partner = "lj/long/coul/long long long"
     g6 = 0.0
 
@@ -185,6 +186,12 @@ class MeshTerm(PPPMTerm):
         self.attractive = attractive
         self.order, self.mesh, g = (solver.order6, solver.mesh6, solver.g6) if attractive else (solver.order, solver.mesh, solver.g_ewald)
         self.constants[0] = g
+        if attractive:
+            self.constants[1] = solver.scale
+
+    def set_factor(self, factor):
+        if not self.attractive:
+            super().set_factor(factor)
 
     def make_kernel(self, level):
         if level == 2 and not self.shares.size:

@@ -15,6 +15,7 @@ class PPPMTIP4P(PPPM):
     """``kspace_style pppm/tip4p accuracy``."""
 
     style = flag = "pppm/tip4p"
+    groups = False
 
     def prepare(self, system, interactions, units, cutoff):
         use = next(use for use in interactions.uses["pair"] if self.flag in use.style.solvers)
@@ -36,7 +37,7 @@ class TIP4PTerm(OnSites, PPPMTerm):
         """As others, but the energy of a charge by itself stays with its oxygen atom."""
         s, oxygen = self.solver, self._atoms[:, 0]
         q = engine.system.q[oxygen]
-        own = s.scale * (s.g_ewald * q * q / math.sqrt(math.pi) + 0.5 * math.pi * q * s.qsum / (s.g_ewald**2 * s.volume))
+        own = self.constants[1] * (s.g_ewald * q * q / math.sqrt(math.pi) + 0.5 * math.pi * q * s.qsum / (s.g_ewald**2 * s.volume))
         energy[oxygen] += own
         super().hand_over(engine, energy, virial)
         energy[oxygen] -= own

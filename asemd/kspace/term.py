@@ -24,7 +24,8 @@ class KSpaceTerm(Term):
     def __init__(self, solver):
         self.solver, self.ready = solver, False
         slab = 0.0 if solver.slab is None else 2.0 if solver.slab == "nozforce" else 1.0
-        self.constants = np.array([solver.g_ewald, solver.scale, solver.qsum, solver.qsqsum, solver.stretch, slab, solver.least])
+        self.constants = np.array([solver.g_ewald, solver.scale * solver.factor, solver.qsum, solver.qsqsum, solver.stretch, slab,
+                                   solver.least])
 
     def kernel(self, energy, per_atom):
         return self.make_kernel(2 if per_atom else 1 if energy else 0)
@@ -49,6 +50,25 @@ class KSpaceTerm(Term):
     @abstractmethod
     def of_solver(self, engine, tid: int) -> tuple:
         """Arguments of this solver's kernels."""
+
+    def set_factor(self, factor: float) -> None:
+        """From now on, energies and forces of charges are so many times what they are."""
+        self.constants[1] = self.solver.scale * factor
+
+    def of_charges(self, engine, q: np.ndarray, x: np.ndarray) -> tuple[float, np.ndarray]:
+        """Energy, and forces (n, 3), that atoms at x (n, 3) would have with the charges q (n,)."""
+        kept, sums, state, slots = (engine.buffers, engine.acc, engine.state), self.constants[2:4].copy(), engine.state, engine.slot_of
+        places, charges = state.x.copy(), np.zeros_like(state.q)
+        places[:, slots], charges[slots] = x.T, q
+        engine.buffers, engine.acc = np.zeros_like(engine.buffers), np.zeros_like(engine.acc)
+        engine.state = state._replace(x=places, q=charges)
+        self.constants[2:4] = q.sum(), q @ q
+        try:
+            kernel, given = self.kernel(True, False), [self.arguments(engine, tid) for tid in range(engine.threads)]
+            engine.parallel(lambda tid: kernel(*given[tid]))
+            return float(engine.acc[:, self.index, 0].sum()), engine.buffers[:, :3, slots].sum(axis=0).T
+        finally:
+            (engine.buffers, engine.acc, engine.state), self.constants[2:4] = kept, sums
 
     def describe(self, engine, item, value):
         return SimulationError(f"kspace_style {self.solver.style}: the energy is not finite")

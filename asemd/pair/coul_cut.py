@@ -11,7 +11,7 @@ def coul_cut_d2(r2, qq):
     return 0.75 * qq * math.sqrt(r2inv) * r2inv * r2inv
 
 
-@pair("coul/cut", settings="cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="10.0", example="9.0",
+@pair("coul/cut", scales=True, settings="cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="10.0", example="9.0",
       see="LAMMPS manual, pair_style coul/cut", d2=coul_cut_d2)
 def coul_cut(r2, qq):
     r2inv = 1.0 / r2

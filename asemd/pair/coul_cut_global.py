@@ -4,5 +4,5 @@ from __future__ import annotations
 from asemd.pair.coul_cut import coul_cut
 from asemd.pairstyle import pair_sum
 
-pair_sum("coul/cut/global", (coul_cut, "cut"), settings="cut", mix={"cut": "distance"}, settings_example="10.0",
+pair_sum("coul/cut/global", (coul_cut, "cut"), scales=True, settings="cut", mix={"cut": "distance"}, settings_example="10.0",
          see="LAMMPS manual, pair_style coul/cut/global")

@@ -15,7 +15,7 @@ def coul_debye_d2(r, qq, kappa):
     return qq * rinv * math.exp(-kappa * r) * (kappa * kappa + 2.0 * rinv * (kappa + rinv))
 
 
-@pair("coul/debye", settings="kappa cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="0.3 10.0", example="9.0",
+@pair("coul/debye", scales=True, settings="kappa cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="0.3 10.0", example="9.0",
       see="LAMMPS manual, pair_style coul/debye", d2=coul_debye_d2)
 def coul_debye(r, qq, kappa: "1/distance"):
     rinv = 1.0 / r

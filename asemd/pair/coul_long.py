@@ -33,7 +33,7 @@ def long_range(*solvers: str):
 EWALD = ("pppm", "ewald", "ewald/disp")
 
 
-@pair("coul/long", settings="cut", coeff="", settings_example="10.0", example="", see="LAMMPS manual, pair_style coul/long",
+@pair("coul/long", scales=True, settings="cut", coeff="", settings_example="10.0", example="", see="LAMMPS manual, pair_style coul/long",
       d2=coul_long_d2, units={"g_ewald": "1/distance"})
 @long_range(*EWALD)
 def coul_long(r2, qq, g_ewald):

@@ -42,4 +42,5 @@ def coul_long_cs(r2, qq, g_ewald):
 
 coul_long_cs.special, coul_long_cs.d2, coul_long_cs.table = special, coul_long_d2, coul_long_cs_table
 coul_long_cs.core = 1e-12
-pair_sum("coul/long/cs", (coul_long_cs, "cut"), settings="cut", settings_example="10.0", see="LAMMPS manual, pair_style coul/long/cs")
+pair_sum("coul/long/cs", (coul_long_cs, "cut"), scales=True, settings="cut", settings_example="10.0",
+         see="LAMMPS manual, pair_style coul/long/cs")

@@ -68,7 +68,7 @@ def coul_long_soft_d2(r2, qq, weight, gap, g_ewald):
 
 
 coul_long_soft.special, coul_long_soft_lammps.special, coul_long_soft.d2 = special, special_lammps, coul_long_soft_d2
-OPTIONS = dict(settings="n alphaC cut", coeff="lambda", derived=derived, rows="weight gap", mix={"lambda": "distance"},
+OPTIONS = dict(scales=True, settings="n alphaC cut", coeff="lambda", derived=derived, rows="weight gap", mix={"lambda": "distance"},
                units={"alphaC": "distance^2"}, settings_example="2.0 5.0 10.0", example="0.8",
                see="LAMMPS manual, pair_style coul/long/soft")
 style = pair_sum("coul/long/soft", (coul_long_soft, "cut"), cls=SoftPair, **OPTIONS)

@@ -19,7 +19,7 @@ def coul_msm_d2(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5):
     return qq * (0.75 / (r2 * r2 * math.sqrt(r2)) - curve)
 
 
-@pair("coul/msm", settings="cut", coeff="", settings_example="10.0", example="", see="LAMMPS manual, pair_style coul/msm",
+@pair("coul/msm", scales=True, settings="cut", coeff="", settings_example="10.0", example="", see="LAMMPS manual, pair_style coul/msm",
       d2=coul_msm_d2, units=SMOOTH)
 @long_range("msm")
 def coul_msm(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5):

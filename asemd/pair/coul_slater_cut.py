@@ -24,8 +24,8 @@ def coul_slater_d2(r, qq, lamda):
     return qq / (r * r * r) * (2.0 * inside - 4.0 * y * y * y * math.exp(-x))
 
 
-@pair("coul/slater/cut", settings="lamda cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="1.5 10.0", example="9.0",
-      see="LAMMPS manual, pair_style coul/slater/cut", d2=coul_slater_d2)
+@pair("coul/slater/cut", scales=True, settings="lamda cut", coeff="[cut]", mix={"cut": "distance"}, settings_example="1.5 10.0",
+      example="9.0", see="LAMMPS manual, pair_style coul/slater/cut", d2=coul_slater_d2)
 def coul_slater(r, qq, lamda: "distance"):
     x = 2.0 * r / lamda
     w = math.exp(-x)

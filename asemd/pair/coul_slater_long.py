@@ -38,5 +38,5 @@ def coul_slater_long(r2, qq, lamda: "distance", g_ewald):
 
 
 coul_slater_long.special = special
-pair_sum("coul/slater/long", (coul_slater_long, "cut"), settings="lamda cut", settings_example="1.5 10.0",
+pair_sum("coul/slater/long", (coul_slater_long, "cut"), scales=True, settings="lamda cut", settings_example="1.5 10.0",
          see="LAMMPS manual, pair_style coul/slater/long")
