@@ -77,6 +77,10 @@ class ATM(ManyBody):
             raise InputError(f"pair_coeff {self.name}: the third type must be a number or a range, got {third!r}")
         return {"third": ((third, read.number(nu, f"pair_coeff {self.name}: nu")),)}
 
+    def read(self, file, elements, settings):
+        """Nothing: it has no file."""
+        return {}
+
     def join(self, old, new):
         return {"third": tuple((k, v) for k, v in old.get("third", ()) if k != new["third"][0][0]) + new["third"]}
 
