@@ -27,6 +27,8 @@ A style that is no sum of such sites (densities first, then forces) has `forces`
 that `asemd.kernels.manybody.site_forces` has and the helpers of that module. Its threads own atoms ``lo..hi-1``, may use
 ``shared (shares, cap)``, rows of numbers by slot that all threads see, and wait for each other with ``barrier(meeting)``.
 
+More words before the elements, as a library of elements and a second file: `head_words`, `head`, `read_head`.
+
 A file for each pair of types, as eam has: ``elements=False``, and ``coeff`` as for any pair style. Cutoffs are whatever `pack_pairs`
 says, special_bonds weights other than 0 do not matter, and there is no energy of a single pair, as in LAMMPS.
 """
@@ -34,7 +36,8 @@ from __future__ import annotations
 
 import inspect
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -66,6 +69,8 @@ class ManyBody(PairStyle, ABC):
     many = True
     restarts = False               # potential files are not kept
     block_helpers: tuple[Callable, ...] = ()       # functions that `block` calls
+    kernel_constants: Mapping[str, Any] = MappingProxyType({})      # module constants of `forces` and `helpers`
+    head_words = "FILE"       # words of ``pair_coeff`` before the elements of the types
 
     def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,
                  helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="",
@@ -83,6 +88,24 @@ class ManyBody(PairStyle, ABC):
     @abstractmethod
     def read(self, file: PotentialFile, elements: tuple[str, ...], settings: Mapping[str, Any]) -> Any:
         """What the file says about the elements (without NULL, each once)."""
+
+    def head(self, words: Sequence[str], what: str) -> int:
+        """How many words are before the elements of the types: a file, or what `head_words` names."""
+        return 1
+
+    def read_head(self, head: tuple[str, ...], elements: tuple[str, ...], settings: Mapping[str, Any]) -> tuple[Any, PotentialFile]:
+        """What the words before the elements of the types say about these, and the file that says in which units."""
+        file = PotentialFile(head[0], f"pair_coeff {self.name}")
+        return self.read(file, elements, settings), file
+
+    def head_for(self, files: Sequence[str], elements: Sequence[str]) -> list[str]:
+        """The words before the elements of the types, for a calculator of these files whose atoms have these elements."""
+        return list(files)
+
+    def report(self, coeff: Mapping[str, Any]) -> list[str]:
+        """Lines of LAMMPS's log about the files of these coefficients."""
+        file = coeff["units"]
+        return [f"Reading {self.reads} potential file {file.name} with DATE: {file.date}".replace("  ", " ")] if file.date else []
 
     @abstractmethod
     def pack_pairs(self, settings, filled, ntypes, units, shift=False) -> PairTables:
@@ -102,14 +125,15 @@ class ManyBody(PairStyle, ABC):
         if not self.elements:
             return super().parse_coeff(words, settings)
         what = f"pair_coeff {self.name}"
-        if len(words) < 2:
-            raise InputError(f"{what} needs * * FILE and an element, or NULL, for each atom type, got {len(words)} word"
+        count = self.head(words, what)
+        if len(words) <= count:
+            raise InputError(f"{what} needs * * {self.head_words} and an element, or NULL, for each atom type, got {len(words)} word"
                              f"{'s' * (len(words) != 1)} after the types")
-        file, elements = PotentialFile(words[0], what), tuple(words[1:])
+        head, elements = tuple(words[:count]), tuple(words[count:])
         chosen = tuple(dict.fromkeys(e for e in elements if e != "NULL"))
-        some = self.for_some_types(settings)
-        values = {"file": words[0], "element": elements, "some": some, "data": self.read(file, chosen, settings), "units": file}
-        values["reach"] = 0.0
+        data, file = self.read_head(head, chosen, settings)
+        values = {"file": " ".join(head), "head": head, "element": elements, "some": self.for_some_types(settings), "data": data,
+                  "units": file, "reach": 0.0}
         n, used = len(elements), [t for t, e in enumerate(elements, 1) if e != "NULL"]
         if used:
             tables = self.pack_pairs(settings, {(i, j): values for i in used for j in used if i <= j}, n, None)
@@ -120,7 +144,7 @@ class ManyBody(PairStyle, ABC):
         return new if self.elements else dict(new)
 
     def format_coeff(self, coeff):
-        return [coeff["file"], *coeff["element"]] if self.elements else super().format_coeff(coeff)
+        return [*coeff["head"], *coeff["element"]] if self.elements else super().format_coeff(coeff)
 
     def keys(self, values, keys):
         """The pairs of types, of those of the command, that these coefficients are for: both are elements of the file.

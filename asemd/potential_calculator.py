@@ -10,8 +10,9 @@ from asemd.registry import find
 
 SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.mod": "tersoff/mod", ".tersoff.modc": "tersoff/mod/c",
             ".tersoff.zbl": "tersoff/zbl", ".gw": "gw", ".gw.zbl": "gw/zbl", ".vashishta": "vashishta", ".edip": "edip/multi",
-            ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic",
-            ".extep": "extep", ".3b": "threebody/table"}
+            ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic", ".eim": "eim", ".meam": "meam",
+            ".msmeam": "meam/ms", ".extep": "extep",
+            ".3b": "threebody/table"}
 
 
 class Potential(ForceField):
@@ -19,8 +20,9 @@ class Potential(ForceField):
 
     Parameters
     ----------
-    file : str or path
-        Here or in a folder of ``LAMMPS_POTENTIALS``.
+    file : str or path, or a sequence of them
+        Here or in a folder of ``LAMMPS_POTENTIALS``. Where ``pair_coeff`` has more words before the elements of the types, these words, as
+        ``["library.meam", "Si", "C", "SiC.meam"]``; the elements of the atoms are enough for ``"ffield.eim"`` and for a library alone.
     style : str, optional
         LAMMPS's name of the pair style; by default what the file's name ends with.
     elements : mapping, optional
@@ -51,8 +53,9 @@ class Potential(ForceField):
     def __init__(self, file, *, style: str = "", elements: dict[str, str] | None = None, settings: str = "", skin: float = 1.0,
                  threads: int = 1, compat: str = ""):
         super().__init__(skin=skin, threads=threads, compat=compat)
-        self.file, self.given, self.words, self.compat = os.fspath(file), dict(elements or {}), settings, compat
-        self.style_name = style or _style_of(self.file)
+        self.files = [os.fspath(file)] if isinstance(file, (str, os.PathLike)) else [os.fspath(f) for f in file]
+        self.given, self.words, self.compat = dict(elements or {}), settings, compat
+        self.style_name = style or _style_of(self.files)
         found = find("pair", self.style_name)
         if not (found.many and found.elements):
             known = nearest(style, SUFFIXES.values())
@@ -80,21 +83,26 @@ class Potential(ForceField):
         made, n = Interactions(compat=self.compat), len(symbols)
         made.set_style("pair", [self.style_name, *self.words.split()])
         keys = [(i, j) for i in range(1, n + 1) for j in range(i, n + 1)]
-        made.assign("pair", keys, [self.file, *(self.given.get(s, s) for s in symbols)])
+        elements = [self.given.get(s, s) for s in symbols]
+        made.assign("pair", keys, [*find("pair", self.style_name).head_for(self.files, elements), *elements])
         return made
+
+    @property
+    def _shown(self) -> str | list[str]:
+        return self.files if len(self.files) > 1 else self.files[0]
 
     def todict(self, skip_default: bool = True) -> dict:
         """The arguments, JSON-able."""
-        out = {"file": self.file, "style": self.style_name, "skin": self.settings.skin}
+        out = {"file": self._shown, "style": self.style_name, "skin": self.settings.skin}
         return out | {k: v for k, v in (("elements", self.given), ("settings", self.words), ("compat", self.compat)) if v}
 
     def __repr__(self) -> str:
-        return f"Potential({self.file!r}, style={self.style_name!r})"
+        return f"Potential({self._shown!r}, style={self.style_name!r})"
 
 
-def _style_of(file: str) -> str:
+def _style_of(files: list[str]) -> str:
     """The style that a file's name ends with."""
     for suffix in sorted(SUFFIXES, key=len, reverse=True):
-        if file.endswith(suffix):
+        if any(file.endswith(suffix) for file in files):
             return SUFFIXES[suffix]
-    raise InputError(f"Potential: the name {file} does not tell its style: give style=, one of {' '.join(SUFFIXES.values())}")
+    raise InputError(f"Potential: the name {' '.join(files)} does not tell its style: give style=, one of {' '.join(SUFFIXES.values())}")

@@ -5,7 +5,7 @@ error names the file and the line.
 """
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -117,3 +117,22 @@ class PotentialFile:
         if (self.units, units) not in CONVERT:
             raise self.error(f"the file is in {self.units} units, but {units} units are in use", 1)
         return CONVERT[self.units, units]
+
+
+def file_among(words: Sequence[str], begin: int, what: str, *others: str) -> int:
+    """The place of the first word from `begin` on that is a file, or one of `others`.
+
+    Raises
+    ------
+    InputError
+        None is.
+    """
+    for k in range(begin, len(words)):
+        if words[k] in others:
+            return k
+        try:
+            find_file(words[k], what)
+            return k
+        except InputError:
+            continue
+    raise InputError(f"{what}: none of {' '.join(words[begin:]) or 'the words'} is a file here or in a folder of LAMMPS_POTENTIALS")

@@ -4,17 +4,18 @@ from __future__ import annotations
 import numpy as np
 
 
-def polynomials(values: np.ndarray) -> np.ndarray:
+def polynomials(values: np.ndarray, flat: bool = False) -> np.ndarray:
     """Coefficients (..., n - 1, 4) of t^3, t^2, t, 1 in each interval of `values (..., n)`, t from 0 to 1.
 
-    Slopes in the values come from four neighbours, from two next to the ends and from one at the ends.
+    Slopes in the values come from four neighbours, from two next to the ends and from one at the ends; with
+    `flat` the last one is 0.
     """
     f = np.asarray(values, float)
     slope = np.empty_like(f)
     slope[..., 0] = f[..., 1] - f[..., 0]
     slope[..., 1] = 0.5 * (f[..., 2] - f[..., 0])
     slope[..., -2] = 0.5 * (f[..., -1] - f[..., -3])
-    slope[..., -1] = f[..., -1] - f[..., -2]
+    slope[..., -1] = 0.0 if flat else f[..., -1] - f[..., -2]
     slope[..., 2:-2] = ((f[..., :-4] - f[..., 4:]) + 8.0 * (f[..., 3:-1] - f[..., 1:-3])) / 12.0
     step, low, high = f[..., 1:] - f[..., :-1], slope[..., :-1], slope[..., 1:]
     return np.stack([low + high - 2.0 * step, 3.0 * step - 2.0 * low - high, low, f[..., :-1]], axis=-1)

