@@ -34,38 +34,43 @@ class Bits:
             few = "few" if mantissa_bits < 3 else "many"
             raise InputError(f"pair_modify table {bits}: too {few} bits for a table from {inner:g} to {outer:g}")
         shift = 23 - mantissa_bits
-        self.scale = float(1 << mantissa_bits)
+        self.per_octave = float(1 << mantissa_bits)
         number = int(np.float32(inner * inner).view(np.int32)) >> shift
         number += bool(np.int32(number << shift).view(np.float32) < inner * inner)
         self.r2 = ((number + np.arange(1 << bits)) << shift).astype(np.int32).view(np.float32)
         mantissa, exponent = math.frexp(float(self.r2[0]))
-        self.first = (2.0 * mantissa - 1.0 + exponent) * self.scale
+        self.first = (2.0 * mantissa - 1.0 + exponent) * self.per_octave
 
 
-def values(r2: np.ndarray, g: float) -> np.ndarray:
+def values(r2: np.ndarray, settings: dict, cut: float) -> np.ndarray:
     """Energy, force times distance and 1/r at squared distances in single precision, for charges whose product is 1."""
     from scipy.special import erfc
     r = np.sqrt(r2.astype(float))
-    x = g * r
+    if "g_ewald" not in settings:      # of multilevel summation, nothing beyond the cutoff
+        smooth, square = [settings[f"smooth{k}"] for k in range(6)], np.minimum(r, cut) ** 2
+        slope = 2.0 * np.polyval([k * smooth[k] for k in range(5, 0, -1)], square)
+        return np.where(r < cut, np.stack([1.0 / r - np.polyval(smooth[::-1], square), 1.0 / r + slope * square, 1.0 / r]),
+                        np.stack([0.0 * r, 0.0 * r, 1.0 / r]))
+    x = settings["g_ewald"] * r
     return np.stack([erfc(x) / r, (erfc(x) + 1.12837916709551 * x * np.exp(-x * x)) / r, 1.0 / r])
 
 
-def nodes(bits: Bits, g: float, cut: float) -> np.ndarray:
+def nodes(bits: Bits, settings: dict, cut: float) -> np.ndarray:
     """(2^N, 8): value and rise to the next node of energy, force and 1/r; squared distance and inverse of that to the next one."""
-    at = values(bits.r2, g)
+    at = values(bits.r2, settings, cut)
     rise = np.append(np.diff(at, axis=1), np.zeros((3, 1)), axis=1)
     r2 = bits.r2.astype(float)
     inverse = np.append(1.0 / np.diff(r2), 0.0)
     end = float(np.float32(cut * cut))
     if end > r2[-1]:      # the last line ends at the cutoff
-        rise[:, -1], inverse[-1] = values(np.array([end]), g)[:, 0] - at[:, -1], 1.0 / (end - r2[-1])
+        rise[:, -1], inverse[-1] = values(np.array([end]), settings, cut)[:, 0] - at[:, -1], 1.0 / (end - r2[-1])
     return np.ascontiguousarray(np.stack([at[0], rise[0], at[1], rise[1], at[2], rise[2], r2, inverse], axis=1))
 
 
-def coul_long_table(r2, qq, g_ewald, start2, scale, first, nodes: "array"):
+def coul_long_table(r2, qq, g_ewald, start2, per_octave, first, nodes: "array"):
     single = np.float64(np.float32(r2))
     mantissa, exponent = math.frexp(single)
-    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
     b = (single - nodes[k, 6]) * nodes[k, 7]
     if r2 > start2:
         return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
@@ -77,10 +82,10 @@ def coul_long_table(r2, qq, g_ewald, start2, scale, first, nodes: "array"):
     return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / r2
 
 
-def special(r2, qq, g_ewald, start2, scale, first, nodes, off):
+def special(r2, qq, g_ewald, start2, per_octave, first, nodes, off):
     single = np.float64(np.float32(r2))
     mantissa, exponent = math.frexp(single)
-    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
     b = (single - nodes[k, 6]) * nodes[k, 7]
     if r2 > start2:
         bare = off * (nodes[k, 4] + b * nodes[k, 5])
@@ -93,10 +98,10 @@ def special(r2, qq, g_ewald, start2, scale, first, nodes, off):
     return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / r2
 
 
-def coul_long_cs_table(r2, qq, g_ewald, start2, scale, first, nodes: "array"):
+def coul_long_cs_table(r2, qq, g_ewald, start2, per_octave, first, nodes: "array"):
     single = np.float64(np.float32(r2))
     mantissa, exponent = math.frexp(single)
-    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
     b = (single - nodes[k, 6]) * nodes[k, 7]
     if r2 > start2:
         return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
@@ -110,10 +115,10 @@ def coul_long_cs_table(r2, qq, g_ewald, start2, scale, first, nodes: "array"):
     return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / (r2 + 1e-20)
 
 
-def special_cs(r2, qq, g_ewald, start2, scale, first, nodes, off):
+def special_cs(r2, qq, g_ewald, start2, per_octave, first, nodes, off):
     single = np.float64(np.float32(r2))
     mantissa, exponent = math.frexp(single)
-    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * scale - first), 0), nodes.shape[0] - 1)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
     b = (single - nodes[k, 6]) * nodes[k, 7]
     if r2 > start2:
         bare = off * (nodes[k, 4] + b * nodes[k, 5])
@@ -128,14 +133,42 @@ def special_cs(r2, qq, g_ewald, start2, scale, first, nodes, off):
     return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / (r2 + 1e-12)
 
 
-for function, near in ((coul_long_table, special), (coul_long_cs_table, special_cs)):
-    function.long, function.special, function.solvers = True, near, ("pppm", "ewald")
+def coul_msm_table(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5, start2, per_octave, first, nodes: "array"):
+    single = np.float64(np.float32(r2))
+    mantissa, exponent = math.frexp(single)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
+    b = (single - nodes[k, 6]) * nodes[k, 7]
+    if r2 > start2:
+        return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
+    bare = qq / math.sqrt(r2)
+    smooth = smooth0 + r2 * (smooth1 + r2 * (smooth2 + r2 * (smooth3 + r2 * (smooth4 + r2 * smooth5))))
+    slope = smooth1 + r2 * (2.0 * smooth2 + r2 * (3.0 * smooth3 + r2 * (4.0 * smooth4 + r2 * 5.0 * smooth5)))
+    return bare - qq * smooth, -0.5 * bare / r2 - qq * slope
+
+
+def special_msm(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5, start2, per_octave, first, nodes, off):
+    single = np.float64(np.float32(r2))
+    mantissa, exponent = math.frexp(single)
+    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
+    b = (single - nodes[k, 6]) * nodes[k, 7]
+    if r2 > start2:
+        bare = off * (nodes[k, 4] + b * nodes[k, 5])
+        return qq * (nodes[k, 0] + b * nodes[k, 1] - bare), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3] - bare) / r2
+    bare = (1.0 - off) * qq / math.sqrt(r2)
+    smooth = smooth0 + r2 * (smooth1 + r2 * (smooth2 + r2 * (smooth3 + r2 * (smooth4 + r2 * smooth5))))
+    slope = smooth1 + r2 * (2.0 * smooth2 + r2 * (3.0 * smooth3 + r2 * (4.0 * smooth4 + r2 * 5.0 * smooth5)))
+    return bare - qq * smooth, -0.5 * bare / r2 - qq * slope
+
+
+for function, near, solvers in ((coul_long_table, special, ("pppm", "ewald")), (coul_long_cs_table, special_cs, ("pppm", "ewald")),
+                                (coul_msm_table, special_msm, ("msm",))):
+    function.long, function.special, function.solvers = True, near, solvers
 
 
 @cache
 def tabled(style: PairStyle) -> PairStyle:
     """The style with tables in place of the parts that have them; itself if none has."""
-    if style.oriented or not any(hasattr(part.function, "table") for part in style.parts):
+    if style.oriented or not style.takes_tables or not any(hasattr(part.function, "table") for part in style.parts):
         return style
     twin = copy.copy(style)
     twin.parts = tuple(make_part(part.function.table, part.cut, part.rows) if hasattr(part.function, "table") else part
@@ -157,5 +190,5 @@ def settings_of(style: PairStyle, settings: dict, table: dict) -> tuple[dict, tu
     cut = float(settings[cut_name])
     inner = table.get("tabinner", TABINNER)
     bits = Bits(inner, cut, int(table["table"]))
-    numbers = {"start2": float(bits.r2[0]), "scale": bits.scale, "first": bits.first}
-    return {**settings, **numbers}, (nodes(bits, settings["g_ewald"], cut),)
+    numbers = {"start2": float(bits.r2[0]), "per_octave": bits.per_octave, "first": bits.first}
+    return {**settings, **numbers}, (nodes(bits, settings, cut),)

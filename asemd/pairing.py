@@ -138,7 +138,7 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
                 molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
                 settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
                 arrays: tuple = ()
-                if interactions.table.get("table") and "g_ewald" in settings:
+                if interactions.table.get("table") and not settings.keys().isdisjoint(("g_ewald", "smooth0")):
                     style = coulomb_table.tabled(style)
                     settings, arrays = coulomb_table.settings_of(style, settings, interactions.table)
                 if use.coulomb:

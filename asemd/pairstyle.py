@@ -123,6 +123,7 @@ class PairStyle(Style):
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
     restarts = True                  # restart files keep settings and coefficients
+    takes_tables = True              # ``pair_modify table`` has an effect, as in LAMMPS
     needs_newton = False             # newton off is refused, as by LAMMPS
     on_sites = False                 # it acts on charges that are not on atoms, see `asemd.charge_sites`
 

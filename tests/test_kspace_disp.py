@@ -1,8 +1,8 @@
-"""Dispersion without a cutoff, passed over charges and multilevel pair styles: LAMMPS's numbers through runs, and what is refused."""
+"""Dispersion without a cutoff and passed over charges: LAMMPS's numbers through runs, and what is refused."""
 from __future__ import annotations
 
 import pytest
-from solvers import CHARGES, LJ, NEUTRAL, NVE, SCENE, TILT, compare, lammps_of, refused
+from solvers import CHARGES, LJ, NVE, SCENE, TILT, compare, lammps_of, refused
 from solvers import case as scene
 
 BUCK = [f"pair_coeff {i} {j} {2000 + 300 * i * j} 0.25 {20 + 5 * i * j}" for i in (1, 2, 3) for j in range(i, 4)]
@@ -33,8 +33,6 @@ CASES = {
     "pppm/disp, C6 as given": case("lj/long/coul/long long off 5.0", "kspace_style pppm/disp 1e-4",
                                    f"kspace_modify {FORCES} mix/disp none", coeff=[*LJ, "pair_coeff 1 2 0.2 2.5"]),
     "pppm/cg": case("lj/cut/coul/long 5.0", "set type 3 charge 0.01", "kspace_style pppm/cg 1e-4 0.1", modify="pair_modify table 0"),
-    "msm": case("lj/cut/coul/msm 5.0", *NEUTRAL, "kspace_style msm 1e-4",
-                "kspace_modify compute no cutoff/adjust no pressure/scalar no order 8", modify="pair_modify table 0"),
 }
 
 
@@ -61,12 +59,6 @@ LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
     ([*LONG, "kspace_style pppm/disp 1e-4", "run 0"], "needs its accuracy for dispersion"),
     ([*LONG, "pair_modify mix sixthpower", "kspace_style ewald/disp 1e-4", "run 0"], "mix must be geometric or arithmetic"),
     ([*LONG, "kspace_style ewald/disp 0.1", "run 0"], "too low"),
-    (["kspace_style pppm/cg 1e-4 0.1 3"], "smallest charge, got 3 words"),
-    (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "run 0"], "compute no"),
-    (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "kspace_modify compute no", "run 0"], "cutoff/adjust no"),
-    (["pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4", "kspace_modify compute no cutoff/adjust no", "run 0"],
-     "add up to 2"),
-    (["set atom 2 charge -1", "pair_style coul/msm 6.0", "pair_coeff * *", "kspace_style msm 1e-4",
-      "kspace_modify compute no cutoff/adjust no order 5", "run 0"], "order must be 4, 6, 8 or 10")])
+    (["kspace_style pppm/cg 1e-4 0.1 3"], "smallest charge, got 3 words")])
 def test_what_is_refused(lines, message):
     refused([*SCENE, *lines], message)

@@ -9,10 +9,10 @@ from asemd.errors import InputError
 from asemd.kspace.pppm import PPPM
 
 
-class PPPMCG(PPPM):
-    """``kspace_style pppm/cg accuracy [smallest charge]``; the latter is 1e-5 without that word."""
+class FewCharges:
+    """What solvers with a smallest charge have in common; before the class of the solver that they are otherwise."""
 
-    style = "pppm/cg"
+    style = ""
     least = 1e-5
 
     @classmethod
@@ -23,3 +23,9 @@ class PPPMCG(PPPM):
         if len(words) == 2:
             solver.least = abs(read.number(words[1], f"kspace_style {cls.style}: smallest charge"))
         return solver
+
+
+class PPPMCG(FewCharges, PPPM):
+    """``kspace_style pppm/cg accuracy [smallest charge]``; the latter is 1e-5 without that word."""
+
+    style = "pppm/cg"

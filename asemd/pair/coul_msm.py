@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from asemd.coulomb_table import coul_msm_table
 from asemd.pair.coul_long import long_range
 from asemd.pairstyle import pair
 
@@ -28,3 +29,6 @@ def coul_msm(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5):
     smooth = smooth0 + r2 * (smooth1 + r2 * (smooth2 + r2 * (smooth3 + r2 * (smooth4 + r2 * smooth5))))
     slope = smooth1 + r2 * (2.0 * smooth2 + r2 * (3.0 * smooth3 + r2 * (4.0 * smooth4 + r2 * 5.0 * smooth5)))
     return bare - qq * smooth, -0.5 * bare * r2inv - qq * slope
+
+
+coul_msm.table = coul_msm_table
