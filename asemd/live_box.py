@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from asemd.errors import LostAtoms
+from asemd.kernels.rows import span
 from asemd.kernels.state import BoxState
 from asemd.neighbor import IMAGES
+
+INSIDE = 1e-9       # of the box: whoever is that far from its faces is inside, whatever rounding does
 
 
 def live(engine) -> BoxState:
@@ -39,9 +42,14 @@ def faces(engine) -> None:
     box = engine.system.box
     if not box.is_lammps_frame:
         return
-    rows = engine.state.row[:engine.ns]
+    s, fixed, shares = engine.state, "".join(box.boundary), np.empty((2, 3))
+    if not set(fixed) & set("sm"):
+        span(s.x, s.row, engine.ns, engine.origin, engine.inverse, shares)
+        if (shares[:, ~engine.periodic] > INSIDE).all() and (shares[:, ~engine.periodic] < 1.0 - INSIDE).all():
+            return
+    rows = s.row[:engine.ns]
     inside = rows >= 0
-    x, rows = engine.state.x[:, :engine.ns].T[inside], rows[inside]
+    x, rows = s.x[:, :engine.ns].T[inside], rows[inside]
     new = box.shrink_wrapped(x)
     if new is not box:
         engine.system.box = box = new

@@ -11,6 +11,7 @@ from asemd.errors import InputError
 from asemd.kernels import cluster, cluster_rows, pair_list, rebuild
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
+from asemd.kernels.rows import span
 
 SMALL = 256            # below this many atoms a plain list is cheaper than clusters
 MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
@@ -58,10 +59,10 @@ class BinCell:
     def __init__(self, vectors: np.ndarray, origin: np.ndarray, periodic: np.ndarray, x: np.ndarray, row: np.ndarray, ns: int):
         v, o = vectors.copy(), origin.copy()
         if not periodic.all():
-            inside = x[:, :ns][:, row[:ns] >= 0].T
-            s = (inside - origin) @ np.linalg.inv(vectors)
+            s = np.empty((2, 3))
+            span(x, row, ns, origin, np.ascontiguousarray(np.linalg.inv(vectors)), s)
             for a in np.flatnonzero(~periodic):
-                low, high = (s[:, a].min(), s[:, a].max()) if len(s) else (0.0, 1.0)
+                low, high = s[:, a] if s[0, a] <= s[1, a] else (0.0, 1.0)
                 length = np.linalg.norm(vectors[a])
                 margin = max(1e-3 * (high - low), 1e-9, 1e-6 / max(length, 1e-300))
                 o = o + (low - margin) * vectors[a]

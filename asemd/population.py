@@ -119,8 +119,8 @@ def _take_out(loop: Loop, rows: np.ndarray, gone: np.ndarray, lost: bool) -> Non
     _drop(system, rows, gone)
     for name, mask in loop.groups.items():
         loop.gone[name] = loop.gone.get(name, 0) + int(np.count_nonzero(mask[rows]))
-        loop.groups[name] = np.delete(mask, rows)
-    s.exclude = [(kind, *(m if kind == "type" else np.delete(m, rows) for m in masks)) for kind, *masks in s.exclude]
+        loop.groups[name] = mask[~gone]
+    s.exclude = [(kind, *(m if kind == "type" else m[~gone] for m in masks)) for kind, *masks in s.exclude]
     if not lost:
         loop.natoms -= len(rows)
 
@@ -133,7 +133,8 @@ def _drop(system: System, rows: np.ndarray, gone: np.ndarray) -> None:
             top.rename(np.cumsum(~gone) - 1)
         else:
             system.topology = top.select(~gone, system.n)
-    _take(system, {name: np.delete(a, rows, axis=0) for name, a in system.per_atom().items()})
+    left = np.flatnonzero(~gone)
+    _take(system, {name: a.take(left, axis=0) for name, a in system.per_atom().items()})
 
 
 def _join(system: System, atoms: System) -> None:

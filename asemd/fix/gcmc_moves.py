@@ -54,9 +54,9 @@ class Moves(Reservoir):
         self._gas = None
 
     def series(self) -> None:
-        """All attempts of one time: compiled where single atoms move in a periodic box along the axes."""
-        fix = self.fix
-        plain = fix.molecule is None and not fix.by_molecule and fix.region is None and not self.tail.on and not self.closed
+        """All attempts of one time: compiled where single atoms move in a periodic box along the axes, or in a block of it."""
+        fix, anywhere = self.fix, self.fix.region is None or self.fix.region.style == "block"
+        plain = fix.molecule is None and not fix.by_molecule and anywhere and not self.tail.on and not self.closed
         if plain and self.box.aligned and not (self.energies.exact and self.energies.narrow):
             self.compiled()
         else:
@@ -70,14 +70,14 @@ class Moves(Reservoir):
         states = np.array([r.state for r in streams], np.int64)
         saved = np.array([math.nan if r.saved is None else r.saved for r in streams])
         limits = np.array([fix.moves, fix.exchanges, fix.kind, fix.least, fix.most, 0 if fix.full_energy else 1, self.one_type,
-                           fix.full_energy], np.int64)
+                           fix.full_energy, fix.region is not None], np.int64)
         p = np.array([fix.displace, fix.beta, fix.activity * self.volume, fix.speed, self.charges[0], self.kept_charge,
                       self.system.mass[fix.kind]])
         gone = np.zeros(1, np.int64)
         self.energies.numbers[1] = -1.0
         a.n = int(self.energies.module.atom_moves(states, saved, limits, p, self.count, a.n, gone, a.x, a.image, a.type, a.q, a.molecule,
-                                                  a.row, a.gas, a.moved, a.v, a.id, a.mass, self.low, np.diag(self.box.cell).copy(),
-                                                  self.energies.numbers, *self.energies.box))
+                                                  a.row, a.gas, a.moved, a.v, a.id, a.mass, self.box.origin, np.diag(self.box.cell).copy(),
+                                                  np.array([self.low, self.high]), self.energies.numbers, *self.energies.box))
         a.removed |= bool(gone[0])
         for r, state, value in zip(streams, states, saved):
             r.state, r.saved = int(state), None if math.isnan(value) else float(value)
@@ -250,12 +250,9 @@ class Moves(Reservoir):
         good = fix.random.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume * self.size)
         self.tail.decided(good)
         if good:
-            i = 0
-            while i < a.n:
-                if a.molecule[i] == molecule:
-                    a.delete(i)
-                else:
-                    i += 1
+            while len(rows):        # the last atom, maybe one of them, takes the place of the first
+                a.delete(int(rows[0]))
+                rows = a.members(molecule)
             self.own.pop(molecule, None)
             self.changed()
             self.count[DELETION + 1] += 1

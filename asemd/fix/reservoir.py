@@ -13,6 +13,7 @@ from asemd.molecule import rotation, turned
 from asemd.words import bounds, take, whole
 
 SAMPLES = 10_000_000        # points that estimate the volume of a region
+FAR = 1e4           # boxes: positions nearer are folded one box after the other
 TRIES = 1000                # points of a region's box until one is in the region
 
 
@@ -153,9 +154,10 @@ class Reservoir:
 
     def __init__(self, fix, loop):
         self.fix, self.loop, self.system, self.box = fix, loop, loop.system, loop.system.box
-        self.atoms = TrialAtoms(loop, fix.storage, fix.group)
         self.energies = Energies(loop, fix.full_energy or not fix.as_lammps, fix.overlap, fix.what)
         self.energies.see(self.box, 3)
+        self.edges = np.diag(self.box.cell).copy() if self.box.aligned and self.box.periodic.all() else None
+        self.atoms = TrialAtoms(loop, fix.storage, fix.group, self.wrap)
         self.volume = fix.volume if fix.region is not None else self.box.volume
         self.low, self.high = fix.region.extent() if fix.region is not None else (self.box.origin, self.box.origin + np.diag(self.box.cell))
         self.tilted = fix.region is None and (self.box.triclinic or not self.box.is_lammps_frame)
@@ -207,9 +209,16 @@ class Reservoir:
         matrix = self.orientation(2.0 * math.pi)
         return turned(matrix, self.template) + centre, matrix
 
+    def wrap(self, x: np.ndarray, image: np.ndarray) -> None:
+        """Positions come into the box, in place."""
+        if self.edges is not None and np.abs(x).max() < FAR * self.edges.min():
+            self.energies.module.fold_each(x, image, self.box.origin, self.edges)
+        else:
+            self.box.wrap(x, image)
+
     def wrapped(self, x) -> np.ndarray:
         x = np.array(x, float)
-        self.box.wrap(x, np.zeros(x.shape, np.int32))
+        self.wrap(x, np.zeros(x.shape, np.int32))
         return x
 
     def with_others(self, at, types, charges, skip=-1, molecule=-1) -> float:

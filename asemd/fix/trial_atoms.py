@@ -4,6 +4,7 @@ Moves change the copies only; `TrialAtoms.carry_over` brings what is left of the
 """
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
@@ -85,6 +86,8 @@ class TrialAtoms:
     storage : AtomOrder
     group : str
         Whose atoms are the gas.
+    wrap : callable
+        Brings positions and images (n, 3) into the box, in place.
 
     Attributes
     ----------
@@ -94,8 +97,8 @@ class TrialAtoms:
         Row in the system, -1 for those that are not in it yet.
     """
 
-    def __init__(self, loop, storage: AtomOrder, group: str):
-        self.loop, self.storage, self.box = loop, storage, loop.system.box
+    def __init__(self, loop, storage: AtomOrder, group: str, wrap: Callable[[np.ndarray, np.ndarray], None]):
+        self.loop, self.storage, self.wrap = loop, storage, wrap
         system, rows = loop.system, storage.rows(loop.system)
         n = self.n = len(rows)
         cap = n + 64
@@ -103,12 +106,12 @@ class TrialAtoms:
                             q=np.zeros(n) if system.q is None else system.q, molecule=np.asarray(system.molecule, np.int64),
                             mass=system.atom_masses(), gas=loop.groups[group], row=np.arange(n))
         for name, values in vars(s).items():
-            array = np.zeros((cap, *values.shape[1:]), values.dtype)
-            array[:n] = values[rows]
+            array = np.zeros((cap, *values.shape[1:]), values.dtype, order="F")     # x, y and z each in one piece, for vector instructions
+            values.take(rows, axis=0, out=array[:n]) if values.ndim == 1 else np.copyto(array[:n], values[rows])
             setattr(self, name, array)
         self.moved = np.zeros(cap, bool)
         self.names = (*vars(s), "moved")
-        system.box.wrap(self.x[:n], self.image[:n])
+        self.wrap(self.x[:n], self.image[:n])
         self.removed = False
 
     def delete(self, i: int) -> None:
@@ -132,7 +135,7 @@ class TrialAtoms:
         if self.n + more > len(self.x):
             for name in self.names:
                 array = getattr(self, name)
-                longer = np.zeros((max(self.n + more, 2 * len(array)), *array.shape[1:]), array.dtype)
+                longer = np.zeros((max(self.n + more, 2 * len(array)), *array.shape[1:]), array.dtype, order="F")
                 longer[:len(array)] = array
                 setattr(self, name, longer)
 
@@ -143,7 +146,7 @@ class TrialAtoms:
     def place(self, i, x, image) -> None:
         """Atoms are elsewhere, maybe outside the box: they are wrapped."""
         x, image = np.array(x, float), np.array(image)
-        self.box.wrap(x, image)
+        self.wrap(x, image)
         self.x[i], self.image[i], self.moved[i] = x, image, True
 
     def centres(self, mass: float) -> np.ndarray:
@@ -175,7 +178,9 @@ class TrialAtoms:
             slots = loop.engine.slot_of[rows]       # it is no motion that a list would have to follow
             loop.engine.held[:, slots] = loop.state.x[:, slots]
         new = np.flatnonzero(~old)
-        gone = np.setdiff1d(np.arange(system.n), self.row[:n][old]) if self.removed else np.zeros(0, int)
+        left = np.zeros(system.n, bool)
+        left[self.row[:n][old]] = True
+        gone = np.flatnonzero(~left)
         if len(new):
             atoms = make(new)
             population.exchange(loop, gone, atoms, members(atoms))

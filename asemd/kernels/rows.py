@@ -15,6 +15,19 @@ def of_slots(slot_of, values, out):
 
 
 @njit(cache=True, nogil=True)
+def span(x, row, ns, origin, inverse, out):
+    """Smallest and largest fractional coordinates of atoms ``x (3, slots)`` into `out (2, 3)`."""
+    for a in range(3):
+        i0, i1, i2 = inverse[0, a], inverse[1, a], inverse[2, a]
+        low, high = np.inf, -np.inf
+        for i in range(ns):
+            if row[i] >= 0:
+                s = (x[0, i] - origin[0]) * i0 + (x[1, i] - origin[1]) * i1 + (x[2, i] - origin[2]) * i2
+                low, high = min(low, s), max(high, s)
+        out[0, a], out[1, a] = low, high
+
+
+@njit(cache=True, nogil=True)
 def of_tables(slot_of, front, back, scale, column, virials, energy, virial):
     """Add `scale` times tables ``(threads, slots, 4)``, xx yy zz and xy xz yz, to `virial (n, 6)`, by atom row, and that column of the
     first one to `energy (n,)`, unless it is below 0."""

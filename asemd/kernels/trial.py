@@ -11,55 +11,97 @@ from functools import cache
 import numpy as np
 
 OVERLAP = 1e100        # energy of a trial position that is too near to an atom
+BLOCK = 256
 ACCEPTABLE = 1e50       # energies beyond are refused without a random number
 pair_energy = None
 
 
+def nearest(x, first, last, p, edges, inverse, r2):
+    """Squared distances from a point `p` to the nearest images of atoms first..last-1."""
+    px, py, pz, i0, i1, i2, l0, l1, l2 = p[0], p[1], p[2], inverse[0], inverse[1], inverse[2], edges[0], edges[1], edges[2]
+    for k in range(last - first):
+        j = np.uint64(first + k)
+        dx, dy, dz = px - x[j, 0], py - x[j, 1], pz - x[j, 2]
+        dx -= np.rint(dx * i0) * l0
+        dy -= np.rint(dy * i1) * l1
+        dz -= np.rint(dz * i2) * l2
+        r2[np.uint64(k)] = dx * dx + dy * dy + dz * dz
+
+
+def squares(x, axis, first, last, p, edge, inverse, near, far):
+    """Squared distances along an axis from `p` to the nearest and to the next images of atoms first..last-1."""
+    for k in range(last - first):
+        d = p - x[np.uint64(first + k), axis]
+        d -= np.rint(d * inverse) * edge
+        near[np.uint64(k)] = d * d
+        d = edge - abs(d)
+        far[np.uint64(k)] = d * d
+
+
+def add_squares(u, v, w, count, out):
+    """Their sums."""
+    for k in range(count):
+        out[np.uint64(k)] = u[np.uint64(k)] + v[np.uint64(k)] + w[np.uint64(k)]
+
+
+def image_of(d, edge, inverse, which):
+    """The number of the nearest image (0) or the next one (1) at a distance `d` along an axis from the atom itself."""
+    n = np.rint(d * inverse)
+    if which == 0:
+        return n
+    return n + 1.0 if d > n * edge else n - 1.0
+
+
 def aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables):
-    """`trial_energy` in a box along the axes: images that are too far along one of them are passed over."""
+    """`trial_energy` in a box along the axes that are longer than the cutoff: distances of `BLOCK` atoms at once."""
     skip, without = int(numbers[0]), int(numbers[1])
     overlap2, qqr2e, limited = numbers[2], numbers[3], numbers[4] != 0.0
-    i0, i1, i2, l0, l1, l2 = inverse[0, 0], inverse[1, 1], inverse[2, 2], cell[0, 0], cell[1, 1], cell[2, 2]
-    total = 0.0
-    a0, a1, b0, b1, c0, c1 = 0, 0, 0, 0, 0, 0
+    total, most, s, r2s = 0.0, overlap2, np.empty((6, BLOCK)), np.empty(BLOCK)
+    edges, scale, images = np.empty(3), np.zeros(3), np.ones(3, np.int64)
+    for d in range(3):
+        edges[d] = cell[d, d]
+        if reach[d] >= 0.0:
+            scale[d] = inverse[d, d]
+        if reach[d] >= 0.5:
+            images[d] = 2
+    several = images[0] * images[1] * images[2]
+    for ti in range(cut2.shape[0]):
+        for tj in range(cut2.shape[1]):
+            most = max(most, cut2[ti, tj])
     for t in range(at.shape[0]):
         ti = types[t]
-        for j in range(n):
-            if molecule[j] == without:
-                continue
-            dx, dy, dz = at[t, 0] - x[j, 0], at[t, 1] - x[j, 1], at[t, 2] - x[j, 2]
-            if reach[0] >= 0.0:
-                a0, a1 = math.ceil(dx * i0 - reach[0]), math.floor(dx * i0 + reach[0])
-            if reach[1] >= 0.0:
-                b0, b1 = math.ceil(dy * i1 - reach[1]), math.floor(dy * i1 + reach[1])
-            if reach[2] >= 0.0:
-                c0, c1 = math.ceil(dz * i2 - reach[2]), math.floor(dz * i2 + reach[2])
-            if b0 > b1 or c0 > c1:
-                continue
-            tj = type_of[j]
-            limit = cut2[ti, tj]
-            most = max(limit, overlap2)
-            for a in range(a0, a1 + 1):
-                ex = dx - a * l0
-                rx = ex * ex
-                if rx >= most or (limited and a != 0 and not low[0] <= x[j, 0] * i0 + a <= high[0]):
-                    continue
-                for b in range(b0, b1 + 1):
-                    ey = dy - b * l1
-                    ry = rx + ey * ey
-                    if ry >= most or (limited and b != 0 and not low[1] <= x[j, 1] * i1 + b <= high[1]):
+        for first in range(0, n, BLOCK):
+            last = min(first + BLOCK, n)
+            if several > 1:
+                for d in range(3):
+                    squares(x, d, first, last, at[t, d], edges[d], scale[d], s[2 * d], s[2 * d + 1])
+            for combination in range(several):
+                which = combination % images[0], combination // images[0] % images[1], combination // (images[0] * images[1])
+                if several > 1:
+                    add_squares(s[which[0]], s[2 + which[1]], s[4 + which[2]], last - first, r2s)
+                else:
+                    nearest(x, first, last, at[t], edges, scale, r2s)
+                for k in range(last - first):
+                    r2 = r2s[np.uint64(k)]
+                    if r2 >= most:
                         continue
-                    for c in range(c0, c1 + 1):
-                        ez = dz - c * l2
-                        r2 = ry + ez * ez
-                        if r2 >= most or (limited and c != 0 and not low[2] <= x[j, 2] * i2 + c <= high[2]):
-                            continue
-                        if j == skip and a == 0 and b == 0 and c == 0:
-                            continue
-                        if r2 < overlap2:
-                            return OVERLAP
-                        if r2 < limit:
-                            total += pair_energy(r2, qqr2e * charges[t] * q[j], tables, ti, tj)
+                    j = first + k
+                    tj = type_of[j]
+                    if molecule[j] == without or (r2 >= cut2[ti, tj] and r2 >= overlap2):
+                        continue
+                    here, seen = True, True
+                    for d in range(3):
+                        a = image_of(at[t, d] - x[j, d], edges[d], scale[d], which[d])
+                        if a != 0.0:
+                            here = False
+                            if limited and not low[d] <= x[j, d] * inverse[d, d] + a <= high[d]:
+                                seen = False
+                    if not seen or (here and j == skip):
+                        continue
+                    if r2 < overlap2:
+                        return OVERLAP
+                    if r2 < cut2[ti, tj]:
+                        total += pair_energy(r2, qqr2e * charges[t] * q[j], tables, ti, tj)
     return total
 
 
@@ -85,7 +127,8 @@ def trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, invers
     total = 0.0
     a0, a1, b0, b1, c0, c1 = 0, 0, 0, 0, 0, 0
     if cell[0, 1] == 0.0 and cell[0, 2] == 0.0 and cell[1, 0] == 0.0 and cell[1, 2] == 0.0 and cell[2, 0] == 0.0 and cell[2, 1] == 0.0:
-        return aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+        if max(reach[0], reach[1], reach[2]) < 0.9999:      # in smaller ones an atom sees more images of another
+            return aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
     for t in range(at.shape[0]):
         ti = types[t]
         for j in range(n):
@@ -130,6 +173,23 @@ def trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, invers
     return total
 
 
+def fold(x, image, origin, lengths):
+    """A position comes into a periodic box along the axes."""
+    for d in range(3):
+        while x[d] < origin[d]:
+            x[d] += lengths[d]
+            image[d] -= 1
+        while x[d] >= origin[d] + lengths[d]:
+            x[d] = max(x[d] - lengths[d], origin[d])
+            image[d] += 1
+
+
+def fold_each(x, image, origin, lengths):
+    """Positions (m, 3) come into it."""
+    for i in range(len(x)):
+        fold(x[i], image[i], origin, lengths)
+
+
 def park(states, k):
     """The next number of stream k."""
     states[k] = states[k] * 16807 % 2147483647
@@ -151,19 +211,27 @@ def gaussian(states, saved, k):
             return v2 * factor
 
 
+def within(x, corners):
+    """Whether a point is in a block."""
+    return (corners[0, 0] <= x[0] <= corners[1, 0] and corners[0, 1] <= x[1] <= corners[1, 1]
+            and corners[0, 2] <= x[2] <= corners[1, 2])
+
+
 def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, molecule, row, gas, moved, v, id_of, mass, origin, lengths,
-               numbers, inverse, cell, reach, low, high, cut2, tables):
+               region, numbers, inverse, cell, reach, low, high, cut2, tables):
     """A series of attempts with single atoms in a periodic box along the axes, as `asemd.fix.gcmc_moves` has them one by one.
 
     Parameters
     ----------
     states, saved : (2,)
         Random streams: of all processes, of one of them; as LAMMPS draws from them.
-    limits : (8,) int
+    limits : (9,) int
         Moves, exchanges, type, least and most gas atoms, which stream decides, whether all gas atoms count as of that type, whether
-        velocities are drawn before the decision.
+        velocities are drawn before the decision, whether atoms outside the block are left alone.
     p : (7,) float
         Longest move, 1 / kT, activity times volume, speed, charges of an atom that is tried and of one that is there, mass.
+    region : (2, 3)
+        Corners of the block in which it happens.
     gone : (1,) int
         Becomes 1 if an atom of the system went.
 
@@ -172,15 +240,15 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
     int
         How many atoms there are now.
     """
-    tries, kind, decides = limits[0] + limits[1], limits[2], limits[5]
+    tries, kind, decides, confined = limits[0] + limits[1], limits[2], limits[5], limits[8] != 0
     chosen, count = np.empty(len(gas), np.int64), 0
-    at, types, charges, new_v = np.zeros((1, 3)), np.zeros(1, np.int64), np.zeros(1), np.zeros(3)
+    at, types, charges, new_v, no_image = np.zeros((1, 3)), np.zeros(1, np.int64), np.zeros(1), np.zeros(3), np.zeros(3, np.int32)
     changed = True
     for _ in range(tries):
         if changed:
             count, changed = 0, False
             for i in range(n):
-                if gas[i]:
+                if gas[i] and (not confined or within(x[i], region)):
                     chosen[count] = i
                     count += 1
         if int(park(states, 0) * tries) + 1 <= limits[0]:
@@ -194,7 +262,7 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
             at[0] = x[i]
             before = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
             r2 = 2.0
-            while r2 > 1.0:
+            while r2 > 1.0 or (confined and not within(at[0], region)):
                 r2 = 0.0
                 for d in range(3):
                     r = 2.0 * park(states, 1) - 1.0
@@ -202,15 +270,9 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
                     r2 += r * r
             after = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
             if after < ACCEPTABLE and park(states, decides) < math.exp(min(p[1] * (before - after), 700.0)):
-                for d in range(3):
-                    x[i, d] = at[0, d]
-                    while x[i, d] < origin[d]:
-                        x[i, d] += lengths[d]
-                        image[i, d] -= 1
-                    while x[i, d] >= origin[d] + lengths[d]:
-                        x[i, d] = max(x[i, d] - lengths[d], origin[d])
-                        image[i, d] += 1
-                moved[i] = True
+                x[i] = at[0]
+                fold(x[i], image[i], origin, lengths)
+                moved[i], changed = True, confined
                 counts[1] += 1
         elif park(states, 0) < 0.5:
             counts[4] += 1
@@ -235,9 +297,8 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
             if count >= limits[4]:
                 continue
             for d in range(3):
-                at[0, d] = origin[d] + park(states, 0) * lengths[d]
-                if at[0, d] >= origin[d] + lengths[d]:
-                    at[0, d] = origin[d]
+                at[0, d] = region[0, d] + park(states, 0) * (region[1, d] - region[0, d])
+            fold(at[0], no_image, origin, lengths)
             types[0], charges[0] = kind, p[4]
             numbers[0] = -1.0
             if limits[7]:
@@ -283,10 +344,13 @@ def kernel(styles: tuple):
     b = Builder(f"trial energies: {' '.join(style.name for style in styles)}")
     b.constant("OVERLAP", OVERLAP)
     b.constant("ACCEPTABLE", ACCEPTABLE)
+    b.constant("BLOCK", BLOCK)
+    for f in (nearest, squares, add_squares, image_of, fold, fold_each):
+        b.function(f)
     for k, style in enumerate(styles):
         b.use(list_kernel(style, style.parts, energy=True, per_atom=False)[1], "pair_energy_one", f"pair{k}")
     for f in (aligned_energy, trial_energy):
         b.text(_written_out(plain_source(f), len(styles)))
-    for f in (park, gaussian, atom_moves):
+    for f in (park, gaussian, within, atom_moves):
         b.function(f)
     return b.build()

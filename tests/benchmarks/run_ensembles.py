@@ -69,6 +69,21 @@ COMING_AND_GOING = """region gas block 0 10 0 10 13 18
 fix come all deposit 100000 1 {every} 7331 region gas near 1.0 vz -1.0 -1.0
 fix go all evaporate {every} 1 gas 4711
 """
+FLUID = """units lj
+lattice fcc 0.5
+region box block 0 10 0 10 0 10
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 2.0 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0 2.5
+neighbor 0.3 bin
+neigh_modify delay 0 every 1 check yes
+fix 1 all nve
+thermo 1000
+"""
+RESERVOIR = "fix gas all gcmc 10 {exchanges} {moves} 1 29494 2.0 -3.0 0.2\n"
 
 
 def measure(samples: int = 5, steps: int = 100, names=SCENES) -> dict:
@@ -78,22 +93,33 @@ def measure(samples: int = 5, steps: int = 100, names=SCENES) -> dict:
 
 def coming_and_going(samples: int = 5, steps: int = 400) -> dict:
     """Time of a step with an atom that leaves and one that comes every 10 or 100 steps, in terms of a step of 4000 atoms that stay."""
+    return _ratios(SLAB, {f"time with atoms that come and go every {every} steps / without": COMING_AND_GOING.format(every=every)
+                          for every in (10, 100)}, samples, steps)
+
+
+def exchanging(samples: int = 5, steps: int = 400) -> dict:
+    """Time of a step with a grand canonical exchange every 10 steps, in terms of a step of 4000 atoms that stay."""
+    return _ratios(FLUID, {f"time with fix gcmc 10 {exchanges} {moves} / without": RESERVOIR.format(exchanges=exchanges, moves=moves)
+                           for exchanges, moves in ((20, 0), (20, 20))}, samples, steps)
+
+
+def _ratios(scene: str, more: dict[str, str], samples: int, steps: int) -> dict:
+    """Time of a scene with more commands in terms of its time without."""
     from asemd.lammps import Lammps
     sessions = []
-    for more in ("", COMING_AND_GOING.format(every=10), COMING_AND_GOING.format(every=100)):
+    for commands in ("", *more.values()):
         lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-        lmp.commands_string(SLAB + more + "run 50\n")
+        lmp.commands_string(f"{scene}{commands}run 50\n")
         sessions.append(lmp)
-    seen: list[list[float]] = [[], [], []]
+    seen: list[list[float]] = [[] for _ in sessions]
     for _ in range(samples):
         for lmp, times in zip(sessions, seen):
             began = time.process_time()
             lmp.commands_string(f"run {steps} pre no post no\n")
             times.append(time.process_time() - began)
-    return {f"time with atoms that come and go every {every} steps / without": compare.spread([b / a for a, b in zip(seen[0], times)])
-            for every, times in ((10, seen[1]), (100, seen[2]))}
+    return {name: compare.spread([b / a for a, b in zip(seen[0], times)]) for name, times in zip(more, seen[1:])}
 
 
 if __name__ == "__main__":
     o = compare.arguments(__doc__, samples=5, steps=100).parse_args()
-    compare.show(__doc__, {**measure(o.samples, o.steps), **coming_and_going(o.samples)}, o.json)
+    compare.show(__doc__, {**measure(o.samples, o.steps), **coming_and_going(o.samples), **exchanging(o.samples)}, o.json)
