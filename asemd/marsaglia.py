@@ -56,6 +56,15 @@ class Marsaglia:
         self._saved = a * factor
         return b * factor
 
+    def stream(self) -> list[float]:
+        """Where it is, as compiled code keeps it: 97 numbers, c, two places, whether a normal number is left, and that."""
+        return [*self._u, self._c, self._i, self._j, float(self._saved is not None), self._saved or 0.0]
+
+    def take(self, stream: list[float]) -> None:
+        """Go on from there."""
+        self._u, (c, i, j, left, saved) = stream[:97], stream[97:]
+        self._c, self._i, self._j, self._saved = c, int(i), int(j), saved if left else None
+
     def subset(self, n: int, k: int) -> list[int]:
         """`k` of the numbers 0 to n - 1, in ascending order.
 

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import pair_noise, pair_sums
+from asemd.kernels import marsaglia, pair_noise, pair_sums
 from asemd.kernels.generate import Builder
 from asemd.marsaglia import Marsaglia
 from asemd.oriented_term import TERMS
@@ -19,7 +19,7 @@ def kernel(energy: bool, per_atom: bool, across: bool):
     b = Builder("pairs with friction and noise")
     for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, ACROSS=across).items():
         b.constant(name, value)
-    for f in (pair_sums.eight, pair_sums.add, pair_noise.uniform, pair_noise.gaussian, pair_noise.noisy_forces):
+    for f in (pair_sums.eight, pair_sums.add, marsaglia.uniform, marsaglia.gaussian, pair_noise.noisy_forces):
         b.function(f)
     return b.build().noisy_forces
 
@@ -61,8 +61,7 @@ class NoiseTerm(PairListTerm):
 
 def stream(seed: int) -> np.ndarray:
     """A stream of random numbers as the kernel keeps it."""
-    start = Marsaglia(seed)
-    return np.array([*start._u, start._c, start._i, start._j, 0.0, 0.0])
+    return np.array(Marsaglia(seed).stream())
 
 
 def list_term(term) -> PairListTerm:

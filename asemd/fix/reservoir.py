@@ -211,7 +211,7 @@ class Reservoir:
 
     def wrap(self, x: np.ndarray, image: np.ndarray) -> None:
         """Positions come into the box, in place."""
-        if self.edges is not None and np.abs(x).max() < FAR * self.edges.min():
+        if self.edges is not None and np.abs(x).max(initial=0.0) < FAR * self.edges.min():
             self.energies.module.fold_each(x, image, self.box.origin, self.edges)
         else:
             self.box.wrap(x, image)

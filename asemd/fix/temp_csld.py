@@ -18,6 +18,7 @@ from asemd.errors import InputError
 from asemd.fix.atom_order import ListOrder
 from asemd.fix.formula import write
 from asemd.fix.thermostat import Thermostat
+from asemd.kernels.marsaglia import normals
 from asemd.marsaglia import Marsaglia
 from asemd.words import number, whole
 
@@ -90,27 +91,32 @@ class TempCSLD(Thermostat):
         if dof < 1.0:
             return
         unit = 0.5 * loop.units.boltz * dof
-        before, held = self.temp.scalar(state), system.v[mask].copy()
-        noise = np.empty_like(held)
-        noise[np.argsort(self.storage.place[mask])] = np.reshape([self.random.gaussian() for _ in range(held.size)], held.shape)
-        system.v[mask] = noise / np.sqrt(system.atom_masses()[mask])[:, None]
+        rows = self._rows(mask)
+        before, held = self.temp.scalar(state), system.v[rows]
+        system.v[rows] = normals(self.random, held.size).reshape(held.shape) / np.sqrt(system.atom_masses()[rows])[:, None]
         keep = math.exp(-loop.dt / self.damping)
         mix = math.sqrt((1.0 - keep * keep) * target / self.temp.scalar(state))
-        flow = self._flow(state, mask, held)
-        system.v[mask] = (held - flow) * keep + system.v[mask] * mix + flow
+        flow = self._flow(state, rows, held)
+        system.v[rows] = (held - flow) * keep + system.v[rows] * mix + flow
         self.energy += unit * (before - self.temp.scalar(state))
         loop.sync_in()
 
-    def _flow(self, state, mask, held) -> np.ndarray | float:
+    def _rows(self, mask: np.ndarray) -> np.ndarray:
+        """The atoms of a group in the order in which LAMMPS keeps them."""
+        rows = np.empty(len(mask), np.int64)
+        rows[self.storage.place] = np.arange(len(mask))
+        return rows if mask.all() else rows[mask[rows]]
+
+    def _flow(self, state, rows, held) -> np.ndarray | float:
         """The bias of the velocities before, `held`: a flow is that of the random velocities, which LAMMPS measured last."""
         if not self.temp.bias:
             return 0.0
         v = state.system.v
         if not self.temp.hides and self.temp.style != "temp/region":
-            return (v - self.temp.remove_bias(state))[mask]
+            return (v - self.temp.remove_bias(state))[rows]
         drawn = v.copy()
-        v[mask] = held
-        flow = (v - self.temp.remove_bias(state))[mask]
+        v[rows] = held
+        flow = (v - self.temp.remove_bias(state))[rows]
         v[:] = drawn
         return flow
 

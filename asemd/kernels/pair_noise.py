@@ -1,50 +1,16 @@
 """Forces of dissipative particle dynamics: conservative, friction along and across the line of centres, and noise, for each pair of a list.
 
-Random numbers come one after the other from the stream of each thread (`asemd.marsaglia`), in the order of the list.
+Random numbers come one after the other from the stream of each thread (`asemd.kernels.marsaglia`), in the order of the list.
 Constants of the generated module: ENERGY, PER_ATOM, ACROSS (friction and noise across the line of centres, with exponents).
 """
 from __future__ import annotations
 
 import math
 
+from asemd.kernels.marsaglia import gaussian
 from asemd.kernels.pair_sums import add, eight
 
 ENERGY = PER_ATOM = ACROSS = False
-
-
-def uniform(stream):
-    """The next number; `stream (102,)`: 97 numbers, c, two places, and a saved normal number behind its flag."""
-    i = int(stream[98])
-    j = int(stream[99])
-    value = stream[i] - stream[j]
-    if value < 0.0:
-        value += 1.0
-    stream[i] = value
-    stream[98] = i - 1 if i > 0 else 96
-    stream[99] = j - 1 if j > 0 else 96
-    c = stream[97] - 7654321.0 / 16777216.0
-    if c < 0.0:
-        c += 16777213.0 / 16777216.0
-    stream[97] = c
-    value -= c
-    return value + 1.0 if value < 0.0 else value
-
-
-def gaussian(stream):
-    """The next normal number, by the polar method."""
-    if stream[100] > 0.0:
-        stream[100] = 0.0
-        return stream[101]
-    while True:
-        a = 2.0 * uniform(stream) - 1.0
-        b = 2.0 * uniform(stream) - 1.0
-        square = a * a + b * b
-        if 0.0 < square < 1.0:
-            break
-    factor = math.sqrt(-2.0 * math.log(square) / square)
-    stream[100] = 1.0
-    stream[101] = a * factor
-    return b * factor
 
 
 def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi, rows, stream, control, acc, atom_energy, atom_virial):
