@@ -6,8 +6,9 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import pair_dipole, pair_sums
+from asemd.kernels import pair_dipole, pair_ellipsoid, pair_sums
 from asemd.kernels.generate import Builder
+from asemd.kernels.rigid import turn_axes
 from asemd.term import PairListTerm
 
 
@@ -56,4 +57,35 @@ class DipolePairTerm(OrientedTerm):
                 engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
 
 
-TERMS = {"dipole": DipolePairTerm}      # by `asemd.pairstyle.PairStyle.oriented`
+@cache
+def ellipsoid_kernel(style, energy: bool, per_atom: bool):
+    """The kernel of `asemd.kernels.pair_ellipsoid` for a style."""
+    b = Builder(f"pair {style.name}: ellipsoids")
+    name = b.function(style.parts[0].function)
+    b.text(f"def plain(r2, rows, ti, tj):\n    e, d = {name}(r2, rows[2, ti, tj], rows[3, ti, tj])\n"
+           "    return e - rows[1, ti, tj], -2.0 * d")
+    for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FORM=4).items():
+        b.constant(key, value)
+    for f in (pair_sums.eight, pair_sums.add, turn_axes, pair_ellipsoid.lay, pair_ellipsoid.times, pair_ellipsoid.inverse,
+              pair_ellipsoid.skew, pair_ellipsoid.trace):
+        b.function(f)
+    b.function(style.potential, "potential")
+    b.function(pair_ellipsoid.ellipsoid_forces)
+    return b.build().ellipsoid_forces
+
+
+class EllipsoidPairTerm(OrientedTerm):
+    """Ellipsoids, whose orientations integrators turn: kernels read them where they are, by row."""
+
+    def kernel(self, energy, per_atom):
+        return ellipsoid_kernel(self.style, energy, per_atom)
+
+    def arguments(self, engine, tid):
+        s, m, nth = engine.state, len(self.i), engine.threads
+        return (s.x, engine.buffers[tid], engine.system.extra["quaternions"], s.row, engine.buffers[tid, 3:], s.type, self.i, self.j,
+                self.code, self.shifts, self.lj, m * tid // nth, m * (tid + 1) // nth, self.tables.rows, self.tables.constants,
+                *self.tables.arrays, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid],
+                engine.bad[tid, self.index])
+
+
+TERMS = {"dipole": DipolePairTerm, "ellipsoid": EllipsoidPairTerm}      # by `asemd.pairstyle.PairStyle.oriented`

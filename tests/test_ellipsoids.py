@@ -162,12 +162,12 @@ create_atoms 1 random 6 77 NULL
 set atom 1*3 shape 1 2 0.7
 set atom 2 density 1.7
 set atom 5 density 0.3
-set atom 1 quat 1 0 2 40
-set atom 2*3 quat/random 98
+set atom 2 quat 1 0 2 40
+set atom 3 quat/random 98
 set atom 3 angmom 1 -2 0.4
 displace_atoms all rotate 1 1 1 0 2 1 33
 replicate 1 2 1
-group odd id 1:12:2
+group odd id 1:12:5
 delete_atoms group odd
 """
 END = f"pair_style zero 2\npair_coeff * *\n{WATCH}\nthermo_style custom step temp\ndump q all custom 1 /dev/null c_q[1]\nrun 0\n" \

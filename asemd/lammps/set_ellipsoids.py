@@ -38,12 +38,11 @@ def set_ellipsoids(setter, key: str, values: list[str]) -> int:
     if key == "quat":
         axis = np.column_stack([setter._values(word) for word in values[:3]])
         half = 0.5 * np.radians(setter._values(values[3]))
-        length = np.linalg.norm(axis, axis=1)
         if flat and axis[:, :2].any():
             raise InputError(f"{setter.what}: in two dimensions the axis must be along z, got {' '.join(values[:3])}")
-        if ((length == 0.0) & (np.sin(half) != 0.0)).any():
+        if (~axis.any(axis=1) & (np.sin(half) != 0.0)).any():
             raise InputError(f"{setter.what}: the axis must not be zero")
-        axis = axis / np.where(length > 0.0, length, 1.0)[:, None]
+        # as in LAMMPS an axis that is no unit vector makes another angle
         extra["quaternions"][rows] = unit(np.column_stack([np.cos(half), axis * np.sin(half)[:, None]]))
         return len(rows)
     seed = whole(values[0], f"{setter.what}: seed")
