@@ -29,8 +29,8 @@ class EllipsoidPair(PairStyle):
     exact = True
 
     def __init__(self, name: str, potential, **options):
-        super().__init__(name, [(lj_cut, "cut")], coeff=COEFF, units={k: "" for well in WELLS for k in well},
-                         mix={"epsilon": "sigma", "sigma": "distance"}, see=f"LAMMPS manual, pair_style {name}", **options)
+        super().__init__(name, [(lj_cut, "cut")], **{**dict(coeff=COEFF, units={k: "" for well in WELLS for k in well},
+                         mix={"epsilon": "sigma", "sigma": "distance"}, see=f"LAMMPS manual, pair_style {name}"), **options})
         self.potential = potential
         self.twin = copy.copy(self)
         self.twin.exact = False

@@ -9,7 +9,8 @@ $$\eta = \frac{\det S_1/\sigma_1^2 + \det S_2/\sigma_2^2}{\sqrt{\det H / (\sigma
     H = \frac{G_1}{\sigma_1} + \frac{G_2}{\sigma_2}, \quad \sigma_i = (\hat r^T G_i^{-1} \hat r)^{-1/2}$$
 
 Points are single spheres of diameter sigma, two of them interact as by lj/cut with epsilon = A; with an ellipsoid, eta is 1 and its product
-becomes that of one body, times $3/4\pi$ and $(2\sigma/h)^3$ or $60(\sigma/h)^3$, and contact is that of semi-axes s + sigma/2.
+becomes that of one body, times $3/4\pi$ and $(2\sigma/h)^3$ or $60(\sigma/h)^3$, and contact is that of semi-axes s + sigma/2. Coefficients
+of unlike types must be given: LAMMPS refuses to mix those of ellipsoids, and points whose coefficients it mixes do not interact there.
 Source: R. Everaers, M. R. Ejtehadi, Phys. Rev. E 67, 041710 (2003); M. Babadi, R. Everaers, M. R. Ejtehadi, J. Chem. Phys. 124, 174708.
 """
 from __future__ import annotations
@@ -17,7 +18,6 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.ellipsoid_pairs import EllipsoidPair
-from asemd.errors import InputError
 from asemd.kernels.pair_ellipsoid import inverse, skew, times, trace
 from asemd.style import register
 
@@ -134,13 +134,6 @@ class ReSquared(EllipsoidPair):
     def form(self, i, j, bodies, settings):
         return {(False, False): 0.0, (True, True): 1.0, (True, False): 2.0, (False, True): 3.0}[bodies[i, 6] > 0.0, bodies[j, 6] > 0.0]
 
-    def filled(self, coeffs, settings, ntypes, rule=None, only=None):
-        out, shapes = super().filled(coeffs, settings, ntypes, rule, only), settings.get("shapes")
-        for i, j in out:
-            if shapes and (i, j) not in coeffs and (any(shapes[i]) or any(shapes[j])):
-                raise InputError(f"pair style {self.name} mixes coefficients of points only: give pair_coeff {i} {j}")
-        return out
-
 
 register(ReSquared("resquared", potential, settings="cut", settings_example="5.0", example="1.0 1.0 1.0 0.7 0.4 1.0 0.7 0.4 4.5",
-                   doc=__doc__))
+                   mix={}, doc=__doc__))
