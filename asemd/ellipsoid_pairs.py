@@ -75,6 +75,11 @@ class EllipsoidPair(PairStyle):
                 c |= dict(zip(names, wells[t]))
         return out
 
+    @staticmethod
+    def shapes(settings: Mapping, ntypes: int) -> np.ndarray:
+        """(ntypes + 1, 3) diameters of each type; points before `learn`."""
+        return np.array(settings.get("shapes", ((0.0, 0.0, 0.0),) * (ntypes + 1)))
+
     def bodies(self, settings: Mapping, wells: Mapping[int, list[float]], ntypes: int) -> np.ndarray:
         """(ntypes + 1, 9) what the kernel takes of each type: squared semi-axes, tensor of well depths, semi-axes."""
         raise NotImplementedError

@@ -205,17 +205,12 @@ def test_trajectories_like_lammps(trajectories, name):
         assert session.last_thermo[key] == pytest.approx(expected["thermo"][key], rel=1e-9)
 
 
-def test_energy_is_conserved():
-    drift, drop = [], FLUID.replace("1.0 3.2", "1.0 9.0")        # no pair leaves the cutoff
-    drop = drop.replace("0 5 0 5 0 5", "0 12 0 12 0 12\nregion c block 4 7 4 7 4 7").replace("create_atoms 1 box", "create_atoms 1 region c")
-    for dt in (0.001, 0.0005):
-        session = asemd(drop + "fix 1 all nve/asphere\ncompute e all erotate/asphere\nvariable e equal pe*atoms+ke*atoms+c_e\n"
-                        f"timestep {dt}\nrun 0")
-        before = session.variables.evaluate("v_e")
-        session.commands(f"run {0.1 / dt:.0f}\n")
-        drift.append(session.variables.evaluate("v_e") - before)
-    assert abs(drift[0]) < 1e-3 * before
-    assert drift[0] / drift[1] == pytest.approx(4.0, rel=0.1)       # the integrator is of second order
+def test_the_integrator_is_of_second_order():
+    ends = []
+    for dt in (0.002, 0.001, 0.0005):
+        session = asemd(FLUID + f"fix 1 all nve/asphere\ntimestep {dt}\n" + END.replace("run 100", f"run {0.02 / dt:.0f}"))
+        ends.append(rows_of(session)[:, 7:11])
+    assert np.linalg.norm(ends[0] - ends[1]) / np.linalg.norm(ends[1] - ends[2]) == pytest.approx(4.0, rel=0.05)
 
 
 def test_restart_goes_on(tmp_path):

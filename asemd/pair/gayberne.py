@@ -64,7 +64,7 @@ class GayBerne(EllipsoidPair):
         self.learn({}, system)
 
     def bodies(self, settings, wells, ntypes):
-        semi = 0.5 * np.array(settings["shapes"])
+        semi = 0.5 * self.shapes(settings, ntypes)
         semi[~semi.any(axis=1)] = 1.0
         depths = np.ones((ntypes + 1, 3))
         for t, e in wells.items():

@@ -126,7 +126,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
 
 class ReSquared(EllipsoidPair):
     def bodies(self, settings, wells, ntypes):
-        semi, depths = 0.5 * np.array(settings["shapes"]), np.ones((ntypes + 1, 3))
+        semi, depths = 0.5 * self.shapes(settings, ntypes), np.ones((ntypes + 1, 3))
         for t, e in wells.items():
             depths[t] = e
         return np.hstack([semi**2, depths, semi])
