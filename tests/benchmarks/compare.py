@@ -74,13 +74,15 @@ class Contender:
     threads: int = 1
 
 
-def contenders(threads: int = 1, precision: str = "double") -> list[Contender]:
-    """asemd, and LAMMPS in its fastest variants for that many cores."""
+def contenders(threads: int = 1, precision: str = "double", every: bool = False) -> list[Contender]:
+    """asemd, and LAMMPS in its fastest variants for that many cores; `every`: all that may be, for styles without an opt form."""
     ours = Contender(f"asemd {precision} {threads}T", "asemd", ["-threads", str(threads), "-precision", precision], threads=threads)
     if not have_lammps():
         return [ours]
     if threads == 1:
-        return [ours, Contender("LAMMPS -sf opt", "lammps", ["-sf", "opt"])]
+        hybrid = ["-sf", "hybrid", "opt", "omp", "-pk", "omp", "1"]
+        more = [Contender("LAMMPS -sf hybrid opt omp", "lammps", hybrid), Contender("LAMMPS -sf omp", "lammps", hybrid[:1] + hybrid[3:])]
+        return [ours, Contender("LAMMPS -sf opt", "lammps", ["-sf", "opt"]), *(more if every else [])]
     theirs = [Contender(f"LAMMPS -sf omp -pk omp {threads}", "lammps", ["-sf", "omp", "-pk", "omp", str(threads)], threads=threads)]
     if mpiexec():
         theirs.append(Contender(f"LAMMPS mpiexec -n {threads} -sf opt", "lammps", ["-sf", "opt"], ranks=threads))

@@ -61,6 +61,41 @@ fix 1 all nve
 timestep 0.5
 thermo 100
 """
+PROTEIN_STYLES = """units real
+atom_style full
+pair_style lj/charmm/coul/long 8.0 10.0
+bond_style harmonic
+angle_style charmm
+dihedral_style charmm
+improper_style harmonic
+special_bonds charmm
+pair_modify mix arithmetic
+kspace_style pppm 1.0e-4
+"""
+PRESS = """{styles}read_data {source}
+neighbor 2.0 bin
+neigh_modify every 1 delay 2 check yes
+minimize 0.0 1.0 500 2000
+timestep 1.0
+fix 1 all nve/limit 0.1
+fix 2 all langevin 300.0 300.0 50.0 4711
+fix 3 all deform 1 x final 0.0 {edge} y final 0.0 {edge} z final 0.0 {edge} units box
+thermo 500
+run 6000
+unfix 3
+run 2000
+write_data {data}
+"""
+PROTEIN = """{styles}read_data {data}
+replicate 2 2 4
+neighbor 2.0 bin
+neigh_modify delay 5
+velocity all create 275.0 87287 loop geom
+fix 1 all nvt temp 275.0 275.0 100.0 tchain 1
+fix 2 all shake 0.0001 10 100 b {b} a {a}
+timestep 2.0
+thermo 100
+"""
 EAM = """units metal
 atom_style atomic
 lattice fcc 3.615
@@ -137,7 +172,7 @@ neighbor 2.0 bin
 """
 RELAX = """units real
 atom_style full
-region box block 0 34.1 0 34.1 0 34.1
+region box block 0 {length} 0 {length} 0 {length}
 create_box 2 box bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 1 extra/special/per/atom 2
 molecule water {molecule}
 lattice sc 3.1
@@ -164,20 +199,37 @@ thermo 100
 """
 
 
-def water(copies: str = "2 2 2") -> str:
-    """SPC/E water held by SHAKE, charges on a mesh: 31,944 atoms (1331 molecules, eight times); the data file is kept in the temporary
-    folder."""
+def by_asemd(script: str, folder: Path, name: str) -> None:
+    """Run a script that builds a scene."""
+    (folder / name).write_text(script)
+    subprocess.run([sys.executable, "-m", "asemd.cli", "run", str(folder / name), "--quiet"], check=True, cwd=folder,
+                   env={**os.environ, "PYTHONPATH": str(ROOT)})
+
+
+def water(copies: str = "2 2 2", edge: int = 11) -> str:
+    """SPC/E water held by SHAKE, charges on a mesh: 31,944 atoms (``edge^3`` molecules, eight times); the data file is kept in the
+    temporary folder."""
     folder = kept()
-    data = folder / "water.data"
+    data = folder / ("water.data" if edge == 11 else f"water-{edge}.data")
     if not data.exists():
         (folder / "water.molecule").write_text(MOLECULE)
-        text = RELAX.format(molecule=folder / "water.molecule", data=folder / "water.new", styles=WATER_STYLES,
-                            coefficients=WATER_COEFFICIENTS)
-        (folder / "in.relax").write_text(text)
-        subprocess.run([sys.executable, "-m", "asemd.cli", "run", str(folder / "in.relax"), "--quiet"], check=True, cwd=folder,
-                       env={**os.environ, "PYTHONPATH": str(ROOT)})
-        os.replace(folder / "water.new", data)
+        new = folder / f"{data.name}.new"
+        by_asemd(RELAX.format(molecule=folder / "water.molecule", data=new, styles=WATER_STYLES, coefficients=WATER_COEFFICIENTS,
+                              length=3.1 * edge), folder, "in.relax")
+        os.replace(new, data)
     return WATER.format(styles=WATER_STYLES, data=data, coefficients=WATER_COEFFICIENTS, copies=copies)
+
+
+def protein() -> str:
+    """Sixteen helices in water with charges on a mesh, bonds of hydrogen and angles of water held by SHAKE, as in LAMMPS's
+    ``examples/peptide``: 32,064 atoms; relaxed once, the data file is kept in the temporary folder."""
+    folder = kept()
+    data, source, new = (folder / f"protein.{end}" for end in ("data", "start", "new"))
+    rigid = write_peptide(source, charged=True)
+    if not data.exists():
+        by_asemd(PRESS.format(styles=PROTEIN_STYLES, source=source, data=new, edge=27.6), folder, "in.press")
+        os.replace(new, data)
+    return PROTEIN.format(styles=PROTEIN_STYLES, data=data, **{k: " ".join(map(str, v)) for k, v in rigid.items()})
 
 
 def lj(cells=(20, 20, 20), neigh: str = "delay 0 every 20 check no") -> str:
