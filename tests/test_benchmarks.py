@@ -43,10 +43,41 @@ def test_neighbour_time_of_a_log(compare):
     assert math.isclose(neighbour.of_log(text), 50.0)
 
 
-def test_bonded_time_of_a_log(compare):
-    from tests.benchmarks import run_bonded
-    text = "Bond    | 0.1        | 0.2        | 0.3        |   0.0 |  9.00\n"
-    assert math.isclose(run_bonded.of_log(text, 50), 4.0)
+def test_part_of_a_log(compare):
+    text = "Pair    | 0.5        | 0.5        | 0.5        |   0.0 |  9.00\n" \
+        "Bond    | 0.1        | 0.2        | 0.3        |   0.0 |  9.00\n"
+    assert math.isclose(compare.part_of_log(text, "Bond", 50), 4.0)
+    assert math.isclose(compare.part_of_log(text, "Pair", 50), 10.0)
+
+
+def test_table_of_cases(compare):
+    """One row for each scene, of LAMMPS the fastest variant; one thread first, in the order of the cases."""
+    from tests.benchmarks import cases
+
+    def result(ours, *theirs):
+        values = {"asemd": compare.spread([ours]), **{f"LAMMPS {k}": compare.spread([v]) for k, v in enumerate(theirs)}}
+        return {"unit": "steps/s", "values": values, "ratio": {f"LAMMPS {k}": compare.spread([ours / v]) for k, v in enumerate(theirs)}}
+    titles = [cases.CASES[name].title for name in ("chain", "lj")]
+    table = cases.table({f"{titles[0]}, double, 1": result(30.0, 10.0, 15.0), f"{titles[1]}, double, 2": result(8.0, 1.0),
+                         f"{titles[1]}, double, 1": result(4.0, 2.0), "neighbour list, 32,000 atoms, double, 1": result(4.0)})
+    assert [row.split(" | ")[0].lstrip("| ") for row in table[2:]] == [titles[1], titles[0], "neighbour list, 32,000 atoms", titles[1]]
+    assert table[3].split(" | ")[2:] == ["1", "30 steps/s", "15", "`1`", "2.00 [2.00, 2.00] |"]
+
+
+def test_tables_of_pages(compare, monkeypatch, tmp_path):
+    """Figures that are kept stay when others come; only the text between the marks changes."""
+    from tests.benchmarks import page
+    for name in ("README", "SPEED"):
+        monkeypatch.setattr(page, name, tmp_path / name)
+        (tmp_path / name).write_text("before\n<!-- benchmarks sizes: begin -->\nold\n<!-- benchmarks sizes: end -->\nafter\n")
+    monkeypatch.setattr(page, "FILE", tmp_path / "json")
+    page.keep({"other": {"memory": {"MB": 3.0}}})
+    one = {"ns": {"asemd": compare.spread([50.0])}, "memory": {"asemd": 100.0}, "ratio": {}}
+    page.keep({"sizes": {"1000": one, "500000": one | {"ns": {"asemd": compare.spread([60.0])}, "memory": {"asemd": 599.0}}}})
+    text = (tmp_path / "SPEED").read_text()
+    assert text.startswith("before\n") and text.endswith("end -->\nafter\n") and "old" not in text
+    assert "| 500,000 | 60.0 | 1.67e+07 | 1000 |" in text and "1.20 times the cheapest" in text
+    assert '"memory"' in (tmp_path / "json").read_text()
 
 
 def test_peptide_scene(compare, tmp_path):
@@ -58,6 +89,21 @@ def test_peptide_scene(compare, tmp_path):
     lmp.commands_string(scenes.PEPTIDE.format(data=tmp_path / "peptide.data").replace("replicate 2 2 4", "") + "run 0")
     bond, angle, dihedral, improper = (lmp.get_thermo(word) for word in ("ebond", "eangle", "edihed", "eimp"))
     assert 0.0 < bond < 1.0 and 0.0 < angle < 5.0 and 0.0 < dihedral < 0.4 * 182 and 0.0 <= improper < 1e-3
+
+
+def test_charged_peptide(compare, tmp_path):
+    """Neutral, every pair of types has coefficients, and the rigid bonds are those of hydrogen atoms."""
+    from asemd.lammps import Lammps
+    from tests.benchmarks import peptide, scenes
+    rigid = peptide.write(tmp_path / "p.data", charged=True)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(scenes.PROTEIN_STYLES.replace("coul/long", "coul/charmm").replace("kspace_style pppm 1.0e-4\n", "")
+                        + f"read_data {tmp_path / 'p.data'}\nvariable q equal charge(all)\n"
+                        f"fix 1 all shake 0.0001 10 100 b {' '.join(map(str, rigid['b']))} a {' '.join(map(str, rigid['a']))}")
+    assert abs(lmp.extract_variable("q")) < 1e-12
+    bonds, types = lmp.scene.system.topology.items("bond")
+    light = lmp.scene.system.atom_masses() < 2.0
+    assert len(rigid["a"]) == 1 and ([abs(t) in rigid["b"] for t in types] == light[bonds].any(axis=1)).all()
 
 
 def test_watchdog_is_timed(compare):

@@ -4,7 +4,6 @@ Each is measured beside the variants of LAMMPS in the same run, in turns; the ta
 """
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -47,11 +46,6 @@ NEIGHBOUR = "neighbour"
 NAMES = (*CASES, NEIGHBOUR)
 
 
-def part_of_log(text: str, part: str, steps: int) -> float:
-    """Milliseconds for a step, from a line of the last timing table of a log."""
-    return 1000 * float(re.findall(rf"^{part} +\| *[\d.e+-]+ *\| *([\d.e+-]+)", text, re.M)[-1]) / steps
-
-
 def measure(name: str, threads: int = 1, samples: int = 7, quick: bool = False) -> dict:
     """By title of the row: ``unit``, ``values`` by engine, ``ratio`` of the others to asemd."""
     if name == NEIGHBOUR:
@@ -63,7 +57,7 @@ def measure(name: str, threads: int = 1, samples: int = 7, quick: bool = False) 
     for precision in case.precisions:
         who, script = compare.contenders(threads, precision, every=True), case.script()
         if case.part:
-            values, ratio = compare.from_logs(who, script, steps, samples, lambda log: part_of_log(log, case.part, steps))
+            values, ratio = compare.from_logs(who, script, steps, samples, lambda log: compare.part_of_log(log, case.part, steps))
             found = {"unit": "ms", "values": values, "ratio": ratio}
         else:
             result = compare.rates(compare.alternate(who, script, steps, samples), steps)

@@ -6,6 +6,7 @@ import importlib.util
 import json
 import os
 import platform
+import re
 import shutil
 import statistics
 import subprocess
@@ -166,6 +167,11 @@ def from_logs(who: list[Contender], script: str, steps: int, samples: int, of_lo
     first, *others = found
     return ({name: spread(v) for name, v in found.items()},
             {name: spread([b / a for a, b in zip(found[first], found[name])]) for name in others})
+
+
+def part_of_log(text: str, part: str, steps: int) -> float:
+    """Milliseconds for a step, from a line of the last timing table of a log."""
+    return 1000 * float(re.findall(rf"^{part} +\| *[\d.e+-]+ *\| *([\d.e+-]+)", text, re.M)[-1]) / steps
 
 
 def spread(values: list[float]) -> dict[str, float]:

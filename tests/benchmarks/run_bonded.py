@@ -3,21 +3,15 @@ bonds, angles, torsions and impropers of peptides in water, without pair forces.
 """
 from __future__ import annotations
 
-import re
-
 from tests.benchmarks import compare, scenes
 
 SCENES = {"chain": scenes.chain, "peptide": scenes.peptide}
 
 
-def of_log(text: str, steps: int) -> float:
-    """Milliseconds for a step of the last run of a log."""
-    return 1000 * float(re.findall(r"^Bond +\| *[\d.e+-]+ *\| *([\d.e+-]+)", text, re.M)[-1]) / steps
-
-
 def measure(samples: int = 7, steps: int = 100, threads: int = 1, precision: str = "double", scene: str = "chain") -> dict:
     """A scene on asemd and on LAMMPS's variants, in turns."""
-    ms, ratio = compare.from_logs(compare.contenders(threads, precision), SCENES[scene](), steps, samples, lambda log: of_log(log, steps))
+    ms, ratio = compare.from_logs(compare.contenders(threads, precision), SCENES[scene](), steps, samples,
+                                  lambda log: compare.part_of_log(log, "Bond", steps))
     return {"ms_per_step": ms, "ratio": ratio}
 
 
