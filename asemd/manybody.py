@@ -70,6 +70,7 @@ class ManyBody(PairStyle, ABC):
     restarts = False               # potential files are not kept
     block_helpers: tuple[Callable, ...] = ()       # functions that `block` calls
     kernel_constants: Mapping[str, Any] = MappingProxyType({})      # module constants of `forces` and `helpers`
+    flat_room = False         # `room` is one row
     head_words = "FILE"       # words of ``pair_coeff`` before the elements of the types
 
     def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,
@@ -114,6 +115,10 @@ class ManyBody(PairStyle, ABC):
     def fits(self, tables: PairTables) -> bool:
         """Whether `block` can compute with these tables."""
         return False
+
+    def room_for(self, tables: PairTables, width: int) -> int:
+        """Rows of work space of a thread, each as wide as the longest row of neighbours."""
+        return self.rooms
 
     def for_some_types(self, settings: Mapping[str, Any]) -> bool:
         """Whether ``pair_coeff`` may be given for some pairs of types, each with the whole line of elements."""

@@ -82,7 +82,7 @@ class ManyBodyTerm(FactorTerm):
             else:
                 self.width = longest + longest // 4 + 7 & -8
             nth = engine.threads
-            work = aligned((nth, 7 + self.style.rooms, self.width))
+            work = aligned((nth, 7 + self.style.room_for(self.tables, self.width), self.width))
             self.near, self.grad, self.room = work[:, :4], work[:, 4:7], work[:, 7:]
             self.flat = work.reshape(nth, -1)
             self.types, self.slots = np.zeros((nth, self.width), np.int32), np.zeros((nth, self.width), np.int32)
@@ -99,7 +99,7 @@ class ManyBodyTerm(FactorTerm):
     def arguments(self, engine, tid, shares: bool = False):
         s = engine.state
         f, acc = (engine.buffers[tid], engine.acc[tid, self.index]) if shares else self._sums(engine, tid)
-        room = self.flat[tid] if self.blocks and not shares else self.room[tid]
+        room = self.flat[tid] if self.blocks and not shares else self.flat[tid, 7 * self.width:] if self.style.flat_room else self.room[tid]
         arguments = (
             s.x, f, s.q, s.type, self.first, self.middle, self.last, self.neighbors, self.codes, self.shifts, int(self.edges[tid]),
             int(self.edges[tid + 1]), self.tables.rows[0], self.tables.constants, self.tables.arrays, self.near[tid], self.types[tid],

@@ -1,0 +1,140 @@
+"""Spectral neighbour analysis potential: all parameters against LAMMPS, forces as the gradient of the energy, files that are wrong."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_manybody import FOLDER, GRADIENT, MEASURE, OURS, scene
+from wheel import ask
+
+import asemd
+from asemd.bispectrum import bispectrum, clebsch_gordan
+from asemd.errors import InputError
+
+CASES = {     # twojmax, elements of the types, lines of the parameter file
+    "linear": (4, "Aa Bb", ""), "odd": (3, "Bb Aa", "bzeroflag 0"), "shape": (2, "Aa Bb", "rmin0 0.4\nrfac0 0.9\nswitchflag 0"),
+    "inner": (2, "Bb Aa", "switchinnerflag 1\nsinner 2.23 2.4\ndinner 0.5 0.4"), "normed": (3, "Aa", "bnormflag 1\nwselfallflag 1"),
+    "quadratic": (3, "Aa Bb", "quadraticflag 1"), "densities": (3, "Aa Bb", "chemflag 1"),
+    "densities, all selves": (2, "Bb Aa", "chemflag 1\nwselfallflag 1\nbnormflag 1"),
+    "densities, quadratic": (2, "Aa Bb", "chemflag 1\nquadraticflag 1"), "constant": (0, "Aa Bb", "bzeroflag 0"),
+}
+
+
+def write(folder: Path, name: str, twojmax: int, lines: str) -> tuple[Path, Path]:
+    count = len(bispectrum(twojmax, False).components) * (8 if "chemflag 1" in lines else 1)
+    count += count * (count + 1) // 2 if "quadraticflag 1" in lines else 0
+    rng, names = np.random.default_rng(7), [folder / f"{name.replace(' ', '').replace(',', '_')}.snap{end}" for end in ("coeff", "param")]
+    elements = [f"{e} {0.5 - 0.03 * k} {1.0 - 0.2 * k}\n" + "".join(f"{c:.8f}\n" for c in 0.01 * rng.normal(size=count + 1))
+                for k, e in enumerate(("Aa", "Bb")[:1 if name == "normed" else 2])]
+    names[0].write_text(f"# DATE: 2026-01-01 UNITS: metal\n{len(elements)} {count + 1}\n" + "".join(elements))
+    names[1].write_text(f"# a comment\nrcutfac 4.1\ntwojmax {twojmax}\n{lines}\n")
+    return names[0], names[1]
+
+
+def jobs(folder: Path) -> dict[str, list[str]]:
+    out = {}
+    for name, (twojmax, elements, lines) in CASES.items():
+        files, words = write(folder, name, twojmax, lines), scene("tersoff shift 0.1" if " " in elements else "sw", "metal")
+        for k, line in enumerate(words):
+            if line.startswith("pair_style"):
+                words[k] = "pair_style snap"
+            if line.startswith("pair_coeff"):
+                words[k] = f"pair_coeff * * {files[0]} {files[1]} {elements}"
+        out[name] = words
+    return out
+
+
+THEIRS = MEASURE + FOLDER + r"""
+os.environ["LAMMPS_POTENTIALS"] = P
+answer = {"folder": P}
+for name, lines in given["jobs"].items():
+    lmp = start()
+    answer[name] = measure(lmp, lines)
+    lmp.close()
+"""
+
+
+def compiled(script: str, given: dict, folder: str = "") -> dict:
+    environment = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1]), "LAMMPS_POTENTIALS": folder}
+    done = subprocess.run([sys.executable, "-c", script], input=json.dumps(given), env=environment, capture_output=True, text=True,
+                          timeout=300)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout)
+
+
+def test_like_lammps(tmp_path):
+    given = jobs(tmp_path)
+    for name, words in {"Ta": "Ta06A.snapcoeff Ta06A.snapparam Ta", "InP": "InP_JCPA2020.snapcoeff InP_JCPA2020.snapparam In P"}.items():
+        given[name] = [line if not line.startswith("pair_coeff") else f"pair_coeff * * {words}"
+                       for line in given["normed" if name == "Ta" else "linear"]]
+    theirs = ask(THEIRS, jobs=given)
+    ours = compiled(OURS, given, theirs["folder"])
+    for job in given:
+        for what, want in theirs[job].items():
+            assert np.allclose(ours[job][what], want, rtol=0, atol=1e-11 * max(np.abs(want).max(), 1e-3)), (job, what)
+
+
+def test_forces_and_virial_are_derivatives_of_the_energy(tmp_path):
+    for name, (slope, force, strained, virial, largest) in compiled(GRADIENT, jobs(tmp_path)).items():
+        scale = 1e-7 * (largest + abs(slope) + abs(strained))
+        assert abs(slope - force) < scale and abs(strained - virial) < scale, name
+
+
+def test_clebsch_gordan_coefficients_are_orthonormal():
+    j1, j2 = 3, 4
+    for j in (1, 3, 5, 7):
+        for m in range(-j, j + 1, 2):
+            squares = sum(clebsch_gordan(j1, m1, j2, m - m1, j, m) ** 2 for m1 in range(-j1, j1 + 1, 2) if abs(m - m1) <= j2)
+            assert squares == pytest.approx(1.0, abs=1e-14)
+    assert clebsch_gordan(2, 0, 2, 0, 4, 0) == pytest.approx((2.0 / 3.0) ** 0.5, abs=1e-15)
+
+
+@pytest.mark.parametrize(("change", "lines", "words", "says"), [
+    (None, "twojmax 2\nrcutfak 4", "Aa Bb", r"unknown keyword 'rcutfak' \(did you mean rcutfac\?\) \(x.snapparam:2"),
+    (None, "twojmax 2", "Aa Bb", "x.snapparam has no rcutfac"),
+    (None, "twojmax two", "Aa Bb", r"must be a whole number, got 'two' \(x.sna"),
+    (None, "twojmax 2\nrcutfac 4 5", "Aa Bb", r"a word too many after rcutfac: 5 \(x.snapparam:2"),
+    (None, "twojmax 2\nrcutfac 4\nchemflag 2", "Aa Bb", r"chemflag must be 0 or 1, got 2 \(x.snapparam:3"),
+    (None, "twojmax 2\nrcutfac 4\nswitchinnerflag 1", "Aa Bb", "x.snapparam has no sinner"),
+    (None, "twojmax 2\nrcutfac -4", "Aa Bb", "rcutfac must be positive"),
+    (None, "twojmax 3\nrcutfac 4", "Aa Bb", "flags of x.snapparam ask for 9"),
+    (None, "twojmax 2\nrcutfac 4", "Aa Cc", "x.snapcoeff has no element Cc"),
+    (("Bb 0.47", "Bb o.47"), "twojmax 2\nrcutfac 4", "Aa Bb", r"the radius must be a number, got 'o.47' \(x.snapcoeff:10"),
+    (("2 6", "3 6"), "twojmax 2\nrcutfac 4", "Aa Bb", r"the file ends before an element \(x.snapcoeff:16"),
+])
+def test_wrong_files(change, lines, words, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    first, second = write(tmp_path, "x", 2, "")
+    if change:
+        first.write_text(first.read_text().replace(*change, 1))
+    second.write_text(lines + "\n")
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "create_atoms 1 single 1 1 1", "pair_style snap"):
+        lmp.command(line)
+    with pytest.raises(InputError, match=says):
+        lmp.command(f"pair_coeff * * x.snapcoeff x.snapparam {words}")
+
+
+def test_calculator_and_log(tmp_path, monkeypatch):
+    """A calculator finds the parameters beside the coefficients; the log tells what was read."""
+    from ase.build import bulk
+
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, "x", 2, "")
+    crystal = bulk("W", "bcc", a=3.2, cubic=True)
+    crystal.calc = asemd.Potential.from_file("x.snapcoeff", elements={"W": "Bb"})
+    assert np.abs(crystal.get_forces()).max() < 1e-12 and crystal.get_potential_energy() != 0.0
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "log.lammps"])
+    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "create_atoms 1 single 1 1 1", "pair_style snap",
+                 "pair_coeff * * x.snapcoeff x.snapparam Bb"):
+        lmp.command(line)
+    lmp.close()
+    told = Path("log.lammps").read_text()
+    assert "SNAP Element = Bb, Radius 0.47, Weight 0.8" in told and "SNAP keyword rcutfac 4.1" in told
