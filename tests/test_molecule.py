@@ -6,73 +6,12 @@ import json
 import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
+from water_molecule import water
 
 from asemd.errors import InputError
 
-WATER = """# water
-
-3 atoms
-2 bonds
-1 angles
-0.1 0.2 0.3 com
-
-Coords
-
-1    0.00000  -0.06556   0.00000
-2    0.75695   0.52032   0.00000
-3   -0.75695   0.52032   0.00000
-
-Types
-
-1        1   # oxygen
-3        2
-2        2
-
-Charges
-
-1       -0.834
-2        0.417
-3        0.417
-
-Bonds
-
-1   1      1      2
-2   1      1      3
-
-Angles
-
-1   1      2      1      3
-
-Special Bond Counts
-
-1 2 0 0
-2 1 1 0
-3 1 1 0
-
-Special Bonds
-
-1 2 3
-2 1 3
-3 1 2
-
-Shake Flags
-
-1 1
-2 1
-3 1
-
-Shake Atoms
-
-1 1 2 3
-2 1 2 3
-3 1 2 3
-
-Shake Bond Types
-
-1 1 1 1
-2 1 1 1
-3 1 1 1
-"""
+WATER = water(((0.0, -0.06556, 0.0), (0.75695, 0.52032, 0.0), (-0.75695, 0.52032, 0.0)), 0.417, True,
+              "\nTypes\n\n1        1   # oxygen\n3        2\n2        2\n", "0.1 0.2 0.3 com\n", "# ")
 PAIR = """dimer
 2 atoms
 1 bonds
