@@ -117,7 +117,7 @@ def _of_lammps(scene: Scene) -> None:
         if not catalog.is_of_lammps("fix", fix.style):
             raise InputError(f"to_lammps: fix {fix.id} (style {fix.style}) is asemd's own, LAMMPS does not have it: take another fix for a "
                              "script that LAMMPS has to run")
-        if getattr(fix, "settle", False):
+        if getattr(fix, "settle", False) is True:
             raise InputError(f"to_lammps: keyword settle of fix {fix.id} (style {fix.style}) is asemd's own: leave it out for a script "
                              "that LAMMPS has to run")
 

@@ -48,6 +48,9 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
         along * z + k * touch * uz + v / t * wz
     for body in range(2):
         own = first if body == 0 else second
+        if form == 2.0 and own[2, 0] == own[2, 1] == own[2, 2] and own[2, 3] == own[2, 4] == own[2, 5]:        # the round one
+            out[3 + 3 * body] = out[4 + 3 * body] = out[5 + 3 * body] = 0.0
+            continue
         gx, gy, gz = times(own[0], ux, uy, uz)
         bx, by, bz = times(own[1], wx, wy, wz)
         m = k * touch
