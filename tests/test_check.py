@@ -134,6 +134,12 @@ def test_integrators_that_stand_any_friction(folder):
     assert check(text).of("damping")[0].severity == "ok"
 
 
+def test_damping_times_of_barostats(folder):
+    text = edit(BUTANE, ("nvt temp 300.0 300.0 100.0", "npt temp 300.0 300.0 100.0 iso 0 0 60.0"))
+    found = check(text).of("damping")
+    assert [f.severity for f in found] == ["ok", "warning"] and "pressure with a damping time of 60" in found[1].message
+
+
 def test_scaling_of_velocities_has_no_damping_time(folder):
     text = edit(BUTANE, ("nvt temp 300.0 300.0 100.0", "nve"), ("run 10", "fix 2 all temp/rescale 1 300 300 1.0 1.0\nrun 10"))
     assert not check(text).of("damping")

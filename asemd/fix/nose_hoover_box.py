@@ -108,6 +108,11 @@ class NoseHooverBox(NoseHoover):
         words += [w for tilt, on in self.scale.items() if on is not None for w in (f"scale{tilt}", "yes" if on else "no")]
         return words + (["fixedpoint", *(repr(float(c)) for c in self.fixed_point)] if self.fixed_point is not None else [])
 
+    def relaxation_times(self) -> list[tuple[str, float]]:
+        """``temperature`` or ``pressure`` and each damping time, in time units of the scene."""
+        times = [("temperature", self.damping)] if self.thermal else []
+        return times + [("pressure", t) for t in sorted({time for _, _, time in self.components.values()})]
+
     # ---- the box it works on ------------------------------------------------------------------------------------------------------------
     def settle(self, system) -> None:
         """What depends on the box is settled, once.

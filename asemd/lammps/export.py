@@ -53,7 +53,7 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
     out += [f"{category}_style {' '.join(interactions.style_line(category))}" for category in CATEGORIES if interactions.uses[category]]
     written = system.copy()
     # forces do not need masses, LAMMPS does, but for particles with a size, which have their own
-    sized = atom_styles.has(system.atom_style, "diameter")
+    sized = atom_styles.has(system.atom_style, "density")
     written.mass[1:] = np.nan if sized else np.where(np.isnan(system.mass[1:]), 1.0, system.mass[1:])
     write_data(data, written, types="numeric", labels=False, margins=True)
     out.append(f"read_data {quoted(os.fspath(data))}")
