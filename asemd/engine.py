@@ -104,19 +104,22 @@ class Engine:
     def list_for(self, n: int) -> tuple[str, bool, bool, bool, str]:
         """The neighbour list that `n` such atoms need: mode, whether pairs are written out, in rows, packed; and why."""
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
+        rules, chosen = bool(len(self.exclusions.rules)), any(t.molecules for t in self.pair_terms)
+        few, partners = 2.1 * self.reach**3 * n < SPARSE * self.volume, self.exclusions.partners is not None
+        # in narrow cells two images of an atom are in reach; rows of atoms cannot tell which one is special, moving boxes need room to shrink
+        twice = self.box_moves or self.many_terms or partners and (table or few or rules or chosen)
         if not self.has_pairs:
             mode, why = "none", "no pair interactions"
         elif n < SMALL:
             mode, why = "plain", f"fewer than {SMALL} atoms"
-        elif (self.widths[self.periodic] < 2 * self.reach).any():
-            mode, why = "plain", "a periodic cell width is below twice cutoff plus skin"
+        elif (self.widths[self.periodic] < (2 if twice else 1) * self.reach).any():
+            mode, why = "plain", f"a periodic cell width is below {'twice ' if twice else ''}cutoff plus skin"
         else:
             mode, why = "cluster", "half list of clusters of 8 atoms"
         expanded = mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.listed for t in self.pair_terms)
-        packed = (mode == "cluster" and not expanded and self.exclusions.partners is None and not len(self.exclusions.rules)
+        packed = (mode == "cluster" and not expanded and not partners and not rules
                   and all(getattr(t.style, "packable", False) for t in self.many_terms))
-        few = 2.1 * self.reach**3 * n < SPARSE * self.volume or not (self.pair_terms or packed)
-        rules, chosen = bool(len(self.exclusions.rules)), any(t.molecules for t in self.pair_terms)
+        few = few or not (self.pair_terms or packed)
         sparse = mode == "cluster" and not expanded and (few or table or rules or chosen)
         if sparse:
             reasons = (("only many-body styles", not self.pair_terms), ("tables", table), ("neigh_modify exclude", rules),
@@ -238,7 +241,8 @@ class Engine:
         if self.mode == "cluster":
             partners = self.exclusions.partners
             hide = None if self.expanded or self.sparse else partners
-            self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel)
+            self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel,
+                            self.cell.reduced * self.periodic[:, None])
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             for molecules, rows in self.rows.items():

@@ -1,4 +1,4 @@
-"""Neighbour lists: the cluster list for ordinary systems, a plain pair list for small systems and cells below twice the reach."""
+"""Neighbour lists: the cluster list for ordinary systems, a plain pair list for the smallest ones and for narrow cells."""
 from __future__ import annotations
 
 import itertools
@@ -13,7 +13,7 @@ from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.rows import span
 
-SMALL = 256            # below this many atoms a plain list is cheaper than clusters
+SMALL = 32             # below this many atoms a plain list: clusters would save some 15 microseconds a step and take 5 s more to compile
 MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
 MOST_PAIRS = 2e9
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
@@ -30,7 +30,7 @@ def kernels(ortho: bool, mark: bool = False):
     for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.count,
               cluster_rows.expand, cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather,
               rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear,
-              rebuild.mark_special, rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs):
+              rebuild.closest, rebuild.mark_special, rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs):
         b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster_rows.rows))
     return b.build()
 
@@ -183,9 +183,10 @@ class ClusterList:
         return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
                       self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach)
 
-    def build(self, k, state, ns: int, cell_vectors: np.ndarray, periodic: np.ndarray, partners, slot_of, parallel) -> None:
-        """Build the list and its exclusions in the sorted slots."""
+    def build(self, k, state, ns: int, cell_vectors: np.ndarray, periodic: np.ndarray, partners, slot_of, parallel, reduced) -> None:
+        """Build the list and its exclusions in the sorted slots; `reduced`: the reduced cell vectors, 0 along open directions."""
         ncl = ns // CLUSTER
+        self.near = reduced, bool((np.abs(np.linalg.inv(cell_vectors)[:, periodic] ** 2).sum(axis=0) > 0.25 / self.reach**2).any())
         self.shifts = IMAGES @ cell_vectors
         self.shifts4 = np.column_stack([self.shifts, np.zeros(len(self.shifts))])
         again = self.shares is None and self.threads > 1
@@ -203,7 +204,8 @@ class ClusterList:
                                      self.work_codes[t], self.width, ns, self.row_length[t], _COUNTERS, self.hide[t])
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
-                                     self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t])
+                                     self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t], state.x, self.shifts,
+                                     *self.near)
                     results[t] = -3 if done < 0 else results[t]
             parallel(work)
             if -1 in results:
@@ -265,7 +267,7 @@ class ClusterList:
     def count(self, k, state, held: np.ndarray, partners) -> int:
         """Pairs in the list, without the special ones `partners` (start, partner) that are left out."""
         return sum(int(k.count(held, state.row, self.first[t], self.entries[t], int(self.bounds[t]), int(self.bounds[t + 1]), self.shifts,
-                               self.reach**2, *partners)) for t in range(self.threads))
+                               self.reach**2, *partners, *self.near)) for t in range(self.threads))
 
     def expand(self, k, state, reach: float, room: int = 0):
         """The same pairs as plain arrays (i, j, code), closer than `reach`."""

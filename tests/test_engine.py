@@ -64,6 +64,22 @@ def test_only_the_closest_image_of_a_partner_is_special():
 
 
 @BOTH
+@pytest.mark.parametrize("special", [(0, 0, 0), (0.25, 0, 0.75), (1, 0.5, 1)])
+def test_two_images_of_a_partner_in_reach(special, mode):
+    """Cells wider than cutoff plus skin, but not twice as wide."""
+    interactions = Interactions.build(pair=PAIRS, special_bonds={"lj": special, "coul": special})
+    for cell in (np.diag([2.1, 3.1, 4.3]), np.array([[2.6, 0, 0], [1.0, 2.9, 0], [-0.9, 1.1, 2.7]])):
+        for threads, length in ((1, 4), (3, 7)):
+            system = chains(27, length, cell, np.random.default_rng(length), origin=(0.3, 5.0, -2.0))
+            engine, error = errors(system, mode, interactions=interactions, special=weights(system, interactions), threads=threads)
+            assert engine.mode == mode, engine.why
+            assert error < 1e-12
+            plain = engine_of(system, "plain", interactions, threads=threads)
+            plain.compute()
+            assert engine.pairs == plain.pairs
+
+
+@BOTH
 @pytest.mark.parametrize("special", [(1, 1, 1), (0, 0, 0), (0.1, 0.25, 0.5)])
 def test_exclusions(special, mode):
     interactions = Interactions.build(pair=PAIRS, special_bonds={"lj": special, "coul": special})

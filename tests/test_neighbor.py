@@ -108,7 +108,7 @@ def test_two_dimensions(mode):
 
 def test_the_mode_follows_size_and_width():
     rng = np.random.default_rng(1)
-    for n, length, mode in ((255, 8.0, "plain"), (256, 8.0, "cluster"), (300, 4.0, "plain")):
+    for n, length, mode in ((31, 8.0, "plain"), (32, 8.0, "cluster"), (40, 2.1, "cluster"), (40, 2.0, "plain")):
         system = make(scattered(n, np.eye(3) * length, 0, rng), np.eye(3) * length, (True,) * 3, rng)
         engine = Engine(system, Interactions.build(pair=PAIRS))
         assert engine.mode == mode, engine.why

@@ -7,14 +7,16 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.kernels.cluster import CLUSTER, SLOT_BITS
+from asemd.kernels.rebuild import closest
 
 
-def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where, earlier):
+def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where, earlier, x, shifts, reduced,
+            close):
     """Entries of the list that special pairs take out, per cluster as (atom in cluster << 16) + place in the cluster's row.
 
     Returns the number, or -1 if `excluded` is too small. `partner_start, partners`: for each atom row the rows it must not meet.
-    `where (cap,)` and `earlier (w,)` are work space. In small cells a row can hold two images of an atom: both are taken out (only one can
-    be in reach of an atom).
+    `where (cap,)` and `earlier (w,)` are work space. In small cells a row can hold two images of an atom. If `close`, two of them can be in
+    reach of an atom: the closest one is special, others interact fully; else both are taken out.
     """
     n = 0
     for ci in range(c0, c1):
@@ -39,7 +41,8 @@ def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, 
                     continue
                 if n + 32 > excluded.shape[0]:
                     return -1
-                if j < s + CLUSTER and j > s + a:
+                if j < s + CLUSTER and j > s + a and (
+                        not close or closest(x[0, s + a] - x[0, j], x[1, s + a] - x[1, j], x[2, s + a] - x[2, j], reduced)):
                     excluded[n] = np.int32((a << 16) | (j - s + own[ci]))
                     n += 1
                 w = where[j]
@@ -47,15 +50,17 @@ def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, 
                     continue
                 while w >= 0:
                     excluded[n] = np.int32((a << 16) | w)
-                    n += 1
+                    c = entries[f0 + w] >> 26
+                    n += not close or closest(x[0, s + a] - (x[0, j] + shifts[c, 0]), x[1, s + a] - (x[1, j] + shifts[c, 1]),
+                                              x[2, s + a] - (x[2, j] + shifts[c, 2]), reduced)
                     w = earlier[w]
     excluded_first[c1] = n
     return n
 
 
-def count(held, row, first, entries, c0, c1, shifts, reach2, partner_start, partners):
+def count(held, row, first, entries, c0, c1, shifts, reach2, partner_start, partners, reduced, close):
     """How many pairs the rows of clusters c0..c1-1 stand for: within `reach2` at the positions `held` the list was built for, partners
-    left out."""
+    left out, of which `close` means what it does for `exclude`."""
     n = 0
     for ci in range(c0, c1):
         for a in range(ci * CLUSTER, ci * CLUSTER + CLUSTER):
@@ -74,7 +79,7 @@ def count(held, row, first, entries, c0, c1, shifts, reach2, partner_start, part
                     met = 0
                     for q in range(partner_start[r], partner_start[r + 1]):
                         met += partners[q] == row[j]
-                    n += met == 0
+                    n += met == 0 or (close and not closest(dx, dy, dz, reduced))
     return n
 
 

@@ -1,9 +1,9 @@
-"""Pair forces over a plain list of pairs: small systems, cells below twice the cutoff, special pairs with a weight, per-atom energies.
+"""Pair forces over a plain list of pairs: the smallest systems, cells below the cutoff, special pairs with a weight, per-atom energies.
 
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
 partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
 
-Constants of the generated module: ENERGY, PER_ATOM, CHARGED, CHECK, FACTOR, SIZED (the last of `arrays` are the radii of the slots, which
+Constants of the generated module: ENERGY, PER_ATOM, WANTED (either), CHARGED, CHECK, FACTOR, SIZED (the last of `arrays` are the radii of the slots, which
 `pair_energy_one` takes as its last two arguments). From the style: `pair_energy_one(r2, qq, lj, coul, whole, rows, constants, arrays, ti,
 tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
 from tuple or table, as `uniform` says).
@@ -14,7 +14,7 @@ import numpy as np
 
 from asemd.kernels.pair_sums import add, eight
 
-ENERGY = PER_ATOM = CHARGED = CHECK = FACTOR = SIZED = False
+ENERGY = PER_ATOM = WANTED = CHARGED = CHECK = FACTOR = SIZED = False
 pair_energy_one = furthest = pair_of = None
 
 
@@ -27,10 +27,10 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
     of the mean force, which does not depend on where the origin is, and no atom's in particular.
     """
     for m in range(lo, hi):
-        i = pair_i[m]
-        j = pair_j[m]
-        kind = code[m] & 3
-        image = code[m] >> 2
+        i = np.uint32(pair_i[np.uint64(m)])
+        j = np.uint32(pair_j[np.uint64(m)])
+        kind = np.uint32(code[np.uint64(m)] & 3)
+        image = np.uint32(code[np.uint64(m)] >> 2)
         dx = x[0, i] - x[0, j] - shifts[image, 0]
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
@@ -44,7 +44,7 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         else:
             fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays,
                                          type_of[i], type_of[j])
-        if FACTOR:
+        if FACTOR or not WANTED:       # energies that nobody asks for: the compiler leaves them out
             ev = ec = 0.0
         if not abs(ev + ec) < np.inf or not abs(fp) < np.inf:
             if bad[0] == 0.0:
@@ -57,12 +57,12 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         gz = dz * fp
         a = arrays[-1][i] if FACTOR else 1.0
         b = arrays[-1][j] if FACTOR else 1.0
-        f[0, i] += a * gx
-        f[1, i] += a * gy
-        f[2, i] += a * gz
-        f[0, j] -= b * gx
-        f[1, j] -= b * gy
-        f[2, j] -= b * gz
+        f[0, np.uint32(i)] += a * gx
+        f[1, np.uint32(i)] += a * gy
+        f[2, np.uint32(i)] += a * gz
+        f[0, np.uint32(j)] -= b * gx
+        f[1, np.uint32(j)] -= b * gy
+        f[2, np.uint32(j)] -= b * gz
         if ENERGY:
             mean = 0.5 * (a + b)
             add(acc, eight(ev, ec, dx, dy, dz, mean * gx, mean * gy, mean * gz))

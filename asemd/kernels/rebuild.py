@@ -123,6 +123,20 @@ def clear(buffer, ns):
             buffer[d, i] = 0.0
 
 
+def closest(dx, dy, dz, reduced):
+    """Whether no other image of an atom is closer than the one from which the difference goes; `reduced` are the cell vectors, reduced."""
+    r2 = (dx * dx + dy * dy + dz * dz) * (1.0 - 1e-12)
+    for a in range(-1, 2):
+        for b in range(-1, 2):
+            for c in range(-1, 2):
+                ux = dx + a * reduced[0, 0] + b * reduced[1, 0] + c * reduced[2, 0]
+                uy = dy + a * reduced[0, 1] + b * reduced[1, 1] + c * reduced[2, 1]
+                uz = dz + a * reduced[0, 2] + b * reduced[1, 2] + c * reduced[2, 2]
+                if ux * ux + uy * uy + uz * uz < r2:
+                    return False
+    return True
+
+
 def mark_special(x, row, pair_i, pair_j, code, n, shifts, start, partner, kind, keep, reduced, reduced_inverse):
     """Write the kind of special pairs into `code`; pairs whose weights are all zero (`keep[kind]` false) leave the list.
 
@@ -143,16 +157,8 @@ def mark_special(x, row, pair_i, pair_j, code, n, shifts, start, partner, kind, 
             dx = x[0, i] - x[0, j] - shifts[s, 0]
             dy = x[1, i] - x[1, j] - shifts[s, 1]
             dz = x[2, i] - x[2, j] - shifts[s, 2]
-            r2 = dx * dx + dy * dy + dz * dz
-            # another image is closer: this one is an ordinary neighbour
-            for a in range(-1, 2):
-                for b in range(-1, 2):
-                    for c in range(-1, 2):
-                        ux = dx + a * reduced[0, 0] + b * reduced[1, 0] + c * reduced[2, 0]
-                        uy = dy + a * reduced[0, 1] + b * reduced[1, 1] + c * reduced[2, 1]
-                        uz = dz + a * reduced[0, 2] + b * reduced[1, 2] + c * reduced[2, 2]
-                        if ux * ux + uy * uy + uz * uz < r2 * (1.0 - 1e-12):
-                            found = 0
+            if not closest(dx, dy, dz, reduced):        # an ordinary neighbour
+                found = 0
             if found != 0 and not keep[found]:
                 continue
         pair_i[m] = i
