@@ -94,9 +94,8 @@ class Engine:
         self.farthest = np.zeros(self.threads)      # largest of `moved`, for each thread to read
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
-        width = lanes(s.precision == "mixed")
-        marked = s.outdated or self.sparse
-        self.list = ClusterList(self.threads, self.reach, width, marked) if self.mode == "cluster" else PlainList(self.reach)
+        self.list = (ClusterList(self.threads, self.reach, lanes(s.precision == "mixed"), s.outdated or self.sparse)
+                     if self.mode == "cluster" else PlainList(self.reach))
         self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
         self.state, self._offset, self.ns = None, None, 0
         self.listed: tuple | None = None      # the present list as plain pairs, if anything asked for it
@@ -104,23 +103,21 @@ class Engine:
     def list_for(self, n: int) -> tuple[str, bool, bool, bool, str]:
         """The neighbour list that `n` such atoms need: mode, whether pairs are written out, in rows, packed; and why."""
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
-        rules, chosen = bool(len(self.exclusions.rules)), any(t.molecules for t in self.pair_terms)
+        rules, chosen = len(self.exclusions.rules) > 0, any(t.molecules for t in self.pair_terms)
         few, partners = 2.1 * self.reach**3 * n < SPARSE * self.volume, self.exclusions.partners is not None
-        # in narrow cells two images of an atom are in reach; rows of atoms cannot tell which one is special, moving boxes need room to shrink
-        twice = self.box_moves or self.many_terms or partners and (table or few or rules or chosen)
+        # where two images of an atom are in reach, rows of atoms cannot tell which one is special; moving boxes need room to shrink
+        room = 2 if self.box_moves or self.many_terms or partners and (table or few or rules or chosen) else 1
+        mode, why = "cluster", "half list of clusters of 8 atoms"
         if not self.has_pairs:
             mode, why = "none", "no pair interactions"
         elif n < SMALL:
             mode, why = "plain", f"fewer than {SMALL} atoms"
-        elif (self.widths[self.periodic] < (2 if twice else 1) * self.reach).any():
-            mode, why = "plain", f"a periodic cell width is below {'twice ' if twice else ''}cutoff plus skin"
-        else:
-            mode, why = "cluster", "half list of clusters of 8 atoms"
+        elif (self.widths[self.periodic] <= room * self.reach).any():
+            mode, why = "plain", f"a periodic cell width is not above {'twice ' * (room == 2)}cutoff plus skin"
         expanded = mode == "cluster" and any(np.ndim(t.use.factor) > 0 or t.style.listed for t in self.pair_terms)
-        packed = (mode == "cluster" and not expanded and not partners and not rules
-                  and all(getattr(t.style, "packable", False) for t in self.many_terms))
-        few = few or not (self.pair_terms or packed)
-        sparse = mode == "cluster" and not expanded and (few or table or rules or chosen)
+        plain = mode != "cluster" or expanded
+        packed = not (plain or partners or rules) and all(getattr(t.style, "packable", False) for t in self.many_terms)
+        sparse = not plain and (few or table or rules or chosen or not (self.pair_terms or packed))
         if sparse:
             reasons = (("only many-body styles", not self.pair_terms), ("tables", table), ("neigh_modify exclude", rules),
                        ("pairs are chosen by molecule", chosen), (f"fewer than {SPARSE} neighbours per atom", True))
@@ -305,8 +302,7 @@ class Engine:
             self.acc[:] = 0.0
         if self.settings.outdated:
             self.farthest[:] = self.k.displacements(self.state.x, self.held, self.ns, self.moved)
-        calls = [t.kernel(energy, False) for t in self.terms]
-        spent = np.zeros(len(calls))
+        calls, spent = [t.kernel(energy, False) for t in self.terms], np.zeros(len(self.terms))
 
         def work(tid):
             self.k.clear(self.buffers[tid], self.ns)

@@ -10,8 +10,8 @@ from asemd.kernels.cluster import CLUSTER, SLOT_BITS
 from asemd.kernels.rebuild import closest
 
 
-def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where, earlier, x, shifts, reduced,
-            close):
+def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where, earlier, x, shifts,
+            reduced, close):
     """Entries of the list that special pairs take out, per cluster as (atom in cluster << 16) + place in the cluster's row.
 
     Returns the number, or -1 if `excluded` is too small. `partner_start, partners`: for each atom row the rows it must not meet.

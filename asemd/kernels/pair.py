@@ -208,7 +208,8 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
     charged, sized = any(p.charged for p in parts), any(p.sized for p in parts)
-    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, WANTED=energy or per_atom, CHARGED=charged, FACTOR=factor, SIZED=sized).items():
+    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, WANTED=energy or per_atom, CHARGED=charged, FACTOR=factor,
+                            SIZED=sized).items():
         b.constant(name, value)
     names = _paste_style(b, parts, False, False)
     radii = ["radius_i", "radius_j"] * sized

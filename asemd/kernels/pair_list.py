@@ -3,9 +3,9 @@
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
 partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
 
-Constants of the generated module: ENERGY, PER_ATOM, WANTED (either), CHARGED, CHECK, FACTOR, SIZED (the last of `arrays` are the radii of the slots, which
-`pair_energy_one` takes as its last two arguments). From the style: `pair_energy_one(r2, qq, lj, coul, whole, rows, constants, arrays, ti,
-tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
+Constants of the generated module: ENERGY, PER_ATOM, WANTED (one of the two), CHARGED, CHECK, FACTOR, SIZED (the last of `arrays` are the
+radii of the slots, which `pair_energy_one` takes as its last two arguments). From the style: `pair_energy_one(r2, qq, lj, coul, whole,
+rows, constants, arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
 from tuple or table, as `uniform` says).
 """
 from __future__ import annotations
