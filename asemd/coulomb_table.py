@@ -163,6 +163,7 @@ def special_msm(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5, st
 for function, near, solvers in ((coul_long_table, special, ("pppm", "ewald")), (coul_long_cs_table, special_cs, ("pppm", "ewald")),
                                 (coul_msm_table, special_msm, ("msm",))):
     function.long, function.special, function.solvers = True, near, solvers
+coul_long_cs_table.core, coul_long_cs_table.core_until = 1e-12, "start2"
 
 
 @cache

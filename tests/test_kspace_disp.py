@@ -33,6 +33,9 @@ CASES = {
     "pppm/disp, C6 as given": case("lj/long/coul/long long off 5.0", "kspace_style pppm/disp 1e-4",
                                    f"kspace_modify {FORCES} mix/disp none", coeff=[*LJ, "pair_coeff 1 2 0.2 2.5"]),
     "pppm/cg": case("lj/cut/coul/long 5.0", "set type 3 charge 0.01", "kspace_style pppm/cg 1e-4 0.1", modify="pair_modify table 0"),
+    "tables beside a switch": case("lj/charmm/coul/long 4.0 5.0", "kspace_style ewald 1e-4", modify="pair_modify table 12"),
+    "tables of cores and shells": case("lj/cut/coul/long/cs 5.0", "kspace_style ewald 1e-4", modify="pair_modify table 12 tabinner 2"),
+    "powers of cores and shells": case("buck/coul/long/cs 5.0", "kspace_style ewald 1e-4", coeff=BUCK, modify="pair_modify table 0"),
 }
 
 

@@ -197,6 +197,18 @@ def uniform_rows(rows: np.ndarray) -> tuple[bool, ...]:
     return tuple(bool(np.all(r[1:, 1:] == r[1, 1])) for r in rows)
 
 
+def _core(parts) -> str:
+    """The squared distance as parts without charges take it, to which LAMMPS adds in special pairs of cores and shells; else empty."""
+    at = 0
+    for part in parts:
+        if hasattr(part.function, "core"):
+            until = getattr(part.function, "core_until", "")
+            within = f" and r2 <= constants[{at + part.constants.index(until)}]" if until else ""
+            return f"r2 + ({part.function.core} if coul != whole{within} else 0.0)"
+        at += len(part.constants)
+    return ""
+
+
 @cache
 def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, factor: bool = False,
                 piece: str = ""):
@@ -218,7 +230,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     if any(p.coordinate == "r" for p in parts):
         lines.append("    r = math.sqrt(r2)")
     row = constant = array = 0
-    core = max((getattr(p.function, "core", 0.0) for p in parts), default=0.0)      # what LAMMPS adds to r^2 of a core and its shell
+    core = _core(parts)
     if piece:
         limits = sum(len(p.constants) for p in parts) + 4
         lines += [f"    if r2 <= constants[{limits}] or r2 >= constants[{limits + 1}]:", "        return fp, ev, ec"]
@@ -247,8 +259,12 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
                       f"        {'ec' if part.charged else 'ev'} += whole * e{k} - bare"]
         else:
             if core:
-                near = f"r2 + ({core} if coul != whole else 0.0)"
-                args[0], slope = (near, slope) if part.coordinate == "r2" else ("r", f"{slope} * (r2 / ({near}))")
+                twin = getattr(part.function, "near", None)       # powers of the greater distance, other functions of r
+                args[0] = core if part.coordinate == "r2" else "r"
+                slope = slope if part.coordinate == "r2" else f"{slope} * (r2 / ({core}))"
+                if twin is not None:
+                    args.insert(1, core)
+                    name = b.function(twin, f"near_{name}")
             lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
                       f"        fp += {w} * {slope}",

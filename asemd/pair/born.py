@@ -39,3 +39,15 @@ def born(r, a: "energy", rho: "distance", sigma: "distance", c: "energy*distance
     repulsion = a * math.exp((sigma - r) / rho)
     near = d * r2inv
     return repulsion - (c - near) * r6inv, (6.0 * c - 8.0 * near) * r6inv * rinv - repulsion / rho
+
+
+def near(r, r2, a, rho, sigma, c, d):
+    """Of cores and shells: their powers take another distance."""
+    r2inv = 1.0 / r2
+    r6inv = r2inv * r2inv * r2inv
+    repulsion = a * math.exp((sigma - r) / rho)
+    close = d * r2inv
+    return repulsion - (c - close) * r6inv, (6.0 * c - 8.0 * close) * r6inv / r - repulsion / rho
+
+
+born.near = near

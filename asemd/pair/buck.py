@@ -29,3 +29,13 @@ def buck(r, A: "energy", rho: "distance", C: "energy*distance^6"):
     attraction = C * r2inv * r2inv * r2inv
     repulsion = A * math.exp(-r / rho)
     return repulsion - attraction, 6.0 * attraction * rinv - repulsion / rho
+
+
+def near(r, r2, A, rho, C):
+    """Of cores and shells: the power takes another distance."""
+    attraction = C / (r2 * r2 * r2)
+    repulsion = A * math.exp(-r / rho)
+    return repulsion - attraction, 6.0 * attraction / r - repulsion / rho
+
+
+buck.near = near
