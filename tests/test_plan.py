@@ -46,7 +46,8 @@ def test_cluster_scene(folder, capsys):
 
 
 def test_small_scene_and_per_atom_computes(folder):
-    (folder / "in.x").write_text(BASE.replace("0 2 0 2 0 2", "0 2 0 2 0 1") + "compute s all stress/atom NULL\ndump d all custom 3 dump.x id c_s[1]\nrun 10\n")
+    few = BASE.replace("0 2 0 2 0 2", "0 2 0 2 0 1")
+    (folder / "in.x").write_text(few + "compute s all stress/atom NULL\ndump d all custom 3 dump.x id c_s[1]\nrun 10\n")
     plan = asemd.plan("in.x")
     assert "fewer than" in items(plan, "Neighbour list")["list"].why
     assert "compute s" in items(plan, "Output")["per-atom kernels"].why and "energies and virials per atom" not in items(plan, "Left out")
