@@ -11,7 +11,8 @@ from asemd.registry import find
 SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.mod": "tersoff/mod", ".tersoff.modc": "tersoff/mod/c",
             ".tersoff.zbl": "tersoff/zbl", ".gw": "gw", ".gw.zbl": "gw/zbl", ".vashishta": "vashishta", ".edip": "edip/multi",
             ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic", ".eim": "eim", ".meam": "meam",
-            ".msmeam": "meam/ms", ".snapcoeff": "snap", ".extep": "extep",
+            ".msmeam": "meam/ms", ".meam.spline": "meam/spline", ".meam.sw.spline": "meam/sw/spline",
+            ".snapcoeff": "snap", ".extep": "extep",
             ".3b": "threebody/table"}
 
 

@@ -138,3 +138,26 @@ def test_masses_and_log(tmp_path, monkeypatch):
     assert lmp.scene.interactions.coeff_lines("pair") == [["*", "*", "x.library", "Aa", "Bb", "NULL", "Bb", "Aa", "Bb"]]
     lmp.close()
     assert "Reading MEAM library file x.library with DATE: 2026-01-01" in Path("log.lammps").read_text()
+
+
+SPLINE = "3\n-2.0 0.0\n1 1 1 1\n1.0 2.0 0.0\n2.0 0.5 0.0\n3.0 0.0 0.0\n"
+
+
+@pytest.mark.parametrize(("change", "words", "says"), [
+    (("2.0 0.5", "2.1 0.5"), "Ti",
+     r"phi Ti Ti needs two knots .*, evenly spaced, in rising order \(x.sp:2"),
+    (("0.0\n1 1", "none\n1 1"), "Ti", r"the last slope of phi Ti Ti must be a number, got 'none' \(x.sp:3"),
+    (None, "Ti O", "x.sp is of one element, got Ti O"), ((SPLINE, ""), "Ti", r"the file ends before spline g Ti Ti \(x.sp:25"),
+    (("3\n-2.0", "meam/spline 1 Ti\n3\n-2.0"), "Ti", r"expected spline3eq before spline phi Ti Ti, got 3 \(x.sp:3"),
+    (("3\n-2.0", "meam/spline 1 Ti\n3\n-2.0"), "O", "x.sp has no element O, only Ti"),
+])
+def test_wrong_splines(change, words, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    text = "# a comment\n" + 5 * SPLINE
+    Path("x.sp").write_text(text.replace(*change, 1) if change else text)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("units metal", f"region box block 0 9 0 9 0 9\ncreate_box {len(words.split())} box", "pair_style meam/spline"):
+        lmp.commands_string(line)
+    with pytest.raises(InputError, match=says):
+        lmp.command(f"pair_coeff * * x.sp {words}")
