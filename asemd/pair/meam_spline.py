@@ -4,8 +4,8 @@ $$E=\sum_{i<j}\phi(r_{ij})+\sum_i\big[U(\rho_i)-U(0)\big],\quad
 \rho_i=\sum_j\rho(r_{ij})+\sum_{j<k}f(r_{ij})f(r_{ik})\,g(\cos\theta_{jik})$$
 
 Of several elements $\phi$ and g belong to pairs of them (g to those of the neighbours), $\rho$ and f to the neighbour, U to the atom.
-Beyond their ends splines go on as lines, up to the cutoff, which is the end of the farthest. Types are what their elements in ``pair_coeff`` say,
-several of one element and NULL too; LAMMPS has one type for each element of the file, in the file's order.
+Beyond their ends splines go on as lines, up to the cutoff, which is the end of the farthest. Types are what their elements in
+``pair_coeff`` say, several of one element and NULL too; LAMMPS has one type for each element of the file, in the file's order.
 
 Source: LAMMPS manual, pair_style meam/spline; Lenosky et al., Modelling Simul. Mater. Sci. Eng. 8, 825 (2000).
 """
