@@ -72,6 +72,8 @@ class ManyBody(PairStyle, ABC):
     kernel_constants: Mapping[str, Any] = MappingProxyType({})      # module constants of `forces` and `helpers`
     flat_room = False         # `room` is one row
     head_words = "FILE"       # words of ``pair_coeff`` before the elements of the types
+    usual = ""                     # words of its settings that a calculator has by default
+    whole = False                  # one kernel, with energies, for all steps: where the compiler takes long
 
     def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,
                  helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="",

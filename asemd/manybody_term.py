@@ -51,7 +51,7 @@ class ManyBodyTerm(FactorTerm):
 
     def kernel(self, energy, per_atom):
         row = self.width if self.blocks and not per_atom else 0
-        made = manybody.kernel(self.style, energy=energy, per_atom=per_atom, uniform=self.uniform, row=row)
+        made = manybody.kernel(self.style, energy=energy or self.style.whole, per_atom=per_atom, uniform=self.uniform, row=row)
         return made if per_atom else self._scaled(made, energy)
 
     def rebuild(self, engine):

@@ -13,7 +13,7 @@ SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.m
             ".nb3b.harmonic": "nb3b/harmonic", ".nb3b.screened": "nb3b/screened", ".poly": "polymorphic", ".eim": "eim", ".meam": "meam",
             ".msmeam": "meam/ms", ".meam.spline": "meam/spline", ".meam.sw.spline": "meam/sw/spline",
             ".snapcoeff": "snap", ".extep": "extep",
-            ".3b": "threebody/table"}
+            ".3b": "threebody/table", ".rebo": "rebo", ".airebo": "airebo", ".airebo-m": "airebo/morse"}
 
 
 class Potential(ForceField):
@@ -29,7 +29,7 @@ class Potential(ForceField):
     elements : mapping, optional
         Chemical symbol -> name of the element in the file, where the two differ.
     settings : str, optional
-        Words after the name in ``pair_style``, as ``shift 0.1``.
+        Words after the name in ``pair_style``, as ``shift 0.1``; without them airebo has its usual cutoff, 3.0.
     skin : float, optional
         Extra distance of the neighbour list, Angstrom.
     threads : int
@@ -61,7 +61,8 @@ class Potential(ForceField):
         if not (found.many and found.elements):
             known = nearest(style, SUFFIXES.values())
             raise InputError(f"Potential: {self.style_name} is not a many-body style whose file names elements{known}")
-        found.parse_settings(settings.split())
+        self.words = settings or found.usual
+        found.parse_settings(self.words.split())
 
     @classmethod
     def from_file(cls, file, **options) -> Potential:

@@ -35,12 +35,16 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "eim": ("F Li ffield.eim", "Li F", 4.6), "meam": ("library.meam Si C SiC.meam", "C Si", 4.6),
     "meam/ms": ("library.msmeam H Ga4 HGa.msmeam", "Ga4 H", 4.6),
     "meam/spline": ("TiO.meam.spline", "Ti O", 4.6), "meam/sw/spline": ("Si.b.meam.sw.spline", "Si", 5.2),
+    "rebo": ("CH.rebo", "C H", 3.4), "airebo 1.5 1 1 1.1": ("CH.airebo", "C H", 4.0), "airebo 3.0": ("CH.airebo", "C C", 3.6),
+    "airebo/morse 1.4 1 1 1.0": ("CH.airebo-m", "H C", 4.0),
 }
 COEFF = {"atm 4.0 2.4": ["* * * 0.5", "1 2 2 -0.3", "1 1 1*1 0.7"]}
 TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
-OWN = ("threebody/table",)   # forces that are not derivatives
+TABLED |= dict.fromkeys(("rebo", "airebo", "airebo/morse"), 3e-10)      # and rounds off in polynomials of coordinations
+OWN = ("threebody/table", "airebo 3.0")      # forces that are not derivatives; another airebo takes less time
 STEPS = {"polymorphic": 1e-5, "vashishta/table 2000 0.4": 1e-2}      # tables: steps between their points, forces of their own
-UNITS = dict.fromkeys(("edip", "edip/multi", "polymorphic", "extep", "threebody/table", "meam", "meam/ms", "meam/spline", "meam/sw/spline"),
+UNITS = dict.fromkeys(("rebo", "airebo 1.5 1 1 1.1", "airebo 3.0", "airebo/morse 1.4 1 1 1.0",
+                       "edip", "edip/multi", "polymorphic", "extep", "threebody/table", "meam", "meam/ms", "meam/spline", "meam/sw/spline"),
                       ("metal",))
 FOLDER = r"""
 import importlib.util, os
@@ -250,6 +254,7 @@ def test_calculator(potentials, monkeypatch):
     atoms.symbols[0] = "Ge"
     with pytest.raises(InputError, match="no entry for Si Si Ge"):
         atoms.get_potential_energy()
+    assert asemd.Potential("CH.airebo").todict()["settings"] == "3.0"
     for file, options, says in (("Si.xyz", {}, "does not tell its style"), ("Si.sw", {"style": "lj/cut"}, "not a many-body style"),
                                 ("Si.sw", {"settings": "shift 1"}, "unknown keyword 'shift'")):
         with pytest.raises(InputError, match=says):
@@ -308,6 +313,31 @@ def test_wrong_files_of_triples(pair, text, table, says, tmp_path, monkeypatch):
     lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box"])
     with pytest.raises(InputError, match=says):
         lmp.commands_list([f"pair_style {pair}", "pair_coeff * * a.file B"])
+
+
+@pytest.mark.parametrize(("pair", "change", "words", "says"), [
+    ("rebo", ("REBO2", "REBO"), "C H", r"not one of REBO2, which the first or second line must name \(CH:1"),
+    ("rebo", ("1.7\t", "l.7\t"), "C", r"rcmin_CC: expected a number, got 'l.7' \(CH:7"),
+    ("rebo", ("\n# pCH", "\n1.0\n# pCH"), "C", ""), ("rebo", (None, 5000), "C", r"ends before the splines of coordinations \(CH:"),
+    ("rebo", ("# gH\n\n4", "# gH\n\n5"), "C", "the angular function of hydrogen: expected 4 ends of pieces, got 5"),
+    ("rebo", ("", ""), "Si", "elements must be C, H or NULL, got Si"), ("rebo 3.0", ("", ""), "C", "needs 0 values, got 1"),
+    ("airebo 3.0 1", ("", ""), "C", "needs cutoff or cutoff LJ_flag TORSION_flag"),
+    ("airebo 3.0 1 1 3.0", ("", ""), "C", "cutmin, 3, must be positive and less than the cutoff, 3"),
+    ("airebo 3.0", ("", ""), "C", "not one of AIREBO"),
+])
+def test_wrong_files_of_hydrocarbons(pair, change, words, says, potentials, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    text = (Path(potentials) / "CH.rebo").read_text()
+    old, new = change
+    Path("CH").write_text("".join(text.splitlines(True)[:new]) if old is None else text.replace(old, new, 1))
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", f"create_box {len(words.split())} box"])
+    commands = [f"pair_style {pair}", f"pair_coeff * * CH {words}"]
+    if not says:
+        return lmp.commands_list(commands)
+    with pytest.raises(InputError, match=says):
+        lmp.commands_list(commands)
 
 
 def test_triples_of_types(tmp_path, monkeypatch):
