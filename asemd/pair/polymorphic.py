@@ -3,8 +3,9 @@ r"""A general three-body form with all its functions in tables, which can stand 
 $$E=\tfrac12\sum_i\sum_{j\ne i}\big[U_{IJ}(r_{ij})-F_{IJ}(X_{ij})V_{IJ}(r_{ij})\big],\quad
 X_{ij}=\sum_{k\ne i,j}W_{IK}(r_{ik})\,G_{JIK}(\cos\theta_{jik})\,P_{IK}(r_{ij}-\xi_{IJ}r_{ik})$$
 
-With the flag eta of the file the second term is that of an embedded atom, $-\tfrac12F_{II}(X_i)$ with $X_i=\sum_kW_{KK}(r_{ik})$. Around
-each point of a table functions are cubic, half way to the next one as in LAMMPS, where they have steps of a few units in the ninth digit.
+With the flag eta of the file at 1 the second term is that of an embedded atom, $-\tfrac12F_{II}(X_i)$ with $X_i=\sum_kW_{KK}(r_{ik})$;
+2 is as 0, and with 3 there is a $P_{JIK}$ for each triple. Around each point of a table functions are cubic, half way to the next one as
+in LAMMPS, where they have steps of a few units in the ninth digit.
 """
 from __future__ import annotations
 
@@ -29,9 +30,9 @@ def look(table, x, first, scale):
 
 
 def polymorphic(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
-    """Tables by pair of types: U V W P (pairs, 4, nr, 4), F (pairs, nx, 4); by triple G; which pair and triple; of each pair the
-    cutoff, intervals per distance, xi."""
-    pair, triple, numbers, radial, bent, outer = arrays
+    """Tables by pair of types: U V W (pairs, 3, nr, 4), F (pairs, nx, 4); by triple G; by pair or triple P; which pair, triple and P; of
+    each pair the cutoff, intervals per distance, xi."""
+    pair, triple, which, numbers, radial, spaced, bent, outer = arrays
     widest = constants[1]
     energy, total = 0.0, 0.0
     for k in range(n):
@@ -80,7 +81,7 @@ def polymorphic(i, ti, n, m, near, types, room, grad, constants, arrays, shares)
             c = pair[ti, types[k]]
             x = ux * room[0, k] + uy * room[1, k] + uz * room[2, k]
             g, dg = look(bent[triple[types[j], ti, types[k]]], x, -1.0, constants[3])
-            p, dp = look(radial[c, 3], rj - xi * room[4, k], -widest, constants[4])
+            p, dp = look(spaced[which[types[j], ti, types[k]]], rj - xi * room[4, k], -widest, constants[4])
             w = room[5, k]
             sum_x += w * g * p
             sum_j += w * g * dp
@@ -158,8 +159,8 @@ class Polymorphic(ManyBody):
                 raise file.error(f"{name}: expected numbers", places[at - count]) from None
 
         n, eta = take(int, 2, "the number of elements and eta")
-        if eta not in (0, 1):
-            raise file.error(f"eta must be 0 or 1, got {eta}: forms with the mean of two bond orders are not supported", places[1])
+        if eta not in (0, 1, 2, 3):
+            raise file.error(f"eta must be 0, 1, 2 or 3, got {eta}", places[1])
         names = [take(str, 3, "an element")[2] for _ in range(n)]
         for element in elements:
             if element not in names:
@@ -172,20 +173,21 @@ class Polymorphic(ManyBody):
             raise file.error("tables need six values or more, and F an argument above 0", places[at - 1])
         pairs = n * (n + 1) // 2
         ends = np.array(take(float, 2 * pairs, "cutoffs and xi")).reshape(pairs, 2)
-        radial = np.array(take(float, 4 * pairs * nr, "the tables U, V, W and P"))
+        radial = np.array(take(float, 3 * pairs * nr, "the tables U, V and W")).reshape(3, pairs, nr)
+        spaced = np.array(take(float, (n**3 if eta == 3 else pairs) * nr, "the tables P")).reshape(-1, nr)
         bent = np.array(take(float, n**3 * ng, "the tables G")).reshape(n**3, ng)
         outer = np.array(take(float, pairs * nx, "the tables F")).reshape(pairs, nx)
         if not (ends[:, 0] > 0.0).all():
             raise file.error("cutoffs must be positive", places[7 + 3 * n])
-        return {"names": names, "eta": eta, "ends": ends, "radial": radial.reshape(-1, nr), "bent": bent, "outer": outer,
-                "largest": largest}
+        return {"names": names, "eta": eta, "ends": ends, "radial": radial, "spaced": spaced, "bent": bent,
+                "outer": outer, "largest": largest}
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         element, n = element_of(filled, ntypes), ntypes + 1
         c = next(iter(filled.values()))
         data, unit = c["data"], self.unit_factor(c, units)
         names, ends = data["names"], data["ends"]
-        ne, pairs = len(names), len(ends)
+        ne = len(names)
         number, place = np.zeros((ne, ne), np.int64), ne
         for a in range(ne):
             number[a, a] = a
@@ -193,7 +195,8 @@ class Polymorphic(ManyBody):
                 number[a, b] = number[b, a] = place
                 place += 1
         where = [names.index(e) if e is not None else -1 for e in element]
-        rows, pair, triple = np.zeros((1, n, n)), np.zeros((n, n), np.int64), np.zeros((n, n, n), np.int64)
+        rows, pair = np.zeros((1, n, n)), np.zeros((n, n), np.int64)
+        triple, which = np.zeros((n, n, n), np.int64), np.zeros((n, n, n), np.int64)
         for a, b in filled:
             for i, j in ((a, b), (b, a)):
                 pair[i, j] = number[where[i], where[j]]
@@ -201,15 +204,16 @@ class Polymorphic(ManyBody):
                 for k in range(1, n):
                     if where[k] >= 0:
                         triple[i, j, k] = (where[i] * ne + where[j]) * ne + where[k]
-        radial = data["radial"].reshape(4, pairs, -1).swapaxes(0, 1).copy()
+                        which[i, j, k] = triple[i, j, k] if data["eta"] == 3 else number[where[j], where[k]]
+        radial = data["radial"].swapaxes(0, 1).copy()
         radial[:, :2] *= [[[unit], [unit]]]
         nr, widest = radial.shape[2], float(ends[:, 0].max())
         numbers = np.column_stack([ends[:, 0], (nr - 1) / ends[:, 0], ends[:, 1]])
         constants = [float(data["eta"]), widest, (data["outer"].shape[1] - 1) / data["largest"], (data["bent"].shape[1] - 1) / 2.0,
                      (nr - 1) / (2.0 * widest)]
-        outer = data["outer"] * (unit if data["eta"] else 1.0)
-        return PairTables(rows, np.array(constants), (pair, triple, np.ascontiguousarray(numbers), cubics(radial),
-                                                      cubics(data["bent"]), cubics(outer)))
+        outer = data["outer"] * (unit if data["eta"] == 1 else 1.0)
+        return PairTables(rows, np.array(constants), (pair, triple, which, np.ascontiguousarray(numbers), cubics(radial),
+                                                      cubics(data["spaced"]), cubics(data["bent"]), cubics(outer)))
 
 
 register(Polymorphic("polymorphic", site=polymorphic, helpers=(look,), rooms=11, converts=False, example="GaN_tersoff.poly Ga",
