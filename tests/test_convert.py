@@ -30,6 +30,18 @@ for name, place in given["folders"].items():
     l.close()
 """
 BONDED = "\n".join(bonded_scene.head("DATA", styles=bonded_scene.HYBRID) + bonded_scene.HYBRID_COEFF)
+SPHEROIDS = """atom_style ellipsoid
+lattice fcc 0.8442
+region box block 0 2 0 2 0 2
+create_box 1 box
+create_atoms 1 box
+set type 1 shape 1 1 1.2
+set type 1 quat/random 5
+velocity all create 1.44 87287 loop geom
+pair_style gayberne 1 3 1 1.5
+pair_coeff 1 1 1.0 0.9 1 1 0.5 0 0 0
+fix 1 all npt/asphere temp 1 1 0.1 iso 0 0 1
+"""
 SCENES = {
     "melt": BASE + "variable t index 1.2\nfix 2 all temp/berendsen $t 1.0 0.5\nthermo_style custom step temp pe press\nrun 20",
     "groups": "newton on off\n" + BASE + "group a id 1:5\ngroup b id 9 20\nneigh_modify exclude group a b every 2 delay 4\n"
@@ -38,9 +50,7 @@ SCENES = {
     "film": "boundary s p fs\n" + BASE + "velocity all create 0.1 5\nthermo_style custom step pe press vol xlo xhi zhi\nrun 4",
     "grains": "atom_style sphere\n" + BASE.replace("mass 1 1.0\n", "") + "set type 1 diameter 1.1\ncompute k all ke/atom\n"
     "dump d all custom 5 dump.grains id c_k\ndump_modify d sort id\nrun 10",
-    "spheroids": "atom_style ellipsoid\n" + BASE.replace("mass 1 1.0\n", "set type 1 shape 1 1 1.2\nset type 1 quat/random 5\n").replace(
-        "lj/cut", "gayberne 1 3 1").replace("pair_coeff 1 1 1.0 1.0", "pair_coeff 1 1 1.0 0.9 1 1 0.5 0 0 0").replace(
-        "all nve", "all npt/asphere temp 1 1 0.1 iso 0 0 1") + "compute k all erotate/asphere\nthermo_style custom step pe c_k press\nrun 10",
+    "spheroids": SPHEROIDS + "compute k all erotate/asphere\nthermo_style custom step pe c_k press\nrun 10",
     "bonded": BONDED + "\nreset_timestep 30\ntimestep 0.5\nfix 1 all nvt temp 300 300 50\n"
     "thermo_style custom step temp pe ebond eangle press\nrun 10",
 }

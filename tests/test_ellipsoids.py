@@ -60,6 +60,13 @@ CASES = {
     "npt, another pressure": (SOLID, [FIELD, f"fix 1 all npt/asphere {T} iso 0 2 0.5", "fix_modify 1 press p"]),
     "npt on levels": (SOLID, [FIELD, f"fix 1 all npt/asphere {T} iso 0 2 0.5", "run_style respa 2 2 angle 1 pair 2"]),
     "nph": (SOLID, [FIELD, "fix 1 all nph/asphere aniso 0 2 0.5 ptemp 1.5 couple xy"]),
+    "rigid": (SOLID, [FIELD, "fix 1 rest nve/asphere", "fix 2 some rigid single"]),
+    "rigid/small": (SOLID, ["set group some mol 1", "comm_modify cutoff 4", FIELD, "fix 1 rest nve/asphere", "fix 2 some rigid/small molecule"]),
+    "rigid/npt": (SOLID, [FIELD, "fix 1 rest nve/asphere", "fix 2 some rigid/npt single temp 1 2 0.1 iso 0 1 0.5"]),
+    "rigid/nve in two dimensions": (FLAT, ["group pair id 3:6", "group single subtract all pair", FLAT_FIELD, "fix 1 single nve/asphere",
+                                           "fix 2 pair rigid/nve single", FLAT2]),
+    "move rotate": (SOLID, ["fix 1 rest nve/asphere", "fix 2 some move rotate 1 1 1 0 0.4 1 2.0"]),
+    "move transrot": (SOLID, ["fix 1 rest nve/asphere", "fix 2 some move transrot 0.1 0 0 1 1 1 0 0.4 1 2.0"]),
     "langevin without noise": (SOLID, [FIELD, "fix 1 all nve/asphere", "fix 2 all langevin 0 0 0.3 77 angmom 3.3 scale 1 1.7"]),
     "langevin, tally": (SOLID, [FIELD, "fix 1 all nve/asphere", "fix 2 some langevin 0 0 0.3 77 angmom 1 tally yes zero yes"]),
 }
@@ -253,7 +260,7 @@ PAIR = "pair_style zero 1\npair_coeff * *"
     ("compute t all temp/asphere\nrun 0", "atom 3 is a point"), ("compute t all temp/asphere bias thermo_temp", "removes no bias"),
     ("compute e all erotate/asphere 1", "no arguments"), ("fix 1 all langevin 1 1 1 7 angmom 1\nrun 0", "atom 3 is a point"),
     ("fix 1 all langevin 1 1 1 7 angmom 1 gjf vhalf", "does not go with gjf"), ("mass 1 1", "use set mass"),
-    ("fix 1 all nve/sphere", "radius"), ("fix 1 all move rotate 0 0 0 0 0 1 1\nrun 0", "does not turn ellipsoids"),
+    ("fix 1 all nve/sphere", "radius"),
 ])
 def test_words(line, said):
     with pytest.raises(InputError, match=said):

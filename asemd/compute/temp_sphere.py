@@ -84,7 +84,11 @@ class TempSphere(Temp):
 
     def dof(self, state) -> float:
         turning = float(self.turning(state)) * (3 if state.system.dimension == 3 else 1)
-        return turning if self.rotation_only else super().dof(state) + turning
+        if not self.rotation_only:
+            return super().dof(state) + turning
+        mask = state.groups[self.group]
+        removed = sum(fix.removed_dof(mask) - (0.0 if self.dynamic else fix.added_dof(mask)) for fix in state.fixes)
+        return max(turning - (self.extra_dof or 0.0) - removed, 0.0)        # by default none for the conserved momentum
 
     def remove_bias(self, state) -> np.ndarray:
         return state.system.v if self.without is None else self.without.remove_bias(state)

@@ -6,7 +6,7 @@ r"""Atoms move on a path of their own: forces do not count.
 with the time :math:`\delta` since the fix was defined; ``transrot`` turns and drifts; ``variable`` takes displacements and velocities from
 variables. A component NULL (None) of linear, wiggle and variable moves by its force, as in fix nve.
 
-Source: LAMMPS manual, fix move. Units: velocity, distance, time. Angular velocities and dipoles turn with rotate and transrot.
+Source: LAMMPS manual, fix move. Units: velocity, distance, time. Spheres, ellipsoids and dipoles turn with rotate and transrot.
 """
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ import numpy as np
 
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, hook
+from asemd.fix.ellipsoids import principal
 from asemd.fix.formula import read, write
+from asemd.kernels.rigid import turn_axes
 from asemd.words import choice, number, take
 
 # kind -> names of its numbers
@@ -24,6 +26,24 @@ KINDS = {"linear": ("Vx", "Vy", "Vz"), "wiggle": ("Ax", "Ay", "Az", "period"), "
          "transrot": ("Vx", "Vy", "Vz", "Px", "Py", "Pz", "Rx", "Ry", "Rz", "period"),
          "variable": ("v_dx", "v_dy", "v_dz", "v_vx", "v_vy", "v_vz")}
 LENGTHS = ("Vx", "Vy", "Vz", "Ax", "Ay", "Az", "Px", "Py", "Pz")
+
+
+def turn_ellipsoid(p, angle, mass, shape, first, q, momentum):
+    """Angular momentum of a turn about the axis ``p[16:19]`` at the rate ``p[3]``, then the orientation after this angle."""
+    e, moments, c, s = np.zeros((3, 3)), np.zeros(3), math.cos(0.5 * angle), math.sin(0.5 * angle)
+    x, y, z = s * p[16], s * p[17], s * p[18]
+    principal(mass, shape, moments)
+    turn_axes(q, e)
+    for d in range(3):
+        momentum[d] = 0.0
+    for k in range(3):
+        w = moments[k] * p[3] * (p[16] * e[k, 0] + p[17] * e[k, 1] + p[18] * e[k, 2])
+        for d in range(3):
+            momentum[d] += w * e[k, d]
+    q[0] = c * first[0] - x * first[1] - y * first[2] - z * first[3]
+    q[1] = c * first[1] + x * first[0] + y * first[3] - z * first[2]
+    q[2] = c * first[2] - x * first[3] + y * first[0] + z * first[1]
+    q[3] = c * first[3] + x * first[2] - y * first[1] + z * first[0]
 
 
 class Move(Fix):
@@ -69,6 +89,7 @@ class Move(Fix):
             if any(callable(v) for v in self.given):
                 self.follows = "initial_integrate"
         self.places: np.ndarray | None = None
+        self.turns: np.ndarray | None = None        # orientations of ellipsoids
         self.origin: int | None = None
         self.p, self.a, self.words = np.zeros(1), np.zeros((1, 1)), []
 
@@ -100,6 +121,7 @@ class Move(Fix):
         fix = cls(group, kind, numbers)
         system = session.scene.system
         fix.places, fix.origin, fix.words = system.box.unwrap(system.x, system.image), session.scene.step, list(words)
+        fix.turns = system.extra["quaternions"].copy() if "shape" in system.extra else None
         return fix
 
     @staticmethod
@@ -113,8 +135,6 @@ class Move(Fix):
 
     # ---- numbers ------------------------------------------------------------------------------------------------------------------------
     def parameters(self, loop) -> np.ndarray:
-        if "shape" in loop.system.extra and self.kind in ("rotate", "transrot"):
-            raise InputError(f"fix move {self.kind} does not turn ellipsoids: use fix nve/asphere/noforce, or other atoms")
         if self.origin is None:
             self.origin = loop.step
         kind = list(KINDS).index(self.kind)
@@ -130,19 +150,24 @@ class Move(Fix):
         axis = np.array(given[-4:-1]) if kind in (2, 3) else np.array([0.0, 0.0, 1.0])
         omega = 2.0 * math.pi / given[-1] if kind in (1, 2, 3) else 0.0
         self.p = np.array([loop.group_bit(self.group), kind, self.origin, omega, *free, *drift, *velocity, *point,
-                           *(axis / math.sqrt(axis @ axis)), "mu" in loop.system.extra, "omega" in loop.system.extra], dtype=float)
+                           *(axis / math.sqrt(axis @ axis)), *(name in loop.system.extra for name in ("mu", "omega", "shape"))], float)
         return self.p
 
     def atom_arrays(self, loop) -> tuple[np.ndarray, ...]:
         system = loop.system
         if self.places is None or len(self.places) != system.n:
             self.places = system.box.unwrap(system.x, system.image)
-        self.a, nothing = np.zeros((system.n, 12)), np.zeros((1, 3))
+        self.a, nothing = np.zeros((system.n, 16)), np.zeros((1, 3))
         self.a[:, :3] = self.places
         mu = system.extra.get("mu", nothing)
         if len(mu) == system.n:
             self.a[:, 9:12] = mu        # turned step by step
-        return self.a, mu, system.extra.get("omega", nothing)
+        if "shape" in system.extra:
+            if self.turns is None or len(self.turns) != system.n:
+                self.turns = system.extra["quaternions"].copy()
+            self.a[:, 12:] = self.turns
+        others = (system.extra.get(name, nothing) for name in ("omega", "angmom", "shape"))
+        return (self.a, mu, *others, system.extra.get("quaternions", np.zeros((1, 4))))
 
     def follow(self, loop) -> None:
         for k, value in enumerate(self.given):
@@ -150,10 +175,10 @@ class Move(Fix):
                 self.a[:, 3 + k] = value(loop)
 
     # ---- motion -------------------------------------------------------------------------------------------------------------------------
-    @hook
+    @hook(uses=[principal, turn_axes, turn_ellipsoid])
     def initial_integrate(th, s, p, a):
         bit, kind, dt = np.int32(np.int64(p[0])), p[1], th.dt
-        own, mu, spin = a
+        own, mu, spin, angmom, shape, quaternions = a
         delta = (th.step - p[2]) * dt
         angle = p[3] * delta
         sine, cosine = math.sin(angle), math.cos(angle)
@@ -178,6 +203,8 @@ class Move(Fix):
                         s.v[d, i] = speed[d] + drift
                     if p[20] != 0.0:
                         spin[row, 0], spin[row, 1], spin[row, 2] = p[3] * rx, p[3] * ry, p[3] * rz
+                    if p[21] != 0.0 and shape[row, 0] > 0.0:
+                        turn_ellipsoid(p, angle, s.mass[i], shape[row], own[row, 12:], quaternions[row], angmom[row])
                     continue
                 for d in range(3):
                     shift = s.image[row, 0] * box[0, d] + s.image[row, 1] * box[1, d] + s.image[row, 2] * box[2, d]
@@ -208,8 +235,11 @@ class Move(Fix):
 
     def state(self) -> dict:
         """Where the atoms were, and when."""
-        return {} if self.places is None else {"places": self.places, "origin": int(self.origin or 0)}
+        turns = {} if self.turns is None else {"turns": self.turns}
+        return {} if self.places is None else {"places": self.places, "origin": int(self.origin or 0), **turns}
 
     def restore(self, state: dict) -> None:
         if "places" in state:
             self.places, self.origin = np.array(state["places"]), int(state["origin"])
+        if "turns" in state:
+            self.turns = np.array(state["turns"])

@@ -8,8 +8,8 @@ the angular velocity :math:`\omega = I^{-1} L`:
 by half steps of v and L before and after the forces. Between them the orientation q takes a whole step and two half steps at constant L,
 which are extrapolated, :math:`q = 2 q_{\text{half}} - q_{\text{whole}}`, and normalised. The atoms then get the places and velocities that
 the body gives them; what that does to them counts as virial. A body has six degrees of freedom (five if its atoms are on a line, three in
-two dimensions). Interactions within bodies do no work; ``neigh_modify exclude`` saves their computation. Spheres bring their own moments
-of inertia, angular momenta and torques, and turn with the body; so do dipoles.
+two dimensions). Interactions within bodies do no work; ``neigh_modify exclude`` saves their computation. Spheres and ellipsoids bring
+their own moments of inertia, angular momenta and torques, and turn with the body; so do dipoles.
 
 Source: LAMMPS manual, fix rigid. Output: the temperature of the bodies, and 15 numbers for each body, f_ID[i][j]: centre of mass, its
 velocity, force, torque, image flags. ``fix rigid/small`` is the same without that array.
@@ -35,6 +35,7 @@ from asemd.kernels.rigid import (
     place_moved,
     turn_axes,
     turn_richardson,
+    turn_solid,
 )
 from asemd.kernels.threads import barrier
 from asemd.result import COMPONENTS
@@ -42,7 +43,8 @@ from asemd.words import bounds, yes_no
 
 HEADER = 16     # numbers of every fix of this family before its own
 ORDER = "rigid bodies must be defined before the fix that changes the box"
-MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, gather_forces, place_atoms, place_moved, langevin_bath]
+MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, gather_forces, place_atoms, place_moved,
+        turn_solid, langevin_bath]
 
 
 class Rigid(Fix):
@@ -240,7 +242,8 @@ class Rigid(Fix):
         rows = loop.system.index_of(self.members.ids)       # they change when other atoms leave
         b.rows[:] = rows
         _, spin, mu = rb.spheres(loop.system, rows)
-        self.kept = b._replace(spin=spin, mu=mu)
+        _, momenta, turned = rb.ellipsoids(loop.system, rows)
+        self.kept = b._replace(spin=spin, mu=mu, momenta=momenta, turned=turned)
         return self.kept
 
     def setup(self, loop) -> None:
@@ -252,8 +255,8 @@ class Rigid(Fix):
         b.half_virial[:] = 0.0
         b.force[:] = np.add.reduceat(f, b.first[:-1], axis=0) + b.bath[:, :3] + b.mass[:, None] * self.p[13:16]
         b.torque[:] = np.add.reduceat(np.cross(r - b.x[body], f), b.first[:-1], axis=0) + b.bath[:, 3:]
-        if b.radius.any():
-            b.torque[:] += np.add.reduceat((b.radius > 0.0)[:, None] * system.extra["torque"][b.rows], b.first[:-1], axis=0)
+        if (finite := rb.finite(b)).any():
+            b.torque[:] += np.add.reduceat(finite[:, None] * system.extra["torque"][b.rows], b.first[:-1], axis=0)
         v = rb.velocities(b, body)
         push = (system.atom_masses()[b.rows] / (0.5 * loop.dt * self.p[10]))[:, None] * (v - system.v[b.rows]) - f
         for c, (i, j) in enumerate(COMPONENTS):
@@ -363,7 +366,7 @@ class Rigid(Fix):
         if ((inside > 0) & (inside != size)).any() and key not in self.warned:
             self.warned.add(key)
             self._warn("Computing temperature of portions of rigid bodies")
-        finite = np.add.reduceat((b.radius > 0.0).astype(np.int64), b.first[:-1])      # their rotation, too
+        finite = np.add.reduceat(rb.finite(b).astype(np.int64), b.first[:-1])      # their rotation, too
         if int(self.p[11]) == 2:
             return float((2 * size + finite - 3)[inside == size].sum())
         return float((3 * (size + finite) - 6 + (b.moments == 0.0).any(axis=1))[inside == size].sum())

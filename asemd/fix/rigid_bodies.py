@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd import quaternion
+from asemd.compute import erotate_asphere
 from asemd.compute.erotate_sphere import INERTIA
 from asemd.errors import InputError
 from asemd.kernels.rigid import Bodies
@@ -151,7 +153,10 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
     radius, spin, mu = spheres(system, rows)
     own = INERTIA * m * radius**2
-    tensor = total(tensor + own[:, None, None] * np.eye(3))
+    solids, momenta, turned = ellipsoids(system, rows)
+    own_axes = quaternion.axes(turned[rows]) if solids.any() else np.zeros((len(rows), 3, 3))
+    bodily = own[:, None, None] * np.eye(3) + np.einsum("nki,nk,nkj->nij", own_axes, solids, own_axes)
+    tensor = total(tensor + bodily)
     for k, values in given.items():
         xx, yy, zz, xy, xz, yz = values[4:10]
         tensor[k] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
@@ -160,9 +165,11 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     axes[:, 2] *= np.where(np.einsum("ni,ni->n", np.cross(axes[:, 0], axes[:, 1]), axes[:, 2]) < 0.0, -1.0, 1.0)[:, None]
     place = np.einsum("iab,ib->ia", axes[body], d)
     if not given:
-        _check_moments(moments, total((own + np.einsum("i,ij->i", m, place**2))[:, None] - m[:, None] * place**2), style)
+        along = np.einsum("nka,nab,nkb->nk", axes[body], bodily, axes[body])
+        _check_moments(moments, total(along + (m * (place**2).sum(axis=1))[:, None] - m[:, None] * place**2), style)
     velocity = total(m[:, None] * v) / mass[:, None]
-    momentum = total(m[:, None] * np.cross(d, v) + (own[:, None] * spin[rows] if own.any() else 0.0))
+    momentum = total(m[:, None] * np.cross(d, v) + (own[:, None] * spin[rows] if own.any() else 0.0)
+                     + (np.where(solids[:, :1] > 0.0, momenta[rows], 0.0) if solids.any() else 0.0))
     if file:        # LAMMPS takes no motion from the atoms then
         velocity, momentum = np.zeros((nb, 3)), np.zeros((nb, 3))
         for k, values in given.items():
@@ -171,15 +178,18 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     if system.dimension == 2:
         moves[:, 2:5] = 0.0
     box = np.tile(np.concatenate([system.box.origin, system.box.cell.ravel()]), (nb, 1))
+    q = quaternions(axes)
+    places = quaternion.product(q[body] * (1.0, -1.0, -1.0, -1.0), turned[rows]) if solids.any() else np.zeros((len(rows), 4))
     return Bodies(mass, center, velocity, np.zeros((nb, 3)), np.zeros((nb, 3)), momentum, np.zeros((nb, 3)), moments,
-                  np.ascontiguousarray(axes), quaternions(axes), np.zeros((nb, 4)), image.astype(float), moves, np.zeros((nb, 6)),
+                  np.ascontiguousarray(axes), q, np.zeros((nb, 4)), image.astype(float), moves, np.zeros((nb, 6)),
                   np.zeros((nb, 6)), box, first, rows, place, np.zeros((len(rows), 6)), radius,
-                  np.einsum("iab,ib->ia", axes[body], mu[rows]) if len(mu) == system.n and mu[rows].any() else np.zeros((0, 3)), spin, mu)
+                  np.einsum("iab,ib->ia", axes[body], mu[rows]) if len(mu) == system.n and mu[rows].any() else np.zeros((0, 3)), spin, mu,
+                  np.hstack([solids, places]), momenta, turned)
 
 
 def joined(a: Bodies, b: Bodies) -> Bodies:
     """The bodies of `a` and then those of `b`, on atoms of `a`'s system whose rows are to be set."""
-    both = {name: np.concatenate([getattr(a, name), getattr(b, name)]) for name in (*BY_BODY, "rows", "place", "virial", "radius")}
+    both = {name: np.concatenate([getattr(a, name), getattr(b, name)]) for name in (*BY_BODY, "rows", "place", "virial", "radius", "solid")}
     dipole = [x.dipole if len(x.dipole) else np.zeros(x.place.shape) for x in (a, b)]
     return a._replace(**both, first=np.concatenate([a.first, a.first[-1] + b.first[1:]]),
                       dipole=np.concatenate(dipole) if len(a.dipole) or len(b.dipole) else a.dipole)
@@ -191,7 +201,7 @@ def without(b: Bodies, members: Members, stay: np.ndarray) -> tuple[Bodies, Memb
     atoms = np.repeat(stay, size)
     first = np.concatenate([[0], np.cumsum(size[stay])]).astype(np.int64)
     left = {name: getattr(b, name)[stay] for name in BY_BODY}
-    left |= {name: getattr(b, name)[atoms] for name in ("rows", "place", "virial", "radius")}
+    left |= {name: getattr(b, name)[atoms] for name in ("rows", "place", "virial", "radius", "solid")}
     return (b._replace(**left, first=first, dipole=b.dipole[atoms] if len(b.dipole) else b.dipole),
             Members(members.ids[atoms], first, members.label[stay]))
 
@@ -200,6 +210,19 @@ def spheres(system, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarra
     """Radii of the atoms of the bodies (m,), angular velocities and dipoles of all atoms (n, 3), of one row where there are none."""
     extra, nothing = system.extra, np.zeros((1, 3))
     return extra["radius"][rows] if "radius" in extra else np.zeros(len(rows)), extra.get("omega", nothing), extra.get("mu", nothing)
+
+
+def ellipsoids(system, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Moments of inertia of the atoms of the bodies (m, 3), 0 for points; angular momenta and orientations of all atoms."""
+    extra = system.extra
+    if "shape" not in extra:
+        return np.zeros((len(rows), 3)), np.zeros((1, 3)), np.zeros((1, 4))
+    return erotate_asphere.moments(system)[rows], extra["angmom"], extra["quaternions"]
+
+
+def finite(b: Bodies) -> np.ndarray:
+    """(m,) which atoms turn with their body."""
+    return (b.radius > 0.0) | (b.solid[:, 0] > 0.0)
 
 
 def _check_moments(moments: np.ndarray, again: np.ndarray, style: str) -> None:
@@ -220,6 +243,10 @@ def velocities(b: Bodies, body: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         w = np.where(b.moments > 0.0, np.einsum("nka,na->nk", b.axes, b.momentum) / b.moments, 0.0)
     b.omega[:] = np.einsum("nk,nka->na", w, b.axes)
+    solid = np.flatnonzero(b.solid[:, 0] > 0.0)
+    if len(solid):
+        rows, e = b.rows[solid], quaternion.axes(b.turned[b.rows[solid]])
+        b.momenta[rows] = np.einsum("nki,nk,nkj,nj->ni", e, b.solid[solid, :3], e, b.omega[body[solid]])
     turning = b.radius > 0.0
     if turning.any():
         b.spin[b.rows[turning]] = b.omega[body[turning]]

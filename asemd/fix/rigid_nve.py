@@ -29,12 +29,13 @@ from asemd.kernels.rigid import (
     place_moved,
     turn_about,
     turn_axes,
+    turn_solid,
     turn_symplectic,
 )
 from asemd.kernels.threads import barrier
 
 MOVE = [turn_axes, angular_velocity, turn_about, turn_symplectic, kick_conjugate, momentum_of, follow_box, gather_forces, place_atoms,
-        place_moved, langevin_bath]
+        place_moved, turn_solid, langevin_bath]
 
 
 class RigidNVE(Rigid):

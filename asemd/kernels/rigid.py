@@ -38,6 +38,9 @@ class Bodies(NamedTuple):
     dipole: np.ndarray        # (m, 3) dipoles along the axes of their body; (0, 3) if there are none
     spin: np.ndarray          # (n, 3) angular velocities of all atoms by row; not read where there are no spheres
     mu: np.ndarray            # (n, 3) dipoles of all atoms by row; the same
+    solid: np.ndarray         # (m, 7) of ellipsoids: moments of inertia about their own axes, orientation as seen from the body; else 0
+    momenta: np.ndarray       # (n, 3) angular momenta of all atoms by row; not read where there are no ellipsoids
+    turned: np.ndarray        # (n, 4) orientations of all atoms by row; the same
 
 
 def turn_axes(q, e):
@@ -180,7 +183,7 @@ def gather_forces(s, p, b, k):
         tx += dy * gz - dz * gy
         ty += dz * gx - dx * gz
         tz += dx * gy - dy * gx
-        if b.radius[j] > 0.0:
+        if b.radius[j] > 0.0 or b.solid[j, 0] > 0.0:
             tx += s.torque[0, i]
             ty += s.torque[1, i]
             tz += s.torque[2, i]
@@ -188,6 +191,27 @@ def gather_forces(s, p, b, k):
     for d in range(3):
         b.force[k, d] += b.mass[k] * p[13 + d]
     b.torque[k, 0], b.torque[k, 1], b.torque[k, 2] = tx + b.bath[k, 3], ty + b.bath[k, 4], tz + b.bath[k, 5]
+
+
+def turn_solid(b, k, j, r, moving):
+    """Orientation, if `moving`, and angular momentum of an ellipsoid of body k."""
+    q, o, out = b.q[k], b.solid[j, 3:], b.turned[r]
+    if moving:
+        out[0] = q[0] * o[0] - q[1] * o[1] - q[2] * o[2] - q[3] * o[3]
+        out[1] = q[0] * o[1] + q[1] * o[0] + q[2] * o[3] - q[3] * o[2]
+        out[2] = q[0] * o[2] - q[1] * o[3] + q[2] * o[0] + q[3] * o[1]
+        out[3] = q[0] * o[3] + q[1] * o[2] - q[2] * o[1] + q[3] * o[0]
+        scale = 1.0 / math.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3])
+        for c in range(4):
+            out[c] *= scale
+    e = np.empty((3, 3))
+    turn_axes(out, e)
+    for c in range(3):
+        b.momenta[r, c] = 0.0
+    for axis in range(3):
+        w = b.solid[j, axis] * (e[axis, 0] * b.omega[k, 0] + e[axis, 1] * b.omega[k, 1] + e[axis, 2] * b.omega[k, 2])
+        for c in range(3):
+            b.momenta[r, c] += w * e[axis, c]
 
 
 def place_atoms(s, b, k, half, moving, sums):
@@ -232,6 +256,8 @@ def place_atoms(s, b, k, half, moving, sums):
         s.v[0, i], s.v[1, i], s.v[2, i] = vx, vy, vz
         if b.radius[j] > 0.0:
             b.spin[r, 0], b.spin[r, 1], b.spin[r, 2] = wx, wy, wz
+        if b.solid[j, 0] > 0.0:
+            turn_solid(b, k, j, r, moving)
         if moving and b.dipole.shape[0] > 0:
             for c in range(3):
                 b.mu[r, c] = e[0, c] * b.dipole[j, 0] + e[1, c] * b.dipole[j, 1] + e[2, c] * b.dipole[j, 2]
