@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 ORDER = 5
+FOUR_PI = 12.5663706      # LAMMPS's, to its digits
 
 
 def denominator(b, x, y, z):
@@ -56,8 +57,7 @@ def influence(n, numbers, turn, g, most, b):
                 q2 = turn[2, 0] * u0 + turn[2, 1] * u1 + turn[2, 2] * u2
                 qq = q0 * q0 + q1 * q1 + q2 * q2
                 total += (k0 * q0 + k1 * q1 + k2 * q2) / qq * math.exp(-0.25 * qq / (g * g)) * w2
-    # LAMMPS's 4 pi, to its digits
-    return 12.5663706 / kk * total / denominator(b, math.sin(a0) ** 2, math.sin(a1) ** 2, math.sin(a2) ** 2)
+    return FOUR_PI / kk * total / denominator(b, math.sin(a0) ** 2, math.sin(a1) ** 2, math.sin(a2) ** 2)
 
 
 def folded(i, n):

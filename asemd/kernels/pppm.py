@@ -14,16 +14,16 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import pppm_ad
+from asemd.kernels import pppm_ad, pppm_stagger
 from asemd.kernels.callback import call_back
 from asemd.kernels.ewald import is_same, slab, stretched
 from asemd.kernels.generate import Builder
-from asemd.kernels.influence import denominator, folded, influence, make_green, opposite, sinc_power
+from asemd.kernels.influence import FOUR_PI, denominator, folded, influence, make_green, opposite, sinc_power
 from asemd.kernels.stencil import WIDE, collect, deposit
 from asemd.kernels.threads import barrier
 
 ORDER = 5
-ENERGY = PER_ATOM = AD = False
+ENERGY = PER_ATOM = AD = STAGGERED = False
 make_green_ad = own_force = gather_ad = None
 
 
@@ -226,8 +226,8 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
          virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
-    `constants` as in `asemd.kernels.ewald.ewald`; `held (4, 3)`: the box that `green` is for, and its volume; `forward`, `backward`,
-    `backward_shares`: addresses of the transforms.
+    `constants` as in `asemd.kernels.ewald.ewald`, if STAGGERED then by how many spacings the mesh is shifted; `held (4, 3)`: the box that
+    `green` is for, and its volume; `forward`, `backward`, `backward_shares`: addresses of the transforms.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     least = constants[6]
@@ -248,11 +248,18 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
             barrier(meeting)
             if tid == 0:
                 own_force(numbers, lengths, held[3, 0], green, own)
+                if STAGGERED:
+                    for d in range(3):
+                        own[d, 0] *= 1.0 - 4.0 * constants[7]      # half a period
         else:
             make_green(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green)
     volume = held[3, 0]
     points = numbers[0] * numbers[1] * numbers[2]
-    spread(x, q, least, lo, hi, origin, inverse, numbers, points / volume, pieces, wrap, base, weight, brick[tid])
+    corner = origin.copy()
+    if STAGGERED:
+        for d in range(3):
+            corner[d] -= constants[7] * (held[0, d] / numbers[0] + held[1, d] / numbers[1] + held[2, d] / numbers[2])
+    spread(x, q, least, lo, hi, corner, inverse, numbers, points / volume, pieces, wrap, base, weight, brick[tid])
     barrier(meeting)
     add_bricks(first, last, brick, density)
     barrier(meeting)
@@ -297,7 +304,7 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
 
 
 @cache
-def kernel(level: int, order: int, ad: bool):
+def kernel(level: int, order: int, ad: bool, staggered: bool = False):
     """`pppm` for weights of that order, differentiated if `ad`; `level`: see `asemd.kspace.term.KSpaceTerm`."""
     b = Builder(f"particle-particle particle-mesh, order {order}")
     b.line("from asemd.kernels.threads import barrier")
@@ -306,9 +313,12 @@ def kernel(level: int, order: int, ad: bool):
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
     b.constant("AD", ad)
+    b.constant("STAGGERED", staggered)
+    b.constant("FOUR_PI", 4.0 * math.pi if staggered else FOUR_PI)
     b.line("from asemd.kernels.stencil import WIDE, collect, deposit")
     b.function(find_rows, fast=True, inline=True)
-    for f in (denominator, sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
+    b.function(pppm_stagger.denominator if staggered else denominator, fast=True)
+    for f in (sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
               multiply_shares, interleave, gather, gather_shares, is_same, slab, *(pppm_ad.FUNCTIONS if ad else ())):
         b.function(f, fast=True)
     b.function(stretched)
