@@ -24,14 +24,14 @@ class TIP4P(PairStyle):
 
     Parameters
     ----------
-    settings : str
-        The words after the distance of the site, see `asemd.pairstyle.PairStyle`.
+    settings, before : str
+        The words after the distance of the site, and before the type of oxygen, see `asemd.pairstyle.PairStyle`.
     """
 
     needs_newton = True
 
-    def __init__(self, name, parts, *, settings, units=None, **options):
-        super().__init__(name, parts, settings=f"{WORDS} {settings}", units={**UNITS, **(units or {})}, **options)
+    def __init__(self, name, parts, *, settings, before="", units=None, **options):
+        super().__init__(name, parts, settings=f"{before} {WORDS} {settings}", units={**UNITS, **(units or {})}, **options)
         self.solvers = frozenset({"pppm/tip4p"}) if self.solvers else self.solvers
         self._pieces = [self._piece(kind) for kind in ("vdwl", "coul") if any(p.kind == kind for p in self.parts)]
 

@@ -51,10 +51,16 @@ def script(path: str, style: str, coeffs, more=()) -> str:
 
 
 LJ = ("1 1 0.16 3.16", "2 2 0.0 1.0")
+UPRIGHT = ("change_box all xy final 0 xz final 0 yz final 0 remap", "change_box all ortho")
+MESHES = ("kspace_style pppm/disp/tip4p 1e-3", "kspace_modify gewald 0.4 mesh 8 8 8 gewald/disp 0.4 mesh/disp 8 8 8",
+          "pair_modify table 0 table/disp 0")
 CASES = [
     ("tip4p/cut 1 2 1 1 0.15 5.0", ("* *",), ()),
     ("lj/cut/tip4p/cut 1 2 1 1 0.125 4.5 5.0", LJ, ()),
     ("lj/cut/tip4p/long 1 2 1 1 0.15 4.5 5.0", LJ, ("kspace_style pppm/tip4p 1e-3", "pair_modify table 0")),
+    ("lj/long/tip4p/long cut long 1 2 1 1 0.15 4.5 5.0", LJ, ("kspace_style pppm/tip4p 1e-3", "pair_modify table 0")),
+    ("lj/long/tip4p/long long long 1 2 1 1 0.15 5.0", LJ, (*UPRIGHT, *MESHES)),
+    ("lj/long/tip4p/long long off 1 2 1 1 0.15 5.0", LJ, (*UPRIGHT, *MESHES)),
     ("hybrid/overlay lj/cut 4.5 hbond/dreiding/lj 4 4.0 5.0 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/lj 2 i 4.0 2.75"), ()),
     ("hybrid/overlay lj/cut 4.5 hbond/dreiding/morse 2 5.4 5.5 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/morse * j 3.9 1.7 2.9 3"),
      ()),
@@ -75,7 +81,7 @@ def test_against_lammps(tmp_path):
 
 def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path):
     """Between the cutoffs too, where LAMMPS's is not."""
-    lines = script(data(tmp_path / "water.data"), *CASES[3])
+    lines = script(data(tmp_path / "water.data"), *next(case for case in CASES if "dreiding/lj" in case[0]))
     mine = Lammps(cmdargs=["-log", "none", "-screen", "none"])
     mine.commands_string(lines + "\nfix d all numdiff 1 1e-4\nrun 0")
     forces = np.array(mine.gather_atoms("f", 1, 3)).reshape(-1, 3)
@@ -90,6 +96,9 @@ def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path):
     ("lj/cut/tip4p/cut 1 2 1 1 0.15 5.0", LJ, ("angle_style none",), "must have an angle style"),
     ("tip4p/cut 2 1 1 1 0.15 5.0", ("* *",), (), "TIP4P hydrogen is missing: oxygen atom"),
     ("tip4p/long 1 2 1 1 0.15 5.0", ("* *",), ("kspace_style pppm 1e-3",), "pppm needs a pair style"),
+    ("lj/long/tip4p/long off long 1 2 1 1 0.15 5.0", (), (), "dispersion must be long or cut"),
+    ("lj/long/tip4p/long cut off 1 2 1 1 0.15 5.0", (), (), "one of dispersion and coulomb must be long"),
+    ("lj/long/tip4p/long long long 1 2 1 1 0.15 5.0", LJ, ("kspace_style pppm/disp 1e-3",), "pppm/disp needs a pair style"),
     ("hbond/dreiding/lj 4 5.0 4.0 90", (), (), "inner cutoff 5 must be less than outer cutoff 4"),
     ("hbond/dreiding/lj 4 4.0 5.0 190", (), (), "angle must be 0 to 180"),
     ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 2 k 4.0 2.75",), (), "the donor flag must be i or j"),

@@ -11,6 +11,12 @@ from asemd.kspace.pppm import PPPM, PPPMTerm
 from asemd.site_terms import OnSites
 
 
+def sites_of(solver, interactions):
+    """The `asemd.charge_sites.ChargeSites` of the pair style that leaves its charges to the solver."""
+    use = next(use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings))
+    return use.style.sites(use.settings, interactions)
+
+
 class PPPMTIP4P(PPPM):
     """``kspace_style pppm/tip4p accuracy``."""
 
@@ -18,19 +24,18 @@ class PPPMTIP4P(PPPM):
     groups = False
 
     def prepare(self, system, interactions, units, cutoff):
-        use = next(use for use in interactions.uses["pair"] if self.flag in use.style.solvers)
-        self.sites = use.style.sites(use.settings, interactions)
+        self.sites = sites_of(self, interactions)
         super().prepare(system, interactions, units, cutoff)
 
     def terms(self, engine):
         return [TIP4PTerm(self)]
 
 
-class TIP4PTerm(OnSites, PPPMTerm):
-    """The mesh with charges on sites."""
+class ChargesOnSites(OnSites):
+    """A mesh of charges on sites; before the class of the term that it is otherwise."""
 
-    def __init__(self, solver):
-        super().__init__(solver)
+    def __init__(self, solver, *arguments):
+        super().__init__(solver, *arguments)
         self.sites = solver.sites
 
     def hand_over(self, engine, energy, virial):
@@ -41,3 +46,7 @@ class TIP4PTerm(OnSites, PPPMTerm):
         energy[oxygen] += own
         super().hand_over(engine, energy, virial)
         energy[oxygen] -= own
+
+
+class TIP4PTerm(ChargesOnSites, PPPMTerm):
+    """The mesh of charges on sites."""
