@@ -279,15 +279,23 @@ class Box:
         periodic = self.periodic
         if not periodic.any() or not len(d):
             return d.copy(), np.zeros(d.shape, np.int32)
+        if self.aligned:
+            near, shift = d.copy(), np.zeros(d.shape, np.int32)
+            for k in np.flatnonzero(periodic):
+                length = self.cell[k, k]
+                far = np.flatnonzero(np.abs(d[:, k]) > 0.499999 * length)
+                n = -np.rint(d[far, k] / length)
+                near[far, k] += n * length
+                shift[far, k] = n
+            return near, shift
         basis, steps = _reduced(self.cell[periodic])
         n = -np.rint(d @ np.linalg.pinv(basis))
         near = d + n @ basis
-        if not self.aligned:
-            around = np.stack(np.meshgrid(*([-1, 0, 1],) * len(basis), indexing="ij"), -1).reshape(-1, len(basis))
-            length = ((near[:, None] + around @ basis) ** 2).sum(axis=2)
-            length[:, len(around) // 2] *= 1.0 - 1e-12    # a tie stays where it is
-            best = around[np.argmin(length, axis=1)]
-            n, near = n + best, near + best @ basis
+        around = np.stack(np.meshgrid(*([-1, 0, 1],) * len(basis), indexing="ij"), -1).reshape(-1, len(basis))
+        length = ((near[:, None] + around @ basis) ** 2).sum(axis=2)
+        length[:, len(around) // 2] *= 1.0 - 1e-12    # a tie stays where it is
+        best = around[np.argmin(length, axis=1)]
+        n, near = n + best, near + best @ basis
         shift = np.zeros(d.shape, np.int32)
         shift[:, periodic] = n @ steps
         return near, shift

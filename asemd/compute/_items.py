@@ -5,7 +5,10 @@ import numpy as np
 
 from asemd.bond_term import present
 from asemd.kernels import bonded
+from asemd.kernels import rows as by_row
 from asemd.kernels.state import cell_arrays
+
+PIECE = 2048        # items at once: their arrays stay in the cache
 
 
 def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, units, compat: str) -> tuple[np.ndarray, np.ndarray]:
@@ -40,22 +43,25 @@ def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, u
         periodic[2] = False
     orthogonal = not np.count_nonzero(cell - np.diag(np.diag(cell))) and bool((np.diag(cell) > 0).all())
     loop = bonded.kernel(style, energy=True, per_atom=True, periodic=bool(periodic.any()), orthogonal=orthogonal)
-    n = m * k                     # every item has atoms of its own
-    x = np.ascontiguousarray(system.x[atoms.ravel()].T)
-    forces, shares, virial = np.zeros((3, n)), np.zeros(n), np.zeros((6, n))
-    items, types = np.arange(n, dtype=np.int32).reshape(m, k), np.ascontiguousarray(types, np.int32)
     arrays = (*packed.arrays, *present(use, system, atoms)) if style.remembers else packed.arrays
-    args = (x, forces, items, types, cell_arrays(cell, periodic), packed.coeff, arrays)
-    bad = np.zeros(4)
-    loop(*args, 0, m, np.zeros(8), shares, virial, bad)
-    energies, forces = shares.reshape(m, k).sum(axis=1), forces.T.reshape(m, k, 3)
-    if bad[0]:                    # the loop names only the first one
-        first = int(bad[1])
-        for item in range(first, m):
+    types, piece = np.ascontiguousarray(types, np.int32), m if style.remembers else PIECE
+    energies, by_axis, geometry = np.empty(m), np.empty((3, m * k)), cell_arrays(cell, periodic)
+    places = system.x
+    forces = by_axis.T.reshape(m, k, 3)
+    for lo in range(0, m, piece):
+        hi = min(lo + piece, m)
+        n = (hi - lo) * k         # every item has atoms of its own
+        x, f, shares, bad = np.empty((3, n)), np.zeros((3, n)), np.zeros(n), np.zeros(4)
+        by_row.of_items(places, atoms[lo:hi], x)
+        items = np.arange(n, dtype=np.int32).reshape(-1, k)
+        more = (items, types[lo:hi], geometry, packed.coeff, arrays)
+        loop(x, f, *more, 0, hi - lo, np.zeros(8), shares, np.zeros((6, n)), bad)
+        energies[lo:hi], by_axis[:, lo * k:hi * k] = sum(shares[j::k] for j in range(k)), f
+        for item in range(int(bad[1]), hi - lo) if bad[0] else ():        # the loop names only the first one
             alone = np.zeros(4)
-            loop(*args[:1], np.zeros((3, n)), *args[2:], item, item + 1, np.zeros(8), np.zeros(n), np.zeros((6, n)), alone)
+            loop(x, np.zeros((3, n)), *more, item, item + 1, np.zeros(8), np.zeros(n), np.zeros((6, n)), alone)
             if alone[0]:
-                energies[item] = forces[item] = np.nan
+                energies[lo + item] = forces[lo + item] = np.nan
     return energies, forces
 
 
@@ -63,6 +69,10 @@ def evaluate_all(system, interactions, category: str, atoms: np.ndarray, types: 
     """As `evaluate`, for items of all styles of a category; what is turned off or has no coefficients counts as zero."""
     energies, forces = np.zeros(len(atoms)), np.zeros((*atoms.shape, 3))
     for use in interactions.uses[category]:
-        mine = np.isin(types, list(use.coeff))
+        known = np.zeros(max(int(types.max(initial=0)), *use.coeff, 0) + 1, bool)
+        known[list(use.coeff)] = True
+        mine = known[np.maximum(types, 0)]      # below 0: turned off
+        if mine.all():
+            return evaluate(system, use, category, atoms, types, units, interactions.compat)
         energies[mine], forces[mine] = evaluate(system, use, category, atoms[mine], types[mine], units, interactions.compat)
     return energies, forces

@@ -8,6 +8,7 @@ import numpy as np
 from asemd.compute import Compute
 from asemd.compute._items import evaluate_all
 from asemd.errors import InputError, nearest
+from asemd.kernels import observe
 from asemd.words import take
 
 OWNER = {"bond": 0, "angle": 1, "dihedral": 1, "improper": 1}      # the atom of an item that LAMMPS keeps it with
@@ -19,9 +20,14 @@ def local_items(state, kind: str, group: str) -> tuple[np.ndarray, np.ndarray]:
     Sorted by the row of the atom that owns an item, so that columns of several computes fit together.
     """
     atoms, types = state.system.topology.items(kind)
-    keep = state.mask(group)[atoms].all(axis=1) & (types != 0)
-    atoms, types = atoms[keep], types[keep]
-    order = np.argsort(atoms[:, OWNER[kind]], kind="stable")
+    mask = state.mask(group)
+    if not mask.all() or not types.all():
+        keep = mask[atoms].all(axis=1) & (types != 0)
+        atoms, types = atoms[keep], types[keep]
+    owner = atoms[:, OWNER[kind]]
+    if (owner[1:] >= owner[:-1]).all():
+        return atoms, types
+    order = np.argsort(owner, kind="stable")
     return atoms[order], types[order]
 
 
@@ -40,11 +46,17 @@ class Geometry:
         self.state, self.kind, self.interactions = state, kind, interactions
         self.atoms, self.types = local_items(state, kind, group)
         self._evaluated: tuple[np.ndarray, np.ndarray] | None = None
+        self.known: dict[str, Any] = {}      # what several columns follow from
 
     def between(self, a: int, b: int) -> np.ndarray:
         """(m, 3) vectors from atom b to atom a of each item, counted from 0, as closest images."""
-        x = self.state.system.x
-        return self.state.system.box.minimum_image(x[self.atoms[:, a]] - x[self.atoms[:, b]])[0]
+        box = self.state.system.box
+        out, far = np.empty((len(self.atoms), 3)), np.empty(len(self.atoms), np.int64)
+        near = np.where(box.periodic, 0.499999, np.inf) * np.diag(box.cell) if box.aligned else -np.ones(3)
+        far = far[:observe.separations(self.state.system.x, self.atoms, a, b, near, out, far)]
+        if len(far):
+            out[far] = box.minimum_image(out[far])[0]
+        return out
 
     def evaluated(self) -> tuple[np.ndarray, np.ndarray]:
         """Energies (m,) and forces (m, k, 3)."""
@@ -127,7 +139,7 @@ class Local(Compute):
         """(m,) for one keyword, (m, k) for several."""
         geometry = Geometry(state, self.kind, self.group, self.interactions)
         out = [self._formula(geometry, k[2:]) if k.startswith("v_") else self.columns[k](geometry) for k in self.keywords]
-        return np.asarray(out[0], float) if len(out) == 1 else np.column_stack(out).astype(float)
+        return np.asarray(out[0], float) if len(out) == 1 else np.column_stack(out).astype(float, copy=False)
 
     def _formula(self, geometry: Geometry, name: str) -> np.ndarray:
         if self.variables is None:

@@ -10,6 +10,8 @@ Source: LAMMPS manual, compute bond/local.
 """
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from asemd.bond_term import present
@@ -25,8 +27,12 @@ class Bonds:
     def __init__(self, geometry: Geometry):
         self.g = geometry
         self.d = geometry.between(0, 1)
-        self.dist = np.sqrt((self.d**2).sum(axis=1))
-        self.along = self.d / np.where(self.dist > 0.0, self.dist, 1.0)[:, None]
+        self.dist = np.sqrt(np.einsum("ij,ij->i", self.d, self.d))
+
+    @cached_property
+    def along(self) -> np.ndarray:
+        """(m, 3) unit vectors."""
+        return self.d / np.where(self.dist > 0.0, self.dist, 1.0)[:, None]
 
     def force(self) -> np.ndarray:
         """Force on atom 1, (m, 3)."""
@@ -53,6 +59,13 @@ class Bonds:
         return across / np.where(self.dist > 0.0, self.dist, np.inf)
 
 
+def bonds(g: Geometry) -> Bonds:
+    """Those of a geometry, made once."""
+    if "bonds" not in g.known:
+        g.known["bonds"] = Bonds(g)
+    return g.known["bonds"]
+
+
 def reference(g: Geometry) -> np.ndarray:
     """The lengths that bonds of styles that remember them had at first; 0 for others."""
     uses = [use for use in g.interactions.uses["bond"] if use.style.remembers == "bonds"]
@@ -70,14 +83,14 @@ class BondLocal(Local):
 
     style, kind, given = "bond/local", "bond", "dist"
     columns = {
-        "dist": lambda g: Bonds(g).dist,
-        **{f"d{a}": lambda g, k=k: Bonds(g).d[:, k] for a, k in XYZ.items()},
+        "dist": lambda g: bonds(g).dist,
+        **{f"d{a}": lambda g, k=k: bonds(g).d[:, k] for a, k in XYZ.items()},
         "engpot": Geometry.energy,
-        "force": lambda g: (Bonds(g).force() * Bonds(g).along).sum(axis=1),
-        **{f"f{a}": lambda g, k=k: Bonds(g).force()[:, k] for a, k in XYZ.items()},
-        **{name: lambda g, name=name: Bonds(g).kinetic(name) for name in ("engvib", "engrot", "engtrans")},
-        "omega": lambda g: Bonds(g).omega(),
-        "velvib": lambda g: Bonds(g).motion()[3],
+        "force": lambda g: (bonds(g).force() * bonds(g).along).sum(axis=1),
+        **{f"f{a}": lambda g, k=k: bonds(g).force()[:, k] for a, k in XYZ.items()},
+        **{name: lambda g, name=name: bonds(g).kinetic(name) for name in ("engvib", "engrot", "engtrans")},
+        "omega": lambda g: bonds(g).omega(),
+        "velvib": lambda g: bonds(g).motion()[3],
         "b1": reference,
     }
 

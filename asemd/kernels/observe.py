@@ -108,6 +108,21 @@ def same(a, b):
 
 
 @njit(cache=True, nogil=True)
+def separations(x, atoms, a, b, near, out, far):
+    """Vectors from atom `b` to atom `a` of items ``atoms (m, k)`` into `out (m, 3)`, and into `far (m,)` the numbers of those that are
+    longer than `near (3,)` along an axis; returns how many these are."""
+    found = 0
+    for i in range(len(atoms)):
+        p, q = np.uint64(atoms[i, a]), np.uint64(atoms[i, b])
+        u, v, w = x[p, 0] - x[q, 0], x[p, 1] - x[q, 1], x[p, 2] - x[q, 2]
+        out[i, 0], out[i, 1], out[i, 2] = u, v, w
+        if abs(u) > near[0] or abs(v) > near[1] or abs(w) > near[2]:
+            far[found] = i
+            found += 1
+    return found
+
+
+@njit(cache=True, nogil=True)
 def within(numbers, known, highest, out):
     """Numbers of atoms that are known and from 1 to the highest one; 0 for the others."""
     for i in range(len(numbers)):

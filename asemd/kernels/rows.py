@@ -15,6 +15,16 @@ def of_slots(slot_of, values, out):
 
 
 @njit(cache=True, nogil=True)
+def of_items(x, atoms, out):
+    """Positions ``x (n, 3)`` of the atoms of items ``atoms (m, k)``, one item after the other, as `out (3, m k)`."""
+    k = atoms.shape[1]
+    for i in range(len(atoms)):
+        for j in range(k):
+            r, to = np.uint64(atoms[i, j]), np.uint64(i * k + j)
+            out[0, to], out[1, to], out[2, to] = x[r, 0], x[r, 1], x[r, 2]
+
+
+@njit(cache=True, nogil=True)
 def span(x, row, ns, origin, inverse, out):
     """Smallest and largest fractional coordinates of atoms ``x (3, slots)`` into `out (2, 3)`."""
     for a in range(3):
