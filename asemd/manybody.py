@@ -57,7 +57,7 @@ class ManyBody(PairStyle, ABC):
         One of the two, see above; `helpers` are functions that it calls.
     block : callable, optional
         ``block(i, n, m, full, b, constants)``, the same energy for tables that `fits` agrees to, on ``full`` neighbours, a multiple of
-        eight, in vector code: see `asemd.kernels.manybody.block_forces`. Loops without branches, indices ``b[place(row * ROW + k)]``.
+        eight, in vector code: see `asemd.kernels.manybody.site_forces`. Loops without branches, indices ``b[place(row * ROW + k)]``.
     rooms, shares : int
         Rows of work space by neighbour of a thread, and by slot for all threads.
     elements : bool

@@ -271,7 +271,7 @@ GOOD = "Si Si Si 2.1683 2.0951 1.80 21.0 1.20 -0.333333333333\n 7.049556277 0.60
     (GOOD.replace("2.1683", "2.l683"), "Si", r"epsilon must be a number, got '2.l683' \(Si.sw:1"),
     (GOOD.replace("4.0 0.0 0.0", "4.0 0.0"), "Si", r"needs 14 words, got 13 \(Si.sw:1"),
     (GOOD + "# again\n" + GOOD, "Si", r"Si Si Si is there twice, first in line 1 \(Si.sw:4"),
-    (GOOD.replace("2.0951", "-2.0951"), "Si", r"sigma of Si Si Si must not be negative, got -2.0951 \(Si.sw:1"),
+    (GOOD.replace("2.0951", "-2.0951"), "Si", r"entry Si Si Si: sigma must not be negative, got -2.0951 \(Si.sw:1"),
     (GOOD, "Ge", "has no entry for Ge Ge Ge"), (GOOD, "", "an element, or NULL, for each atom type"),
     (GOOD, "Si Si", "an element, or NULL, for each of 1 atom types, got 2"),
     ("# UNITS: real\n" + GOOD, "Si", r"the file is in real units, but lj units are in use \(Si.sw:1"),

@@ -9,6 +9,7 @@ styles that are no sums of sites too. Constants: PER_ATOM, ENERGY, ROOMS, UNIFOR
 """
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -22,6 +23,19 @@ place = int
 site = None
 
 
+def listed(m, pair_i, pair_j, code, x, shifts, type_of, row, ids, reach2):
+    """Slots and image of pair m, whether it is closer than its reach, and whether it is the first slot's."""
+    i = pair_i[m]
+    j = pair_j[m]
+    image = code[m] >> 2
+    dx = x[0, i] - x[0, j] - shifts[image, 0]
+    dy = x[1, i] - x[1, j] - shifts[image, 1]
+    dz = x[2, i] - x[2, j] - shifts[image, 2]
+    a = ids[row[i]]
+    b = ids[row[j]]
+    return i, j, image, dx * dx + dy * dy + dz * dz < reach2[type_of[i], type_of[j]], (a > b) == ((a + b) % 2 == 1)
+
+
 def fill_rows(ns, pair_i, pair_j, code, opposite, x, shifts, type_of, row, ids, reach2, first, middle, last, neighbors, codes):
     """Rows of pairs closer than ``reach2[ti, tj]``; `first` and the others are (ns,), returns the number of entries.
 
@@ -33,39 +47,23 @@ def fill_rows(ns, pair_i, pair_j, code, opposite, x, shifts, type_of, row, ids, 
         middle[i] = 0
         last[i] = 0
     for m in range(pair_i.shape[0]):
-        i = pair_i[m]
-        j = pair_j[m]
-        image = code[m] >> 2
-        dx = x[0, i] - x[0, j] - shifts[image, 0]
-        dy = x[1, i] - x[1, j] - shifts[image, 1]
-        dz = x[2, i] - x[2, j] - shifts[image, 2]
-        if dx * dx + dy * dy + dz * dz < reach2[type_of[i], type_of[j]]:
-            a = ids[row[i]]
-            b = ids[row[j]]
-            own = (a > b) == ((a + b) % 2 == 1)
+        i, j, image, within, own = listed(m, pair_i, pair_j, code, x, shifts, type_of, row, ids, reach2)
+        if within:
             middle[i if own else j] += 1
             last[j if own else i] += 1
     n = 0
     for i in range(ns):
         first[i] = n
-        own = middle[i]
+        own_ones = middle[i]
         others = last[i]
         middle[i] = n
-        last[i] = n + own      # where to write next, of both kinds
-        n += own + others
+        last[i] = n + own_ones      # where to write next, of both kinds
+        n += own_ones + others
     if n > neighbors.shape[0]:
         return n
     for m in range(pair_i.shape[0]):
-        i = pair_i[m]
-        j = pair_j[m]
-        image = code[m] >> 2
-        dx = x[0, i] - x[0, j] - shifts[image, 0]
-        dy = x[1, i] - x[1, j] - shifts[image, 1]
-        dz = x[2, i] - x[2, j] - shifts[image, 2]
-        if dx * dx + dy * dy + dz * dz < reach2[type_of[i], type_of[j]]:
-            a = ids[row[i]]
-            b = ids[row[j]]
-            own = (a > b) == ((a + b) % 2 == 1)
+        i, j, image, within, own = listed(m, pair_i, pair_j, code, x, shifts, type_of, row, ids, reach2)
+        if within:
             at = middle if own else last
             neighbors[at[i]] = j
             codes[at[i]] = image
@@ -142,6 +140,56 @@ def share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz):
         virials[5, s] -= third * (ay * gjz + by * gkz)
 
 
+def directions(n, near, room):
+    """Unit vectors to the n neighbours and inverse distances, the first four rows of `room`."""
+    for k in range(n):
+        ir = 1.0 / math.sqrt(near[3, k])
+        room[0, k] = near[0, k] * ir
+        room[1, k] = near[1, k] * ir
+        room[2, k] = near[2, k] * ir
+        room[3, k] = ir
+
+
+def add_stretch(k, e, slope, room, grad, shares):
+    """A pair energy with neighbour k, and its derivative by the distance."""
+    gx = slope * room[0, k]
+    gy = slope * room[1, k]
+    gz = slope * room[2, k]
+    grad[0, k] += gx
+    grad[1, k] += gy
+    grad[2, k] += gz
+    if PER_ATOM:
+        share_pair(shares, k, e, gx, gy, gz)
+
+
+def add_bend(j, k, cosine, e, slope, along_j, along_k, room, grad, shares):
+    """A triple's energy with its derivatives by the cosine at the site and by the distances of j and k."""
+    ux = room[0, j]
+    uy = room[1, j]
+    uz = room[2, j]
+    vx = room[0, k]
+    vy = room[1, k]
+    vz = room[2, k]
+    b = slope * room[3, j]
+    a = along_j - b * cosine
+    gjx = a * ux + b * vx
+    gjy = a * uy + b * vy
+    gjz = a * uz + b * vz
+    b = slope * room[3, k]
+    a = along_k - b * cosine
+    gkx = a * vx + b * ux
+    gky = a * vy + b * uy
+    gkz = a * vz + b * uz
+    grad[0, j] += gjx
+    grad[1, j] += gjy
+    grad[2, j] += gjz
+    grad[0, k] += gkx
+    grad[1, k] += gky
+    grad[2, k] += gkz
+    if PER_ATOM:
+        share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
+
+
 def add_virial(acc, n, near, grad):
     """Add the virial of the forces on the first `n` neighbours to the accumulators."""
     xx, yy, zz, xy, xz, yz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -189,6 +237,9 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
     `cut2` are squared cutoffs by pair of types, `constants` and `arrays` the style's; `near (4, w)`, `types (w,)`, `slots (w,)`,
     `grad (3, w)` and `room (rooms, w)` work space of the thread for the longest row, `shared (shares, cap)` of all threads.
     `bad (4,)`: 1, the first slot whose energy or force is not finite, its energy.
+
+    With ROW sites compute on eight neighbours at a time: `room` is the whole work space in one row, `near` its first four rows of ROW
+    numbers, `grad` the next three, and neighbours are filled up to eights with far ones.
     """
     for i in range(lo, hi):
         if last[i] == first[i]:
@@ -197,45 +248,22 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         if n == 0:
             continue
-        for k in range(n):
-            grad[0, k] = 0.0
-            grad[1, k] = 0.0
-            grad[2, k] = 0.0
-        e = site(i, type_of[i], n, m, near, types, room, grad, constants, arrays, (atom_energy, atom_virial, np.int32(i), near, slots))
-        if not abs(e) < np.inf:
-            if bad[0] == 0.0:
-                bad[0] = 1.0
-                bad[1] = i
-                bad[2] = e
-            continue
-        scatter(i, n, f, grad, slots)
-        if ENERGY:
-            acc[0] += e
-            add_virial(acc, n, near, grad)
-
-
-def block_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts, lo, hi, cut2, constants, arrays, near, types, slots, grad,
-                 room, shared, qqr2e, acc, atom_energy, atom_virial, bad, meeting):
-    """`site_forces` for sites that compute on eight neighbours at a time: `room` is the whole work space in one row, `near` its first four
-    rows of ROW numbers, `grad` the next three. Neighbours are filled up to eights with far ones."""
-    for i in range(lo, hi):
-        if last[i] == first[i]:
-            continue
-        m = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
-        n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
-        if n == 0:
-            continue
-        full = (n + 7) & -8
-        for k in range(n, full):
-            near[0, k] = 1e10
-            near[1, k] = 0.0
-            near[2, k] = 0.0
-            near[3, k] = 1e20
+        full = n
+        if ROW:
+            full = (n + 7) & -8
+            for k in range(n, full):
+                near[0, k] = 1e10
+                near[1, k] = 0.0
+                near[2, k] = 0.0
+                near[3, k] = 1e20
         for k in range(full):
             grad[0, k] = 0.0
             grad[1, k] = 0.0
             grad[2, k] = 0.0
-        e = site(i, n, m, full, room, constants)
+        if ROW:
+            e = site(i, n, m, full, room, constants)
+        else:
+            e = site(i, type_of[i], n, m, near, types, room, grad, constants, arrays, (atom_energy, atom_virial, np.int32(i), near, slots))
         if not abs(e) < np.inf:
             if bad[0] == 0.0:
                 bad[0] = 1.0
@@ -252,6 +280,7 @@ def block_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
 def rows_module():
     """The compiled `fill_rows`."""
     b = Builder("rows of neighbours")
+    b.function(listed)
     b.function(fill_rows)
     return b.build()
 
@@ -263,22 +292,17 @@ def kernel(style, *, energy: bool, per_atom: bool, uniform: bool, row: int = 0):
     b.line("from asemd.kernels.threads import barrier")
     for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, UNIFORM=uniform, **style.kernel_constants).items():
         b.constant(name, value)
+    b.constant("ROW", row)
     if row:
         b.line("place = np.uint64")
-        b.constant("ROW", row)
         vector_math.paste(b)
-        for f in (gather_near, add_virial, scatter):
-            b.function(f, fast=True)
-        for f in style.block_helpers:
-            b.function(f, fast=True)
-        b.function(style.block, "site", fast=True, vector=True)
-        b.function(block_forces, fast=True)
-        return b.build().block_forces
-    for f in (gather_near, share_pair, share_triple, add_virial, scatter, *style.helpers):
+    shared = (gather_near, add_virial, scatter)
+    own = style.block_helpers if row else (share_pair, share_triple, directions, add_stretch, add_bend, *style.helpers)
+    for f in (*shared, *own):
         b.function(f, fast=True)
     if style.forces is not None:
         b.function(style.forces, "forces", fast=True)
         return b.build().forces
-    b.function(style.site, "site", fast=True)
+    b.function(style.block if row else style.site, "site", fast=True, vector=bool(row))
     b.function(site_forces, fast=True)
     return b.build().site_forces

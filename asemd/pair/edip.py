@@ -1,7 +1,8 @@
 r"""Environment-dependent interatomic potential (EDIP) of silicon: pairs and angles that depend on the coordination of an atom.
 
 The formula is that of `pair edip/multi`, for one element. LAMMPS looks its functions up in tables with 8000 points per distance unit and
-interpolates; here they are computed, so that numbers agree to about seven digits.
+interpolates; here they are computed, so that energies agree to eight digits. Lines between points are no energy that forces could follow
+from: their slopes have steps of 1e-4, which LAMMPS's own forces, from tables of the derivatives, do not show.
 """
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.kernels.manybody import add_bend, add_stretch, directions
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -36,14 +36,10 @@ def coordination(r, p):
 def edip(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     three = arrays[0]
     energy, z = 0.0, 0.0
+    directions(n, near, room)
     for k in range(n):
         p = three[ti, types[k], types[k]]
         r = math.sqrt(near[3, k])
-        ir = 1.0 / r
-        room[0, k] = near[0, k] * ir
-        room[1, k] = near[1, k] * ir
-        room[2, k] = near[2, k] * ir
-        room[3, k] = ir
         room[4, k], room[5, k], room[6, k] = 0.0, 0.0, 0.0
         if r < p[0]:
             f, room[4, k] = coordination(r, p)
@@ -65,24 +61,15 @@ def edip(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
         d = -x * p[6] * b * room[3, k] - e * p[7] * s * s
         energy += e
         dz += 2.0 * p[5] * z * o * x
-        gx = d * room[0, k]
-        gy = d * room[1, k]
-        gz = d * room[2, k]
-        grad[0, k] += gx
-        grad[1, k] += gy
-        grad[2, k] += gz
-        if PER_ATOM:
-            share_pair(shares, k, e, gx, gy, gz)
+        add_stretch(k, e, d, room, grad, shares)
     for j in range(n - 1):
         if room[6, j] == 0.0:
             continue
-        ux, uy, uz = room[0, j], room[1, j], room[2, j]
         for k in range(j + 1, n):
             if room[6, k] == 0.0:
                 continue
             p = three[ti, types[j], types[k]]
-            vx, vy, vz = room[0, k], room[1, k], room[2, k]
-            c = ux * vx + uy * vy + uz * vz
+            c = room[0, j] * room[0, k] + room[1, j] * room[1, k] + room[2, j] * room[2, k]
             q = p[12] * math.exp(-p[11] * z)
             a = math.exp(-p[16] * z)
             tau = p[13] + p[14] * (p[15] * a - a * a)
@@ -94,31 +81,9 @@ def edip(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
             slope = 2.0 * w * q * t * (g + p[10])
             energy += e
             dz += slope * dtau - p[11] * q * w * t * t * (g + p[10])
-            a = -e * room[6, j] - slope * c * room[3, j]
-            b = slope * room[3, j]
-            gjx = a * ux + b * vx
-            gjy = a * uy + b * vy
-            gjz = a * uz + b * vz
-            a = -e * room[6, k] - slope * c * room[3, k]
-            b = slope * room[3, k]
-            gkx = a * vx + b * ux
-            gky = a * vy + b * uy
-            gkz = a * vz + b * uz
-            grad[0, j] += gjx
-            grad[1, j] += gjy
-            grad[2, j] += gjz
-            grad[0, k] += gkx
-            grad[1, k] += gky
-            grad[2, k] += gkz
-            if PER_ATOM:
-                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
+            add_bend(j, k, c, e, slope, -e * room[6, j], -e * room[6, k], room, grad, shares)
     for k in range(n):
-        d = dz * room[4, k]
-        grad[0, k] += d * room[0, k]
-        grad[1, k] += d * room[1, k]
-        grad[2, k] += d * room[2, k]
-        if PER_ATOM:
-            share_pair(shares, k, 0.0, d * room[0, k], d * room[1, k], d * room[2, k])
+        add_stretch(k, 0.0, dz * room[4, k], room, grad, shares)
     return energy
 
 

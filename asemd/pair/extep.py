@@ -15,14 +15,14 @@ from dataclasses import replace
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels.manybody import add_virial, gather_near, scatter, share_pair
+from asemd.kernels.manybody import add_stretch, add_virial, gather_near, scatter
 from asemd.kernels.threads import barrier
 from asemd.manybody import element_of
 from asemd.pair.tersoff import Tersoff, angular, attraction, longer, order, repulsion, taper, tersoff
 from asemd.potential_file import Record
 from asemd.style import register
 
-ENERGY = PER_ATOM = False
+ENERGY = False
 POINTS = 5      # coordinations 0 to 4
 
 
@@ -110,22 +110,12 @@ def extep_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
             room[7, j] = slope
             total += room[5, j]
             other += room[6, j]
-            d = 0.5 * dfa * e * value
-            grad[0, j] += d * room[0, j]
-            grad[1, j] += d * room[1, j]
-            grad[2, j] += d * room[2, j]
-            if PER_ATOM:
-                share_pair(shares, j, 0.5 * fa * e * value, d * room[0, j], d * room[1, j], d * room[2, j])
+            add_stretch(j, 0.5 * fa * e * value, 0.5 * dfa * e * value, room, grad, shares)
         for k in range(n):
             d = total - room[5, k]
             if element[types[k]] != element[ti]:
                 d += other - room[6, k]
-            d *= room[7, k]
-            grad[0, k] += d * room[0, k]
-            grad[1, k] += d * room[1, k]
-            grad[2, k] += d * room[2, k]
-            if PER_ATOM:
-                share_pair(shares, k, 0.0, d * room[0, k], d * room[1, k], d * room[2, k])
+            add_stretch(k, 0.0, d * room[7, k], room, grad, shares)
         if not abs(energy) < np.inf:
             if bad[0] == 0.0:
                 bad[0], bad[1], bad[2] = 1.0, i, energy

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.kernels.manybody import PER_ATOM, share_triple
+from asemd.kernels.manybody import add_bend, directions
 from asemd.style import radians, register
 from asemd.triples import TripleStyle
 
@@ -19,49 +19,26 @@ def fade(r, p):
 def angles(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     three = arrays[0]
     energy = 0.0
+    directions(n, near, room)
     for k in range(n):
         p = three[ti, types[k], types[k]]
         r = math.sqrt(near[3, k])
-        ir = 1.0 / r
-        room[0, k] = near[0, k] * ir
-        room[1, k] = near[1, k] * ir
-        room[2, k] = near[2, k] * ir
-        room[3, k] = ir if r < p[0] else 0.0
+        room[3, k] = room[3, k] if r < p[0] else 0.0
         room[4, k], room[5, k] = fade(r, p)
     for j in range(n - 1):
         if room[3, j] == 0.0:
             continue
-        ux, uy, uz = room[0, j], room[1, j], room[2, j]
         for k in range(j + 1, n):
             p = three[ti, types[j], types[k]]
             if room[3, k] == 0.0 or p[1] == 0.0:
                 continue
-            vx, vy, vz = room[0, k], room[1, k], room[2, k]
-            c = min(max(ux * vx + uy * vy + uz * vz, -1.0), 1.0)
-            s = max(math.sqrt((1.0 - c) * (1.0 + c)), 0.001)
+            c = min(max(room[0, j] * room[0, k] + room[1, j] * room[1, k] + room[2, j] * room[2, k], -1.0), 1.0)
             d = math.acos(c) - p[2]
             w = p[1] * room[4, j] * room[4, k]
             e = w * d * d
-            t = -2.0 * w * d / s
             energy += e
-            a = -e * room[5, j] - t * c * room[3, j]
-            b = t * room[3, j]
-            gjx = a * ux + b * vx
-            gjy = a * uy + b * vy
-            gjz = a * uz + b * vz
-            a = -e * room[5, k] - t * c * room[3, k]
-            b = t * room[3, k]
-            gkx = a * vx + b * ux
-            gky = a * vy + b * uy
-            gkz = a * vz + b * uz
-            grad[0, j] += gjx
-            grad[1, j] += gjy
-            grad[2, j] += gjz
-            grad[0, k] += gkx
-            grad[1, k] += gky
-            grad[2, k] += gkz
-            if PER_ATOM:
-                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
+            slope = -2.0 * w * d / max(math.sqrt((1.0 - c) * (1.0 + c)), 0.001)
+            add_bend(j, k, c, e, slope, -e * room[5, j], -e * room[5, k], room, grad, shares)
     return energy
 
 

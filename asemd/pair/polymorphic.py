@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
 from asemd.manybody import ManyBody, element_of
 from asemd.pairstyle import PairTables
 from asemd.style import register
@@ -35,13 +35,9 @@ def polymorphic(i, ti, n, m, near, types, room, grad, constants, arrays, shares)
     pair, triple, which, numbers, radial, spaced, bent, outer = arrays
     widest = constants[1]
     energy, total = 0.0, 0.0
+    directions(n, near, room)
     for k in range(n):
         r = math.sqrt(near[3, k])
-        ir = 1.0 / r
-        room[0, k] = near[0, k] * ir
-        room[1, k] = near[1, k] * ir
-        room[2, k] = near[2, k] * ir
-        room[3, k] = ir
         room[4, k] = r
         c = pair[ti, types[k]]
         room[5, k], room[6, k] = look(radial[c, 2], r, 0.0, numbers[c, 1])
@@ -53,22 +49,13 @@ def polymorphic(i, ti, n, m, near, types, room, grad, constants, arrays, shares)
         if k < m:
             e, d = look(radial[c, 0], r, 0.0, numbers[c, 1])
             energy += e
-            grad[0, k] += d * room[0, k]
-            grad[1, k] += d * room[1, k]
-            grad[2, k] += d * room[2, k]
-            if PER_ATOM:
-                share_pair(shares, k, e, d * room[0, k], d * room[1, k], d * room[2, k])
+            add_stretch(k, e, d, room, grad, shares)
     if constants[0] == 1.0:
         e, d = look(outer[pair[ti, ti]], total, 0.0, constants[2])
         if PER_ATOM:
             shares[0][shares[2]] -= 0.5 * e
         for k in range(n):
-            w = -0.5 * d * room[6, k]
-            grad[0, k] += w * room[0, k]
-            grad[1, k] += w * room[1, k]
-            grad[2, k] += w * room[2, k]
-            if PER_ATOM:
-                share_pair(shares, k, 0.0, w * room[0, k], w * room[1, k], w * room[2, k])
+            add_stretch(k, 0.0, -0.5 * d * room[6, k], room, grad, shares)
         return energy - 0.5 * e
     for j in range(n):
         ux, uy, uz, ij, rj = room[0, j], room[1, j], room[2, j], room[3, j], room[4, j]

@@ -14,11 +14,11 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.manybody import PER_ATOM, ROW, place, share_pair, share_triple
-from asemd.manybody import ManyBody, element_of
+from asemd.kernels.manybody import ROW, add_bend, add_stretch, directions, place
+from asemd.manybody import element_of
 from asemd.pairstyle import PairTables
 from asemd.style import register
-from asemd.triples import read_triples
+from asemd.triples import TripleStyle
 
 NAMES = "epsilon sigma a lambda gamma costheta A B p q tol"
 
@@ -43,15 +43,12 @@ def neighbours(n, m, ti, near, types, room, grad, two, shares):
     """Pair energies of the first `m` of n neighbours; what triples need of each goes to `room`: its unit vector, 1/r, the exponential and
     minus its logarithm's derivative."""
     energy = 0.0
+    directions(n, near, room)
     for k in range(n):
         t = types[k]
         r2 = near[3, k]
         r = math.sqrt(r2)
-        ir = 1.0 / r
-        room[0, k] = near[0, k] * ir
-        room[1, k] = near[1, k] * ir
-        room[2, k] = near[2, k] * ir
-        room[3, k] = ir
+        ir = room[3, k]
         s = 1.0 / (r - two[ti, t, 1])
         gs = two[ti, t, 2] * s
         room[4, k] = math.exp(gs)
@@ -64,14 +61,7 @@ def neighbours(n, m, ti, near, types, room, grad, two, shares):
             u = (b - c) * e
             d = -((two[ti, t, 5] * b - two[ti, t, 6] * c) * ir + (b - c) * two[ti, t, 0] * s * s) * e
             energy += u
-            gx = d * room[0, k]
-            gy = d * room[1, k]
-            gz = d * room[2, k]
-            grad[0, k] += gx
-            grad[1, k] += gy
-            grad[2, k] += gz
-            if PER_ATOM:
-                share_pair(shares, k, u, gx, gy, gz)
+            add_stretch(k, u, d, room, grad, shares)
     return energy
 
 
@@ -79,37 +69,13 @@ def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     two, three = arrays
     energy = neighbours(n, m, ti, near, types, room, grad, two, shares)
     for j in range(n - 1):
-        ux, uy, uz = room[0, j], room[1, j], room[2, j]
-        fx, fy, fz = 0.0, 0.0, 0.0
         for k in range(j + 1, n):
-            vx, vy, vz = room[0, k], room[1, k], room[2, k]
-            c = ux * vx + uy * vy + uz * vz
+            c = room[0, j] * room[0, k] + room[1, j] * room[1, k] + room[2, j] * room[2, k]
             delta, slope = bend(c - three[ti, types[j], types[k], 1], constants)
             w = three[ti, types[j], types[k], 0] * delta * room[4, j] * room[4, k]
             e = w * delta
-            w *= slope
             energy += e
-            a = -e * room[5, j] - 2.0 * w * c * room[3, j]        # along u: by r_ij, and what the cosine has of it
-            b = 2.0 * w * room[3, j]
-            gjx = a * ux + b * vx
-            gjy = a * uy + b * vy
-            gjz = a * uz + b * vz
-            a = -e * room[5, k] - 2.0 * w * c * room[3, k]
-            b = 2.0 * w * room[3, k]
-            gkx = a * vx + b * ux
-            gky = a * vy + b * uy
-            gkz = a * vz + b * uz
-            fx += gjx
-            fy += gjy
-            fz += gjz
-            grad[0, k] += gkx
-            grad[1, k] += gky
-            grad[2, k] += gkz
-            if PER_ATOM:
-                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
-        grad[0, j] += fx
-        grad[1, j] += fy
-        grad[2, j] += fz
+            add_bend(j, k, c, e, 2.0 * w * slope, -e * room[5, j], -e * room[5, k], room, grad, shares)
     return energy
 
 
@@ -167,8 +133,10 @@ def sw_block(i, n, m, full, b, constants):
     return energy + 0.5 * bent
 
 
-class SW(ManyBody):
-    """Tables by atom type from the triples of the file."""
+class SW(TripleStyle):
+    """Tables by atom type from the triples of the file: of pairs and of triples."""
+
+    names, positive = NAMES, "epsilon sigma a lambda gamma A B p q tol"
 
     def fits(self, tables):
         return len(tables.constants) == 8
@@ -189,14 +157,6 @@ class SW(ManyBody):
 
     def for_some_types(self, settings):
         return settings["threebody"] == "off"
-
-    def read(self, file, elements, settings):
-        found = read_triples(file, elements, NAMES)
-        for key, (p, where) in found.items():
-            wrong = [n for n in ("epsilon", "sigma", "a", "lambda", "gamma", "A", "B", "p", "q", "tol") if p[n] < 0.0]
-            if wrong:
-                raise InputError(f"{file.what}: {wrong[0]} of {' '.join(key)} must not be negative, got {p[wrong[0]]:g}", where)
-        return {key: p for key, (p, _) in found.items()}
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         element = element_of(filled, ntypes)

@@ -17,7 +17,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
 from asemd.pair.tersoff_block import copy_rows, tersoff_block
 from asemd.style import register
 from asemd.triples import TripleStyle
@@ -89,14 +89,9 @@ def longer(d, p):
 def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     three = arrays[0]
     energy = 0.0
+    directions(n, near, room)
     for k in range(n):
-        r = math.sqrt(near[3, k])
-        ir = 1.0 / r
-        room[0, k] = near[0, k] * ir
-        room[1, k] = near[1, k] * ir
-        room[2, k] = near[2, k] * ir
-        room[3, k] = ir
-        room[4, k] = r + constants[0]
+        room[4, k] = math.sqrt(near[3, k]) + constants[0]
     for j in range(n):
         p = three[ti, types[j], types[j]]
         rj = room[4, j]
@@ -106,11 +101,7 @@ def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
         if j < m:
             e, d = repulsion(rj, p)
             energy += e
-            grad[0, j] += d * ux
-            grad[1, j] += d * uy
-            grad[2, j] += d * uz
-            if PER_ATOM:
-                share_pair(shares, j, e, d * ux, d * uy, d * uz)
+            add_stretch(j, e, d, room, grad, shares)
         zeta, zj = 0.0, 0.0
         for k in range(n):
             room[5, k] = 0.0

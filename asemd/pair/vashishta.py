@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from asemd import units as unit_styles
-from asemd.kernels.manybody import PER_ATOM, share_pair, share_triple
+from asemd.kernels.manybody import add_bend, add_stretch, directions
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -40,27 +40,16 @@ def pairs(n, m, ti, near, types, room, grad, three, constants, arrays, shares):
         e -= p[9] + (r - p[0]) * p[10]
         d -= p[10]
         energy += e
-        gx = d * room[0, k]
-        gy = d * room[1, k]
-        gz = d * room[2, k]
-        grad[0, k] += gx
-        grad[1, k] += gy
-        grad[2, k] += gz
-        if PER_ATOM:
-            share_pair(shares, k, e, gx, gy, gz)
+        add_stretch(k, e, d, room, grad, shares)
     return energy
 
 
 def vashishta(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     three = arrays[0]
     inside = 0
+    directions(n, near, room)
     for k in range(n):
         r = math.sqrt(near[3, k])
-        ir = 1.0 / r
-        room[0, k] = near[0, k] * ir
-        room[1, k] = near[1, k] * ir
-        room[2, k] = near[2, k] * ir
-        room[3, k] = ir
         room[4, k] = r
         p = three[ti, types[k], types[k]]
         if r < p[1]:
@@ -72,42 +61,19 @@ def vashishta(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     energy = pairs(n, m, ti, near, types, room, grad, three, constants, arrays, shares)
     for a in range(inside - 1):
         j = int(room[7, a])
-        ux, uy, uz = room[0, j], room[1, j], room[2, j]
-        fx, fy, fz = 0.0, 0.0, 0.0
         for b in range(a + 1, inside):
             k = int(room[7, b])
             p = three[ti, types[j], types[k]]
             if p[12] == 0.0:
                 continue
-            vx, vy, vz = room[0, k], room[1, k], room[2, k]
-            x = ux * vx + uy * vy + uz * vz
+            x = room[0, j] * room[0, k] + room[1, j] * room[1, k] + room[2, j] * room[2, k]
             d = x - p[14]
             w = p[12] * room[5, a] * room[5, b]
             q = 1.0 / (1.0 + p[13] * d * d)
             e = w * d * d * q
             slope = 2.0 * w * d * q * q
             energy += e
-            s = -e * room[6, a] - slope * x * room[3, j]
-            t = slope * room[3, j]
-            gjx = s * ux + t * vx
-            gjy = s * uy + t * vy
-            gjz = s * uz + t * vz
-            s = -e * room[6, b] - slope * x * room[3, k]
-            t = slope * room[3, k]
-            gkx = s * vx + t * ux
-            gky = s * vy + t * uy
-            gkz = s * vz + t * uz
-            fx += gjx
-            fy += gjy
-            fz += gjz
-            grad[0, k] += gkx
-            grad[1, k] += gky
-            grad[2, k] += gkz
-            if PER_ATOM:
-                share_triple(shares, j, k, e, gjx, gjy, gjz, gkx, gky, gkz)
-        grad[0, j] += fx
-        grad[1, j] += fy
-        grad[2, j] += fz
+            add_bend(j, k, x, e, slope, -e * room[6, a], -e * room[6, b], room, grad, shares)
     return energy
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.manybody import PER_ATOM, share_pair
+from asemd.kernels.manybody import add_stretch
 from asemd.pair.vashishta import Vashishta, two_body, vashishta
 from asemd.style import register
 
@@ -37,14 +37,7 @@ def pairs(n, m, ti, near, types, room, grad, three, constants, arrays, shares):
             e = (1.0 - t) * tables[ti, types[k], a, 0] + t * tables[ti, types[k], a + 1, 0]
             d = -r * ((1.0 - t) * tables[ti, types[k], a, 1] + t * tables[ti, types[k], a + 1, 1])
         energy += e
-        gx = d * room[0, k]
-        gy = d * room[1, k]
-        gz = d * room[2, k]
-        grad[0, k] += gx
-        grad[1, k] += gy
-        grad[2, k] += gz
-        if PER_ATOM:
-            share_pair(shares, k, e, gx, gy, gz)
+        add_stretch(k, e, d, room, grad, shares)
     return energy
 
 
