@@ -46,9 +46,8 @@ def neighbours(n, m, ti, near, types, room, grad, two, shares):
     directions(n, near, room)
     for k in range(n):
         t = types[k]
-        r2 = near[3, k]
-        r = math.sqrt(r2)
         ir = room[3, k]
+        r = near[3, k] * ir
         s = 1.0 / (r - two[ti, t, 1])
         gs = two[ti, t, 2] * s
         room[4, k] = math.exp(gs)
