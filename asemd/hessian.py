@@ -63,6 +63,9 @@ def hessian_of(system, interactions, settings, numerical: bool = False):
                 blocks.append(pair_block(atoms, d, a, b))
         elif type(term) is ManyBodyTerm:
             rest.append(_many(engine, term, numerical, blocks))
+        elif term.category == "kspace":
+            raise InputError(f"no second derivatives of kspace_style {term.solver.style}: of forces with a solver take differences, as "
+                             "ase.vibrations and phonon codes do")
         elif type(term) is not OwnTerm:
             raise InputError(f"no second derivatives: {term.category} style {term.style.name} is not a function of positions alone")
     whole = sum(rest, sparse.csr_matrix((3 * n, 3 * n)))

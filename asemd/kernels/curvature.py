@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from functools import cache
+from types import FunctionType
 
 from asemd.kernels.generate import Builder, plain_source
 
@@ -19,12 +20,20 @@ def _loop(coordinates: int, call: str, second: bool, lookup: str) -> str:
     return "\n".join(lines)
 
 
+def _called(function) -> list:
+    """Functions of styles that a function calls, and what these call, the innermost first."""
+    found = [f for f in map(function.__globals__.get, function.__code__.co_names) if isinstance(f, FunctionType) and f is not function]
+    return list(dict.fromkeys(inner for f in found for inner in (*_called(f), f)))
+
+
 def _build(title: str, helpers, function, d2, text: str):
     b = Builder(title)
     for helper in helpers:
         b.text(plain_source(helper), cache=False)
     b.text(plain_source(function, "potential"), cache=False)
     if d2 is not None:
+        for inner in [f for f in _called(d2) if f is not function and f not in helpers]:
+            b.text(plain_source(inner), cache=False)
         b.text(plain_source(d2, "curvature"), cache=False)
     b.text(text)
     return b.build().loop

@@ -14,6 +14,7 @@ from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.lammps.plan_memory import holdings, pairs_around
 from asemd.manybody_term import ManyBodyTerm
+from asemd.own_term import OwnTerm
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
 from asemd.text_table import Table
 
@@ -205,7 +206,9 @@ def _term(e: Engine, t) -> Item:
     if isinstance(t, ManyBodyTerm):
         how = "rows of all neighbours of each atom" + ", eight at a time" * t.blocks
         return Item(f"pair {style.name}", f"{how}, double precision{times}", "pair_style")
-    assert isinstance(t, PairListTerm)
+    if not isinstance(t, PairListTerm):
+        what = "by atom: a constant of the energy, no forces" if isinstance(t, OwnTerm) else f"of {style.name}'s own, double precision"
+        return Item(f"pair {style.name}", f"{'energies' if isinstance(t, OwnTerm) else 'kernel'} {what}", "pair_style")
     if t.pairs == "special":
         return Item(f"pair {style.name} (special)", f"{len(e.exclusions.weighted)} weighted pairs, one by one",
                     "special_bonds factors between 0 and 1, which the cluster kernel leaves out")

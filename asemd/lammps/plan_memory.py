@@ -83,7 +83,9 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         held = 4.0 * pairs * (1 + len(e.rows)) if e.sparse else 12.0 * pairs if e.expanded else 12.0 * _power(pairs)
         out.append(Holding("pairs one by one", held, f"about {pairs:.3g} pairs", e.why if e.mode == "plain" else "pair_style"))
     for t in e.terms:
-        if isinstance(t, (PairTerm, PairRowsTerm)):
+        if t.category == "kspace":
+            out.append(Holding(f"k-space {t.solver.style}", *_of_solver(t, cap, threads), "kspace_style"))
+        elif isinstance(t, (PairTerm, PairRowsTerm)):
             out.append(Holding(f"pair {t.style.name}", (64.0 if t.owner.is_plain else 88.0) * threads * cap,
                                "positions and forces by cluster", "pair_style"))
         elif isinstance(t, EmbeddedTerm):
@@ -108,6 +110,19 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
     if per_atom:
         out.append(Holding("energy and virial by atom", 56.0 * (threads + 1) * cap, "", "a compute or dump asks for them"))
     return sorted(out, key=lambda h: -h.bytes)
+
+
+def _of_solver(t, cap: int, threads: int) -> tuple[float, str]:
+    """Bytes of a long-range solver without shares of atoms, and what they are."""
+    mesh = getattr(t, "mesh", getattr(t.solver, "mesh", None))
+    if mesh is not None:
+        points, fields = math.prod(mesh), 1 if getattr(t.solver, "ad", True) else 3
+        weights = cap * (24.0 + 64.0 * (6 if fields == 1 else 3))
+        return points * (8.0 * threads + 32.0 + 24.0 * fields) + weights, f"{points} points of a mesh"
+    waves = getattr(t.solver, "waves", None)
+    waves = len(t.solver.numbers) if waves is None else waves
+    most = int(np.max(t.solver.most)) if hasattr(t.solver, "most") else 8
+    return waves * (104.0 + 16.0 * threads) + 48.0 * (1 + most) * cap, f"{waves} waves"
 
 
 def _power(n: float) -> float:
