@@ -183,7 +183,7 @@ def test_forces_and_virial_are_derivatives_of_the_energy(potentials):
 
 def test_every_style_is_compared():
     mine = {n for n in style.names("pair") if isinstance(found := style.find("pair", n), ManyBody) and not isinstance(found, Embedded)}
-    assert mine <= {name.split()[0] for name in CASES} | {"snap"}      # tests/test_snap.py
+    assert mine <= {name.split()[0] for name in CASES} | {"snap", "mliap"}      # tests/test_snap.py
 
 
 HYBRID = """

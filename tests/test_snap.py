@@ -49,6 +49,35 @@ def jobs(folder: Path) -> dict[str, list[str]]:
     return out
 
 
+NETWORKS = {"sigmoid 3 relu 4 linear 1": 1, "tanh 2 linear 1": 3, "linear 1": 2}      # and twojmax
+
+
+def learned(folder: Path) -> dict[str, list[str]]:
+    """Scenes of style mliap."""
+    out, rng = {}, np.random.default_rng(5)
+    models = [("linear", 2, ""), ("quadratic", 2, "bnormflag 1"), ("linear", 2, "chemflag 1"), *(("nn", j, n) for n, j in NETWORKS.items())]
+    for k, (kind, twojmax, lines) in enumerate(models):
+        model, descriptor = folder / f"{k}.model", folder / f"{k}.descriptor"
+        count = len(bispectrum(twojmax, False).components) * (8 if "chem" in lines else 1)
+        words = lines.split() if kind == "nn" else []
+        nodes = [count, *map(int, words[1::2])]
+        size = sum(n * (m + 1) for m, n in zip(nodes, nodes[1:])) if kind == "nn" else 1 + count
+        size += count * (count + 1) // 2 if kind == "quadratic" else 0
+        head = f"# DATE: 2026-01-01\n2 {size}\n" + (f"NET {count} {len(nodes) - 1} {lines}\n" if kind == "nn" else "")
+        scales = [*rng.normal(size=count), *rng.uniform(5, 9, count)] if kind == "nn" else []
+        model.write_text(head + "\n".join(f"{c:.8f}" for _ in "ab" for c in [*scales, *rng.normal(size=size)]) + "\n")
+        descriptor.write_text(f"rcutfac 4.1\ntwojmax {twojmax}\nnelems 2\nelems Aa Bb\nradelems 0.5 0.47\nwelems 1.0 0.8\n"
+                              + ("" if kind == "nn" else lines) + "\n")
+        scenes = scene("tersoff shift 0.1", "metal")
+        for at, line in enumerate(scenes):
+            if line.startswith("pair_style"):
+                scenes[at] = f"pair_style mliap model {kind} {model} descriptor sna {descriptor}"
+            if line.startswith("pair_coeff"):
+                scenes[at] = "pair_coeff * * Bb Aa"
+        out[f"mliap {kind} {lines}"] = scenes
+    return out
+
+
 THEIRS = MEASURE + FOLDER + r"""
 os.environ["LAMMPS_POTENTIALS"] = P
 answer = {"folder": P}
@@ -68,7 +97,7 @@ def compiled(script: str, given: dict, folder: str = "") -> dict:
 
 
 def test_like_lammps(tmp_path):
-    given = jobs(tmp_path)
+    given = {**jobs(tmp_path), **learned(tmp_path)}
     for name, words in {"Ta": "Ta06A.snapcoeff Ta06A.snapparam Ta", "InP": "InP_JCPA2020.snapcoeff InP_JCPA2020.snapparam In P"}.items():
         given[name] = [line if not line.startswith("pair_coeff") else f"pair_coeff * * {words}"
                        for line in given["normed" if name == "Ta" else "linear"]]
@@ -80,7 +109,7 @@ def test_like_lammps(tmp_path):
 
 
 def test_forces_and_virial_are_derivatives_of_the_energy(tmp_path):
-    for name, (slope, force, strained, virial, largest) in compiled(GRADIENT, jobs(tmp_path)).items():
+    for name, (slope, force, strained, virial, largest) in compiled(GRADIENT, {**jobs(tmp_path), **learned(tmp_path)}).items():
         scale = 1e-7 * (largest + abs(slope) + abs(strained))
         assert abs(slope - force) < scale and abs(strained - virial) < scale, name
 
@@ -138,3 +167,32 @@ def test_calculator_and_log(tmp_path, monkeypatch):
     lmp.close()
     told = Path("log.lammps").read_text()
     assert "SNAP Element = Bb, Radius 0.47, Weight 0.8" in told and "SNAP keyword rcutfac 4.1" in told
+
+
+@pytest.mark.parametrize(("style", "files", "says"), [
+    ("model linear a.model", {}, "needs descriptor, a kind and a file"),
+    ("model spline a.model", {}, "model must be one of linear quadratic nn"),
+    ("modell linear a.model", {}, r"unknown keyword 'modell', expected model or descriptor \(did you mean model"),
+    ("model linear", {}, "model needs a kind and a file"), ("descriptor so3 d", {}, "descriptor must be one of sna, got so3"),
+    ("", {"a.model": "1 5\n"}, r"the file ends before the coefficients \(a.model"),
+    ("", {"a.model": "1 5\n1 2 3 4 5\n"}, "a.model announces 5 coefficients, descriptor and model ask for 3"),
+    ("", {"a.model": "1 3\n1 2\n"}, r"the file ends before the last of 3 coefficients, 2 of them were read \(a.model:2"),
+    ("", {"a.model": "1 3\n1 2 x\n"}, r"a coefficient must be a number, got 'x' \(a.model:2"),
+    ("", {"a.model": "2 3\n1 2 3\n4 5 6\n"}, r"a.model is for 2 elements, the descriptor for Aa \(a.model:1"),
+    ("", {"d": "rcutfac 4\ntwojmax 1\n"}, "d has no nelems"),
+    ("model nn a.model descriptor sna d", {"a.model": "1 9\nNET 2 1 cubic 1\n1\n"},
+     r"a layer is one of linear .*, got cubic 1 \(a.model:2"),
+    ("model nn a.model descriptor sna d", {"a.model": "1 9\nNET 2 1 tanh 2\n1\n"}, r"the last layer of the network must have one node"),
+])
+def test_wrong_models(style, files, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    known = {"a.model": "1 3\n1 2 3\n", "d": "rcutfac 4\ntwojmax 1\nnelems 1\nelems Aa\nradelems 0.5\nwelems 1\n"}
+    for name, text in {**known, **files}.items():
+        Path(name).write_text(text)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "create_atoms 1 single 1 1 1"):
+        lmp.command(line)
+    with pytest.raises(InputError, match=says):
+        lmp.command(f"pair_style mliap {style or 'model linear a.model descriptor sna d'}")
+        lmp.command("pair_coeff * * Aa")

@@ -1,8 +1,9 @@
 """Energy and gradient of a site of the spectral neighbour analysis potential; tables are those of `asemd.bispectrum`.
 
 ``room`` is one row of work space: coefficients of each element's density (real and imaginary parts of all), the derivatives of the energy
-by them (the same), those of one neighbour, the sums Z of each pair of elements, components, their weights, the means of those, and the
-coefficients of each neighbour. Of the coefficients of a neighbour only those with 2b <= j are computed; the others mirror them.
+by them (the same), those of one neighbour, the sums Z of each pair of elements, components, their weights, the means of those, nodes of a
+neural network and derivatives by them, and the coefficients of each neighbour. Of the coefficients of a neighbour only those with 2b <= j
+are computed; the others mirror them.
 """
 from __future__ import annotations
 
@@ -97,8 +98,82 @@ def block_of(place, e1, e2, e3, elements):
     return (e3 * elements + e2) * elements + e1 if place == 1 else (e2 * elements + e3) * elements + e1
 
 
+def polynomial(beta, room, b, w, n, quadratic):
+    """Energy linear or quadratic in the n components at place `b`; its derivatives come to `w`."""
+    energy = beta[0]
+    for p in range(n):
+        energy += beta[1 + p] * room[b + p]
+        room[w + p] = beta[1 + p]
+    if quadratic == 1.0:
+        at = 1 + n
+        for p in range(n):
+            x = room[b + p]
+            energy += 0.5 * beta[at] * x * x
+            room[w + p] += beta[at] * x
+            at += 1
+            for q in range(p + 1, n):
+                y = room[b + q]
+                energy += beta[at] * x * y
+                room[w + p] += beta[at] * y
+                room[w + q] += beta[at] * x
+                at += 1
+    return energy
+
+
+def network(net, layers, room, b, w, n, nodes, slopes, unit):
+    """Energy by a neural network of the n components at place `b`; its derivatives come to `w`. `net`: what is subtracted from the
+    components and what they are divided by, then of each node its bias and weights; `layers (m, 2)`: activation (linear, sigmoid, tanh,
+    relu) and nodes; `nodes` and `slopes` are places for values of nodes and derivatives by them."""
+    at, before, inputs = 2 * n, 0, n
+    for layer in range(layers.shape[0]):
+        start = before + (layers[layer - 1, 1] if layer > 0 else 0)
+        for k in range(layers[layer, 1]):
+            x = net[at]
+            for p in range(inputs):
+                x += net[at + 1 + p] * (room[nodes + before + p] if layer > 0 else (room[b + p] - net[p]) / net[n + p])
+            at += inputs + 1
+            kind = layers[layer, 0]
+            if kind == 1:
+                x = 1.0 / (1.0 + math.exp(-x))
+            elif kind == 2:
+                x = math.tanh(x)
+            elif kind == 3:
+                x = max(x, 0.0)
+            room[nodes + start + k] = x
+            room[slopes + start + k] = 0.0
+        before, inputs = start, layers[layer, 1]
+    last = before + layers[layers.shape[0] - 1, 1] - 1
+    room[slopes + last] = unit
+    for p in range(n):
+        room[w + p] = 0.0
+    start = before
+    for back in range(layers.shape[0]):
+        layer = layers.shape[0] - 1 - back
+        inputs = layers[layer - 1, 1] if layer > 0 else n
+        at -= layers[layer, 1] * (inputs + 1)
+        before = start - (inputs if layer > 0 else 0)
+        for k in range(layers[layer, 1]):
+            x = room[nodes + start + k]
+            d = room[slopes + start + k]
+            kind = layers[layer, 0]
+            if kind == 1:
+                d *= x * (1.0 - x)
+            elif kind == 2:
+                d *= 1.0 - x * x
+            elif kind == 3 and x <= 0.0:
+                d = 0.0
+            for p in range(inputs):
+                c = net[at + k * (inputs + 1) + 1 + p]
+                if layer > 0:
+                    room[slopes + before + p] += d * c
+                else:
+                    room[w + p] += d * c / net[n + p]
+        start = before
+    return unit * room[nodes + last]
+
+
 def snap(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
-    by_type, beta, equal, zero, first, weights, z, factors, products, strengths, roots = arrays
+    by_type, beta, equal, zero, first, weights, z, factors, products, strengths, roots, nets, layers = arrays
     twojmax, elements = int(constants[0]), int(constants[1])
     rcutfac, rfac, rmin, switched, all_self, quadratic = constants[2], constants[3], constants[4], constants[5], constants[6], constants[7]
     nu, nz, ncoeff = first[twojmax + 1], factors.shape[0], zero.shape[0]
@@ -110,7 +185,11 @@ def snap(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     component = zs + 2 * nz * elements * elements
     weight = component + ncoeff
     mean = weight + ncoeff
-    own = mean + ncoeff
+    nodes = mean + ncoeff
+    width = 0
+    for k in range(layers.shape[0]):
+        width += layers[k, 1]
+    own = nodes + 2 * width
     for k in range(du):
         room[k] = 0.0
     for e in range(elements):
@@ -164,25 +243,13 @@ def snap(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
                     for e3 in range(elements):
                         u3 = total + 2 * nu * e3 + z[k, 0]
                         room[component + ((e1 * elements + e2) * elements + e3) * nb + z[k, 1]] += s * (room[u3] * x + room[u3 + nu] * y)
-    energy = beta[ti, 0]
-    at = 1 + ncoeff
     for p in range(ncoeff):
         if all_self == 1.0 or p // nb == int(by_type[ti, 0]) * (elements * elements + elements + 1):
             room[component + p] -= zero[p]
-        energy += beta[ti, 1 + p] * room[component + p]
-        room[weight + p] = beta[ti, 1 + p]
-    if quadratic == 1.0:
-        for p in range(ncoeff):
-            x = room[component + p]
-            energy += 0.5 * beta[ti, at] * x * x
-            room[weight + p] += beta[ti, at] * x
-            at += 1
-            for q in range(p + 1, ncoeff):
-                y = room[component + q]
-                energy += beta[ti, at] * x * y
-                room[weight + p] += beta[ti, at] * y
-                room[weight + q] += beta[ti, at] * x
-                at += 1
+    if width > 0:
+        energy = network(nets[ti], layers, room, component, weight, ncoeff, nodes, nodes + width, constants[8])
+    else:
+        energy = polynomial(beta[ti], room, component, weight, ncoeff, quadratic)
     same = equal.shape[1]
     for p in range(ncoeff):
         x = 0.0
@@ -229,4 +296,4 @@ def snap(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
-HELPERS = (wigner, wigner_back, rotation, taper, block_of)
+HELPERS = (wigner, wigner_back, rotation, taper, block_of, polynomial, network)

@@ -28,11 +28,12 @@ from asemd.style import register
 
 DEFAULTS = {"rfac0": 0.99363, "rmin0": 0.0, "switchflag": 1, "bzeroflag": 1, "quadraticflag": 0, "chemflag": 0, "bnormflag": 0,
             "wselfallflag": 0, "switchinnerflag": 0, "chunksize": 32768, "parallelthresh": 8192}
+DESCRIBED = ("nelems", "elems", "radelems", "welems")      # of descriptor files (mliap)
 FLAGS = ("switchflag", "bzeroflag", "quadraticflag", "chemflag", "bnormflag", "wselfallflag", "switchinnerflag")
 
 
-def read_parameters(file: PotentialFile, count: int) -> dict:
-    """Keywords of a parameter file; `count` elements.
+def read_parameters(file: PotentialFile, count: int = 0) -> dict:
+    """Keywords of a parameter file for `count` elements; without a number those of a descriptor file, which has the elements too.
 
     Raises
     ------
@@ -43,11 +44,13 @@ def read_parameters(file: PotentialFile, count: int) -> dict:
     for number, line in file.lines:
         record = Record(line.split(), file.where(number), file.what)
         keyword = record.word()
-        known = ("rcutfac", "twojmax", "sinner", "dinner", *DEFAULTS)
+        known = ("rcutfac", "twojmax", "sinner", "dinner", *DEFAULTS, *(() if count else DESCRIBED))
         if keyword not in known:
             raise file.error(f"unknown keyword {keyword!r}{nearest(keyword, known)}", number)
-        if keyword in ("sinner", "dinner"):
-            found[keyword] = [record.number(keyword) for _ in range(count)]
+        if keyword in ("sinner", "dinner", "radelems", "welems"):
+            found[keyword] = [record.number(keyword) for _ in range(count or found.get("nelems", 0))]
+        elif keyword == "elems":
+            found[keyword] = tuple(record.word(keyword) for _ in range(found.get("nelems", 0)))
         elif keyword in ("rcutfac", "rfac0", "rmin0"):
             found[keyword] = record.number(keyword)
         else:
@@ -56,7 +59,7 @@ def read_parameters(file: PotentialFile, count: int) -> dict:
             raise file.error(f"{keyword} must be 0 or 1, got {found[keyword]}", number)
         if len(record.words) > record.at:
             raise file.error(f"a word too many after {keyword}: {record.words[record.at]}", number)
-    for keyword in ("rcutfac", "twojmax", *(("sinner", "dinner") if found.get("switchinnerflag") else ())):
+    for keyword in ("rcutfac", "twojmax", *(() if count else DESCRIBED), *(("sinner", "dinner") if found.get("switchinnerflag") else ())):
         if keyword not in found:
             raise InputError(f"{file.what}: {file.name} has no {keyword}")
     if not (found["rcutfac"] > 0.0 and 0 <= found["twojmax"] <= 20):
@@ -137,9 +140,9 @@ class SNAP(ManyBody):
 
     def room_for(self, tables, width):
         twojmax, elements = int(tables.constants[0]), int(tables.constants[1])
-        _, _, _, zero, first, _, _, factors, _, _, _ = tables.arrays
+        _, _, _, zero, first, _, _, factors, _, _, _, _, layers = tables.arrays
         nu = int(first[twojmax + 1])
-        numbers = 4 * nu * elements + 2 * nu + 2 * len(factors) * elements**2 + 3 * len(zero) + 2 * nu * width
+        numbers = 2 * int(layers[:, 1].sum()) + 4 * nu * elements + 2 * nu + 2 * len(factors) * elements**2 + 3 * len(zero) + 2 * nu * width
         return -(-numbers // width) + 1
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
@@ -149,9 +152,13 @@ class SNAP(ManyBody):
         chem = len(named) if p["chemflag"] else 1
         by_type, rows = np.zeros((ntypes + 1, 5)), np.zeros((1, ntypes + 1, ntypes + 1))
         beta = np.zeros((ntypes + 1, len(data["by_element"][named[0]][2])))
+        net, layers = data.get("net", {}), data.get("layers", np.zeros((0, 2), np.int64))
+        nets = np.zeros((ntypes + 1, len(next(iter(net.values()), ()))))
         for t, e in enumerate(element):
             if e is None:
                 continue
+            if net:
+                nets[t] = net[e]
             radius, weight, values = data["by_element"][e]
             k = named.index(e)
             inner = [p["sinner"][k], p["dinner"][k]] if p["switchinnerflag"] else [0.0, 0.0]
@@ -162,9 +169,11 @@ class SNAP(ManyBody):
         each = np.arange(chem**3 * len(tables.components))[:, None]
         equal = equals(tables.components, chem) if chem > 1 and not self.like_lammps else each
         zero = np.tile([float(p["bzeroflag"]) * (1.0 if p["bnormflag"] else j + 1.0) for _, _, j in tables.components], chem**3)
-        constants = [p["twojmax"], chem, p["rcutfac"], p["rfac0"], p["rmin0"], p["switchflag"], p["wselfallflag"], p["quadraticflag"]]
+        constants = [p["twojmax"], chem, p["rcutfac"], p["rfac0"], p["rmin0"], p["switchflag"], p["wselfallflag"], p["quadraticflag"],
+                     unit]
         return PairTables(rows, np.array(constants, float), (by_type, beta, equal, zero, tables.first, tables.weights, tables.z,
-                                                             tables.factors, tables.products, tables.strengths, tables.roots))
+                                                             tables.factors, tables.products, tables.strengths, tables.roots, nets,
+                                                             layers))
 
 
 def equals(components, elements: int) -> np.ndarray:
