@@ -105,8 +105,8 @@ class Engine:
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
         rules, chosen = len(self.exclusions.rules) > 0, any(t.molecules for t in self.pair_terms)
         few, partners = 2.1 * self.reach**3 * n < SPARSE * self.volume, self.exclusions.partners is not None
-        # where two images of an atom are in reach, rows of atoms cannot tell which one is special; moving boxes need room to shrink
-        room = 2 if self.box_moves or self.many_terms or partners and (table or few or rules or chosen) else 1
+        # where two images of an atom are in reach, rows of atoms cannot tell which one is special
+        room = 2 if self.many_terms or partners and (table or few or rules or chosen) else 1
         mode, why = "cluster", "half list of clusters of 8 atoms"
         if not self.has_pairs:
             mode, why = "none", "no pair interactions"
@@ -217,8 +217,7 @@ class Engine:
         began = time.perf_counter()
         self.bonds.release()
         if self.box_moves:
-            live_box.take(self)
-            self.set_box()
+            live_box.shrunk(self)
         k, s = self.k, self.state
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:

@@ -37,6 +37,16 @@ def take(engine) -> None:
         engine.system.box = replace(box, origin=engine.origin, cell=engine.vectors)
 
 
+def shrunk(engine) -> None:
+    """The box of the loop becomes that of the engine; a cell that has become too narrow for clusters gets a plain list."""
+    take(engine)
+    engine.set_box()
+    if engine.mode == "cluster" and (engine.widths[engine.periodic] <= engine.reach).any():
+        engine.store()
+        engine.update(engine.system)
+        engine.load(listed=False)
+
+
 def faces(engine) -> None:
     """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost."""
     box = engine.system.box

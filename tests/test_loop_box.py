@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from both import asemd
+from numpy.testing import assert_allclose
 from test_loop import CHAIN, PRISM, chains, crystal, loop_of
 
 from asemd.engine import Engine, Settings
@@ -169,3 +171,30 @@ def test_a_list_build_asked_for():
     loop.setup(0, 5)
     loop.advance(5)
     assert diary.lists[0] == 3
+
+
+@pytest.mark.parametrize("integrate", ["run_style verlet", "run_style respa 2 2"])
+def test_a_box_that_becomes_narrower_than_the_reach_of_the_forces(integrate):
+    session = asemd(f"""
+        units lj
+        lattice fcc 0.8
+        region box block 0 3 0 3 0 3
+        create_box 1 box
+        create_atoms 1 box
+        mass 1 1
+        velocity all create 0.5 4711
+        pair_style lj/cut 1.5
+        pair_coeff 1 1 0.05 0.6
+        neigh_modify every 1 delay 0
+        {integrate}
+        fix 1 all nve
+        fix 2 all deform 1 z scale 0.3 remap x
+        timestep 0.001
+        run 400""")
+    loop = session.loop
+    loop.sync_out()
+    assert loop.engine.mode == "plain" and loop.engine.widths[2] < loop.engine.reach
+    loop.engine.forces(True)
+    mine, fresh = loop.engine.collect(), Engine(loop.system.select(np.arange(loop.system.n)), loop.interactions, Settings()).compute()
+    assert mine.potential == pytest.approx(fresh.potential, rel=1e-12)
+    assert_allclose(mine.forces, fresh.forces, rtol=0, atol=1e-10 * np.abs(fresh.forces).max())
