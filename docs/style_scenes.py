@@ -78,7 +78,7 @@ EXTRA = {
     ("dihedral", "charmm"): CHARMM["charmm"], ("dihedral", "charmmfsw"): CHARMM["charmmfsw"],
 }
 
-# two atoms show what these do, in the units that their example is in
+# two atoms show what these do, in the units that their example is in; measuring one takes minutes on an idle machine
 PAIRS = ("buck", "coul/cut", "lepton", "lj/charmm/coul/charmm", "lj/charmmfsw/coul/charmmfsh", "lj/cut", "lj/cut/coul/cut", "lj/sdk",
          "lj/spica", "lj96/cut", "morse", "soft", "table")
 
