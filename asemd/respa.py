@@ -128,7 +128,7 @@ class ShortClusterTerm(PairTerm):
         near.shape(whole.bins, engine.system.n)
         near.cell_start, near.column_start, near.column_of = whole.cell_start, whole.column_start, whole.column_of     # same slots
         near.build(engine.k, engine.state, engine.ns, engine.vectors, engine.periodic, engine.exclusions.partners, engine.slot_of,
-                   engine.parallel)
+                   engine.parallel, engine.cell.reduced * engine.periodic[:, None])
         super().rebuild(engine)
 
     def clusters(self, engine):
