@@ -134,7 +134,10 @@ class MolecularDynamics(ASEMolecularDynamics):
         else:       # atoms that do not move keep their positions to the last bit
             atoms.arrays["positions"][:] = there + (now - here) * u["distance"]
         atoms.set_momenta(system.v * u["velocity"] * self.masses, apply_constraint=False)
-        for name in {"mu", "omega", "torque", "angmom", "quaternions"} & set(system.extra) & set(atoms.arrays):
+        solid = {"quaternions", "angmom", "torque"} if "shape" in atoms.arrays else set()
+        for name in {"mu", "omega", "torque", "angmom", "quaternions"} & set(system.extra) & (solid | set(atoms.arrays)):
+            if name not in atoms.arrays:
+                atoms.set_array(name, np.zeros_like(system.extra[name]))
             atoms.arrays[name][:] = system.extra[name] * unit_styles.factor(UNITS[name], self.atoms.calc.units)
 
     def _save(self, system, path: str) -> None:

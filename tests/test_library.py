@@ -61,7 +61,8 @@ VALUES = {
     "datatypes": "[l.extract_global_datatype(n) for n in 'boxlo dt ntypes units natoms'.split()]",
     "settings": "[l.extract_setting(n) for n in 'bigint tagint imageint dimension box_exist newton_bond newton_pair "
                 "triclinic universe_rank nlocal "
-                "ntypes nbondtypes molecule_flag q_flag mu_flag rmass_flag radius_flag nope'.split()]",
+                "ntypes nbondtypes molecule_flag q_flag mu_flag rmass_flag radius_flag "
+                "torque_flag omega_flag angmom_flag ellipsoid_flag nope'.split()]",
     "atom types": "[l.extract_atom_datatype(n) for n in 'x id type mass q mask image molecule v f'.split()]",
     "box": "list(l.extract_box())",
     "pair": "[np.triu(l.extract_pair(n))[1:, 1:].tolist() for n in ('epsilon', 'sigma')] + [l.extract_pair_dimension('epsilon')]",

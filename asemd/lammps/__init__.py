@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 LMP_STYLE_GLOBAL, LMP_STYLE_ATOM, LMP_STYLE_LOCAL = 0, 1, 2
 LMP_TYPE_SCALAR, LMP_TYPE_VECTOR, LMP_TYPE_ARRAY, LMP_SIZE_VECTOR, LMP_SIZE_ROWS, LMP_SIZE_COLS = 0, 1, 2, 3, 4, 5
 TYPE_COUNTS = ("ntypes", "nbondtypes", "nangletypes", "ndihedraltypes", "nimpropertypes")
+FLAGS = {"mu": "mu", "torque": "torque", "omega": "omega", "angmom": "angmom", "ellipsoid": "shape"}      # arrays of atoms
 ITEMS = {"nbonds": "bonds", "nangles": "angles", "ndihedrals": "dihedrals", "nimpropers": "impropers"}
 
 
@@ -206,7 +207,7 @@ class Lammps(AtomArrays, Library):
         flags = {"triclinic": lambda: system.box.triclinic, "molecule_flag": lambda: system.has_molecules,
                  "q_flag": lambda: system.has_charge,
                  "rmass_flag": lambda: system.rmass is not None, "radius_flag": lambda: "radius" in system.extra,
-                 "mu_flag": lambda: "mu" in system.extra}
+                 **{f"{key}_flag": lambda name=name: name in system.extra for key, name in FLAGS.items()}}
         if name in flags:
             return int(flags[name]()) if system is not None else 0
         return -1
