@@ -128,7 +128,7 @@ def test_trajectory_like_lammps(theirs, name):
 
 
 def test_langevin_bath_has_its_temperature():
-    scene = SCENE.format(**SOLID).replace("block 0 3 0 3 0 3", "block 0 6 0 6 0 6").replace("lj/cut 2.0", "zero 1.0").replace("* * 1 1", "* *")
+    scene = SCENE.format(**SOLID | {"height": "0 24"}).replace("lj/cut 2.0", "zero 1.0").replace("* * 1 1", "* *")
     session = asemd(scene + "fix 1 all nve/asphere\nfix 2 all langevin 1.5 1.5 0.1 77 angmom 3.3\nthermo_style custom c_r c_h\nrun 200")
     spread = (2.0 / (3 * 864)) ** 0.5
     assert session.last_thermo["c_r"] == pytest.approx(1.5, rel=4 * spread)
