@@ -63,6 +63,7 @@ CASES = {
     "resquared": (LONG, "pair_style resquared 4\n" + ALL.replace("0 0 0 0 0 0 3.3", "1 2 1 0.5 0.3 0.4 3.3")
                   + "pair_coeff 1 3 1 0.5 0 0 0 0 0 0\npair_coeff 2 3 1 0.5 0 0 0 1 2 3"),
     "resquared, points": (ROUND, "pair_style resquared 4\n" + POINTS + "pair_modify shift yes"),
+    "ylz": (LONG, "pair_style ylz 3.5\npair_coeff * * 1.0 1.0 4 3 0.1 2.9\npair_coeff 1 2 0.8 1.4 3 2.5 -0.2 3.1\nspecial_bonds lj 1 1 1"),
 }
 THEIRS = """
 answer = {}
@@ -103,7 +104,8 @@ def test_like_lammps(theirs, name):
     np.testing.assert_allclose(row, expected["thermo"], rtol=1e-11, atol=1e-13)
 
 
-@pytest.mark.parametrize("name", ["gayberne", "gayberne, depths", "gayberne, mu", "gayberne, all long", "resquared", "resquared, points"])
+@pytest.mark.parametrize("name", ["gayberne", "gayberne, depths", "gayberne, mu", "gayberne, all long", "resquared", "resquared, points",
+                                  "ylz"])
 def test_forces_and_torques_are_the_gradient(name):
     session = ours(script(name))
     engine, h, system = session.loop.engine, 1e-4, session.scene.system
@@ -265,6 +267,10 @@ def test_ase_atoms_hold_shapes_and_orientations():
     ("pair_style gayberne 1 3 1 4\npair_coeff * * 1 1 1 1 1 1 1", "got 7 values"),
     ("pair_style gayberne 1 3 1\npair_coeff * * 1 1 1 1 1 1 1 1", "got 3 values"),
     ("pair_style resquared 4\npair_coeff * * 1 1 1 1 1 1 1 x", "must be a number"),
+    ("pair_style ylz 3\npair_coeff * * 1 0 4 3 0 2.6", "sigma must be positive"),
+    ("pair_style ylz 3\npair_coeff * * 1 1 4 3 0", "got 5 values"),
+    ("pair_style ylz 3\npair_coeff * * 1 1 4 3 0 2.6\nset atom 2 shape 0 0 0", "atom 2 is a point"),
+    ("pair_style ylz 3\npair_coeff 1 1 1 1 4 3 0 3\npair_coeff 2 2 1 1 4 3 0 3", "does not mix"),
     ("pair_style resquared 4\npair_coeff 1 1 1 1 1 1 1 1 1 1\npair_coeff 2 2 1 1 1 1 1 1 1 1", "does not mix"),
     ("pair_style gayberne 1 3 1 4\npair_coeff * * 1 1 1 1 1 1 1 1\nset atom 1 shape 1 1 1.01", "must have one shape; those of type 1"),
     ("pair_style gayberne 1 3 1 4\npair_coeff * * 1 1 1 1 1 1 1 1\ncompute 1 all pair/local eng\ndump 1 all local 1 /dev/null c_1",

@@ -5,7 +5,7 @@ whose energy is a function of the distance; others are for the style's function)
 From the style: `plain(r2, rows, ti, tj)` -> energy, force/r; `potential(d, r2, form, ti, tj, rows, constants, first, second, work, out)`
 -> energy; it writes the gradient by d = x_i - x_j and the derivatives by rotations of both, 9 numbers, to `out`; `work (4, 6)` is scratch.
 A body is 0 G = A^T S^2 A and 1 B = A^T E A with the semi-axes S and relative well depths E of its type along the rows of A, 2 the row of
-its type in `bodies`, that is the squared semi-axes, the E and the semi-axes, 3 A^T S A.
+its type in `bodies`, that is the squared semi-axes, the E and the semi-axes, 3 A^T S A and from place 6 on the first row of A.
 """
 from __future__ import annotations
 
@@ -91,6 +91,7 @@ def ellipsoid_forces(x, f, quaternions, row, torque, type_of, pair_i, pair_j, co
                 lay(e, own[2], 0, own[0])
                 lay(e, own[2], 3, own[1])
                 lay(e, own[2], 6, own[3])
+                own[3, 6], own[3, 7], own[3, 8] = e[0, 0], e[0, 1], e[0, 2]
             d[0], d[1], d[2] = dx, dy, dz
             ev = potential(d, r2, form, ti, tj, rows, constants, first, second, work, out)
             gx, gy, gz = out[0], out[1], out[2]
