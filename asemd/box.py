@@ -288,7 +288,7 @@ class Box:
                 near[far, k] += n * length
                 shift[far, k] = n
             return near, shift
-        basis, steps = _reduced(self.cell[periodic])
+        basis, steps = tilted.reduced(self.cell[periodic])
         n = -np.rint(d @ np.linalg.pinv(basis))
         near = d + n @ basis
         around = np.stack(np.meshgrid(*([-1, 0, 1],) * len(basis), indexing="ij"), -1).reshape(-1, len(basis))
@@ -384,25 +384,3 @@ def _orthogonal(cell: np.ndarray, k: int) -> np.ndarray:
     order = [k, (k + 1) % 3, (k + 2) % 3]
     best = max(order, key=lambda i: round(float(np.linalg.norm(rest[i])), 6))
     return rest[best] / np.linalg.norm(rest[best])
-
-
-def _reduced(vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A Minkowski-reduced basis of 1 to 3 lattice vectors, and its integer coordinates in the given ones."""
-    basis, steps = vectors.copy(), np.eye(len(vectors))
-    changed = len(basis) > 1
-    while changed:
-        changed = False
-        for i in range(len(basis)):
-            others = [j for j in range(len(basis)) if j != i]
-            grids = np.meshgrid(*([-1.0, 0.0, 1.0],) * len(others), indexing="ij")
-            trial = np.stack(grids, -1).reshape(-1, len(others))
-            for j, other in enumerate(others):      # big steps first: subtract the projection
-                n = np.rint(basis[i] @ basis[other] / (basis[other] @ basis[other]))
-                trial = np.vstack([trial, -n * np.eye(len(others))[j]])
-            length = ((basis[i] + trial @ basis[others]) ** 2).sum(axis=1)
-            best = int(np.argmin(length))
-            if length[best] < (basis[i] @ basis[i]) * (1.0 - 1e-12):
-                basis[i] += trial[best] @ basis[others]
-                steps[i] += trial[best] @ steps[others]
-                changed = True
-    return basis, steps
