@@ -53,10 +53,15 @@ def scenes() -> dict[str, tuple]:
                                                 1.7),
         "gas": (anywhere(300, np.eye(3) * 60.0, rng, turns=1), np.eye(3) * 60.0, ALL, 3.0),
     }
+    narrow = {"": np.diag([3.3, 4.0, 5.1]), ", tilted": np.array([[3.6, 0, 0], [1.7, 3.9, 0], [-1.5, 1.8, 4.2]]),
+              ", left-handed": np.array([[4.4, 0.3, 0], [-1.2, 3.8, 0], [0.9, 1.1, -3.7]])}
+    for word, cell in narrow.items():      # two images of an atom in reach of another
+        for periodic in (ALL, (True, True, False)):
+            out[f"narrow{word}{'' if all(periodic) else ', mixed'}"] = (anywhere(130, cell, rng, periodic, 2), cell, periodic, 2.7)
     out["cutoff a hair above lattice distances"] = (lattice((6, 6, 6), np.eye(3) * 5.4), np.eye(3) * 5.4, ALL, 1.8 * (1 + 1e-12))
     return out
 
 
 SCENES = scenes()
 OVER_CLUSTERS = [name for name, (x, cell, periodic, cut) in SCENES.items()
-                 if len(x) > 1 and all(2 * cut <= w for w, p in zip(1 / np.linalg.norm(np.linalg.inv(cell), axis=0), periodic) if p)]
+                 if len(x) > 1 and all(cut < w for w, p in zip(1 / np.linalg.norm(np.linalg.inv(cell), axis=0), periodic) if p)]

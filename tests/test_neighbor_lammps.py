@@ -49,6 +49,7 @@ def as_script(name: str) -> dict:
 REFUSED = {     # by LAMMPS; or pairs exactly at the cutoff, which rounding decides
     "sheet without images": "bins", "all atoms on one line": "bins", "a point on a corner, mixed": "bins", "drop and outlier": "bins",
     "sheared, mixed": "lost atoms", "left-handed and wide": "left-handed", "left-handed and wide, mixed": "left-handed",
+    "narrow, left-handed": "left-handed", "narrow, left-handed, mixed": "left-handed", "narrow, tilted, mixed": "lost atoms",
     "cutoff of one periodic length": "rounding",
 }
 
