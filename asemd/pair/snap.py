@@ -6,7 +6,8 @@ B_{j_1j_2j}=\sum u^{j*}\,H\,u^{j_1}u^{j_2},\quad u^j=w_0\,\mathbf 1+\sum_{k\ne i
 ``pair_coeff * * COEFFICIENTS PARAMETERS`` and an element for each type. The core repulsion is another style, as in
 ``pair_style hybrid/overlay zbl 4.0 4.8 snap``. With ``chemflag 1`` elements have densities of their own, and components are those of
 triples of elements in the order in which ``pair_coeff`` first names them, as in LAMMPS: name them in the order of the file. Our force is
-the gradient also where coefficients of components that are equal by symmetry differ; ``compat="lammps"`` takes one of them.
+the gradient also where coefficients of components that are equal by symmetry differ by more than rounding; ``compat="lammps"`` takes one of
+them.
 
 Source: LAMMPS manual, pair_style snap; Thompson, Swiler, Trott, Foiles and Tucker, J. Comp. Phys. 285, 316 (2015); Wood and Thompson,
 J. Chem. Phys. 148, 241721 (2018); Cusentino, Wood and Thompson, J. Phys. Chem. A 124, 5456 (2020).
@@ -28,6 +29,7 @@ from asemd.style import register
 
 DEFAULTS = {"rfac0": 0.99363, "rmin0": 0.0, "switchflag": 1, "bzeroflag": 1, "quadraticflag": 0, "chemflag": 0, "bnormflag": 0,
             "wselfallflag": 0, "switchinnerflag": 0, "chunksize": 32768, "parallelthresh": 8192}
+ROUNDED = 1e-9      # coefficients of equal components that differ by less, of the largest, count as equal
 DESCRIBED = ("nelems", "elems", "radelems", "welems")      # of descriptor files (mliap)
 FLAGS = ("switchflag", "bzeroflag", "quadraticflag", "chemflag", "bnormflag", "wselfallflag", "switchinnerflag")
 
@@ -168,6 +170,9 @@ class SNAP(ManyBody):
             rows[0, i, j] = rows[0, j, i] = ((by_type[i, 1] + by_type[j, 1]) * p["rcutfac"]) ** 2
         each = np.arange(chem**3 * len(tables.components))[:, None]
         equal = equals(tables.components, chem) if chem > 1 and not self.like_lammps else each
+        linear = beta[:, 1:]
+        if linear.shape[1] == len(each) and np.abs(linear[:, equal].mean(axis=2) - linear).max() <= ROUNDED * np.abs(linear).max():
+            equal = each
         zero = np.tile([float(p["bzeroflag"]) * (1.0 if p["bnormflag"] else j + 1.0) for _, _, j in tables.components], chem**3)
         constants = [p["twojmax"], chem, p["rcutfac"], p["rfac0"], p["rmin0"], p["switchflag"], p["wselfallflag"], p["quadraticflag"],
                      unit]
