@@ -72,6 +72,7 @@ class ManyBody(PairStyle, ABC):
     kernel_constants: Mapping[str, Any] = MappingProxyType({})      # module constants of `forces` and `helpers`
     flat_room = False         # `room` is one row
     head_words = "FILE"       # words of ``pair_coeff`` before the elements of the types
+    ghost_list = False             # LAMMPS's log says that its list has those of ghost atoms too
     usual = ""                     # words of its settings that a calculator has by default
     whole = False                  # one kernel, with energies, for all steps: where the compiler takes long
 

@@ -91,6 +91,10 @@ class ManyBodyTerm(FactorTerm):
         elif not self.style.shares:
             self.shared = np.zeros((0, 0))
 
+    def extra(self) -> np.ndarray:
+        """Numbers for compute pair: sums over the atoms of the last rows that all threads share."""
+        return self.shared[-self.style.extra:, :self.ns].sum(axis=1)
+
     @property
     def entries(self) -> int:
         """Pairs in the rows, each counted once."""

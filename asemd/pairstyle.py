@@ -122,6 +122,7 @@ class PairStyle(Style):
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
+    extra = 0                        # numbers that compute pair gives beside the energy
     restarts = True                  # restart files keep settings and coefficients
     takes_tables = True              # ``pair_modify table`` has an effect, as in LAMMPS
     needs_newton = False             # newton off is refused, as by LAMMPS

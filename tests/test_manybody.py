@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from itertools import product
@@ -172,6 +173,9 @@ def test_like_lammps(tmp_path):
     other = {"GaN_tersoff.poly Ga N": "FeCH_BOP_II.poly H Fe C", "create_box 2": "create_box 3"}      # eta 3: tables of triples
     for mine, theirs in other.items():
         jobs["polymorphic, eta 3"] = [line.replace(mine, theirs) for line in jobs.get("polymorphic, eta 3", scene("polymorphic", "metal"))]
+    jobs["airebo, its parts"] = [re.sub(r"(variable s(\d) equal) .*", lambda m: f"{m[1]} c_parts[{int(m[2]) % 3 + 1}]", line)
+                                 for line in scene("airebo 1.5 1 1 1.1", "metal")]
+    jobs["airebo, its parts"].insert(-3, "compute parts all pair airebo")
     theirs = ask(THEIRS, jobs=jobs)
     ours = uncompiled(OURS, jobs, theirs["folder"])
     for job in jobs:

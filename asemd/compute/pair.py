@@ -1,7 +1,8 @@
 """Energy of one pair style, such as a sub-style of a hybrid: all of it, or its van der Waals or Coulomb part.
 
 Pair style gauss also gives a vector of one number: how many pairs are closer than 1/sqrt(2 B), where the force is largest (occupied sites);
-hbond/dreiding/lj and morse one of two numbers: hydrogen bonds, and their energy.
+hbond/dreiding/lj and morse one of two numbers: hydrogen bonds, and their energy; rebo and airebo one of three: energies of bonds,
+dispersion and torsion.
 
 Source: LAMMPS manual, compute pair. Units: energy.
 """
@@ -12,8 +13,7 @@ import numpy as np
 from asemd.compute import Compute
 from asemd.compute._pairs import half
 from asemd.errors import InputError, nearest
-from asemd.hydrogen_bond_term import HydrogenBondTerm
-from asemd.registry import plain_name
+from asemd.registry import find, plain_name
 from asemd.words import choice, take, whole
 
 PARTS = {"epair": ("evdwl", "ecoul"), "evdwl": ("evdwl",), "ecoul": ("ecoul",)}
@@ -78,15 +78,17 @@ class Pair(Compute):
     @property
     def size(self) -> int:
         """Elements of the vector, 0 for none."""
-        return 2 if self.name.startswith("hbond/dreiding/") else int(self.name == "gauss")
+        if self.name == "gauss" or self.name.startswith("hybrid") or not self.name:
+            return int(self.name == "gauss")
+        return find("pair", self.name).extra
 
     def vector(self, state) -> np.ndarray:
-        """Of gauss how many pairs are within the width of their well; of hbond/dreiding the bonds and their energy."""
+        """Of gauss how many pairs are within the width of their well; of other styles what their terms say."""
         if not self.size:
             return super().vector(state)
         use, n = self.chosen(state.engine.interactions), state.system.counts["ntypes"]
-        if self.size == 2:
-            return sum(t.extra() for t in state.engine.terms if isinstance(t, HydrogenBondTerm) and use in (None, t.owner.use))
+        if self.name != "gauss":
+            return sum(t.extra() for t in state.engine.terms if hasattr(t, "extra") and use in (None, t.owner.use))
         within = np.zeros((n + 1, n + 1))
         for term in state.engine.pair_terms:
             if term.style.name == "gauss" and use in (None, term.use):

@@ -1,7 +1,8 @@
 """The reactive bond-order potentials REBO and AIREBO over rows of neighbours: bonds, dispersion between what is not bonded, torsions.
 
 Rows of `shared` by slot: coordinations by carbon and by hydrogen, number of bonds, how many of them count as those of this slot, element (0
-carbon, 1 hydrogen), then for each bond slot, vector, length, weight, its derivative, and element. Arrays and constants are those of
+carbon, 1 hydrogen), then for each bond slot, vector, length, weight, its derivative, and element; at the end the sums of
+the slot's energies of bonds, dispersion and torsion. Arrays and constants are those of
 `asemd.pair.airebo`, columns of numbers by pair of elements those of `asemd.airebo_file`.
 """
 from __future__ import annotations
@@ -12,6 +13,7 @@ from asemd.kernels import bond_order_terms as terms
 from asemd.kernels.bond_order_terms import (
     BONDS,
     FIRST,
+    SUMS,
     WIDTH,
     add_energy,
     add_pair,
@@ -40,8 +42,8 @@ from asemd.kernels.bond_order_terms import (
 from asemd.kernels.manybody import gather_near
 from asemd.kernels.threads import barrier
 
-NAMED = {name: getattr(terms, name) for name in ("BONDS", "FIRST", "WIDTH", "RHO")}
-ROWS = FIRST + WIDTH * BONDS
+NAMED = {name: getattr(terms, name) for name in ("BONDS", "FIRST", "WIDTH", "RHO", "SUMS")}
+ROWS = SUMS + 3
 
 
 def attraction(r, p):
@@ -158,7 +160,9 @@ def bond_order_forces(x, f, q, type_of, first, middle, last, neighbors, codes, s
     barrier(meeting)
     out = (f, acc, atom_energy, atom_virial)
     for i in range(lo, hi):
-        energy, bonds, n = 0.0, int(shared[3, i]), 0
+        bonds, n = int(shared[3, i]), 0
+        for k in range(3):
+            shared[SUMS + k, i] = 0.0
         if constants[0] == 1.0:
             n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         # first the bonds, then all pairs for dispersion, so that what both do is compiled once
@@ -199,9 +203,10 @@ def bond_order_forces(x, f, q, type_of, first, middle, last, neighbors, codes, s
                 total, along = e * apart * scale, apart * (d * scale + e * dclose * (order - 1.0))
                 if steps > 0:
                     add_path(shared, pair, out, i, j, v, r, steps, room[10], -e * scale)
-            energy += total
+            shared[SUMS if bonded else SUMS + 1, i] += total
             add_energy(out, (i, j), total)
             add_pair(out, i, j, v, along / r)
+        energy = shared[SUMS, i] + shared[SUMS + 1, i] + shared[SUMS + 2, i]
         if not abs(energy) < math.inf and bad[0] == 0.0:
             bad[0], bad[1], bad[2] = 1.0, i, energy
 

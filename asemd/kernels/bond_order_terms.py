@@ -11,6 +11,7 @@ ENERGY = PER_ATOM = False
 BONDS = 24             # places for bonds of an atom
 FIRST, WIDTH = 5, 8    # rows of a bond in `shared`: see `asemd.kernels.bond_order`
 RHO = 12
+SUMS = FIRST + WIDTH * BONDS
 
 
 def fade(x, low, high):
@@ -327,6 +328,8 @@ def turns(shared, pair, out, i, j, v, r, stage, weight):
                 lone = g * weight * open_
                 add_twist(out, i, j, k, m, v, r, d, rk, e, rm, dg * faded * open_, -g * faded * ds21 * (1.0 - s34),
                           g * faded * (1.0 - s21) * ds34, lone * dw23 * w21 * w34, lone * w23 * dw21 * w34, lone * w23 * w21 * dw34)
+    if torsion:
+        shared[SUMS + 2, i] += total
     return total
 
 

@@ -120,13 +120,14 @@ def _report_list(session, engine) -> None:
     scene = session.scene
     s = scene.neighbor
     full = any(not getattr(t.style, "half_list", False) for t in engine.many_terms)
+    ghost = ", ghost" if any(getattr(t.style, "ghost_list", False) for t in engine.many_terms) else ""
     text = "\n".join([
         "Neighbor list info ...",
         f"  update: every = {s.every} steps, delay = {s.delay} steps, check = {'yes' if s.check else 'no'}",
         f"  master list distance cutoff = {engine.reach:.8g}",
         "  1 neighbor lists, perpetual/occasional/extra = 1 0 0",
         f"  (1) pair {scene.interactions.style_name('pair')}, perpetual",
-        f"      attributes: {'full' if full else 'half'}, newton {'on' if scene.newton[0] else 'off'}",
+        f"      attributes: {'full' if full else 'half'}, newton {'on' if scene.newton[0] else 'off'}{ghost}",
         f"      pair build: {engine.mode}"])
     if text != session.list_told:
         session.list_told = text

@@ -28,7 +28,8 @@ SWITCH = 2.16, 3.0      # where dispersion ends, in units of sigma
 class AIREBO(ManyBody):
     """Numbers by pair of elements from a file of carbon and hydrogen."""
 
-    usual = "3.0"
+    usual, ghost_list = "3.0", True
+    extra = 3                 # for compute pair: energies of bonds, dispersion and torsion
     title, morse, lone = "AIREBO", False, "airebo"
     kernel_constants, whole = kernels.NAMED, True
 

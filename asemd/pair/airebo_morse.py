@@ -23,5 +23,6 @@ class Morse(AIREBO):
 
 
 HELPERS = tuple(attraction if f is kernels.attraction else f for f in kernels.HELPERS)
-register(Morse("airebo/morse", helpers=HELPERS, example="CH.airebo-m C", doc=__doc__,
+morse = register(Morse("airebo/morse", helpers=HELPERS, example="CH.airebo-m C", doc=__doc__,
                see="T. C. O'Connor, J. W. Andzelm, M. O. Robbins, J. Chem. Phys. 142, 024903 (2015)", **WORDS, **OPTIONS))
+morse.reads = morse.name

@@ -129,6 +129,8 @@ def extep_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
 class ExTeP(Tersoff):
     """Tersoff's entries and tables of the correction."""
 
+    ghost_list = True
+
     def parse_settings(self, words):
         return {"shift": 0.0, **super(Tersoff, self).parse_settings(words)}
 
@@ -166,6 +168,7 @@ class ExTeP(Tersoff):
         return replace(tables, arrays=(*tables.arrays, number, corrections))
 
 
-register(ExTeP("extep", forces=extep_forces, shares=2, rooms=9, converts=False, doc=__doc__, example="BN.extep B",
+extep = register(ExTeP("extep", forces=extep_forces, shares=2, rooms=9, converts=False, doc=__doc__, example="BN.extep B",
                helpers=(taper, repulsion, attraction, angular, order, longer, tersoff, smooth, envelope, corner, correction),
                see="J. H. Los, J. M. H. Kroes, K. Albe, R. M. Gordillo, M. I. Katsnelson, A. Fasolino, Phys. Rev. B 96, 184108 (2017)"))
+extep.reads = "ExTeP"
