@@ -108,6 +108,8 @@ class Molecule:
             if self.radius is not None:
                 own["extra"]["radius"] = np.tile(self.radius, m)
             own["rmass"] = volume(own["extra"]["radius"]) if self.rmass is None else np.tile(self.rmass, m)
+        elif own.get("rmass") is not None and self.rmass is not None:
+            own["rmass"] = np.tile(self.rmass, m)
         if "mu" in own["extra"] and self.mu is not None:
             own["extra"]["mu"] = np.concatenate([turned(matrix, self.mu) for matrix in matrices] or [np.zeros((0, 3))])
         number = np.ones(n, int) if self.molecule is None else self.molecule

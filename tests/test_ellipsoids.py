@@ -170,6 +170,8 @@ FILES = {
                                 **{k: f"{w} 0.3 0.2 0.1" for k, w in SPINS.items()}),
     "full.data": FILE.format(box=BOX, one="1 1 1 1 1 0.3 1 0.7", two="1 2 2 2 2 -0.3 1 1.2", three="1 3 1 1 0 0 0 3.3", **SPINS),
 }
+MOLECULE = "pair\n\n2 atoms\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 1\n2 1\n\nMasses\n\n1 2.5\n2 1.5\n"
+FILES["pair.mol"] = MOLECULE
 READ = {"box": "ellipsoid", "general": "ellipsoid", "spheres": "hybrid ellipsoid sphere", "full": "hybrid full ellipsoid"}
 MADE = """
 region b block 0 4 0 4 0 4
@@ -192,6 +194,15 @@ DATA = {name: f"units lj\natom_style {style}\nread_data {name}.data\n{'mass 1 1'
         for name, style in READ.items()}
 DATA |= {f"made, {style}": f"units lj\natom_style {style}\n{MADE}" + END
          for style in ("ellipsoid", "hybrid ellipsoid sphere", "hybrid sphere ellipsoid")}
+DATA["of a molecule"] = """units lj
+atom_style ellipsoid
+region b block 0 8 0 8 0 8
+create_box 1 b
+molecule m pair.mol
+create_atoms 0 single 2 2 2 mol m 123
+create_atoms 1 single 5 5 5
+set atom 2 shape 1 1 2
+""" + END
 DATA["made, flat"] = """units lj
 dimension 2
 atom_style ellipsoid
