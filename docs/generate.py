@@ -77,8 +77,8 @@ def styles_page() -> str:
     for category in FORCE_FIELD:
         out += [f"## {category}_style", ""]
         if category == "pair":
-            out += ["Some pair styles have a page with measured agreement and error against time; measuring one takes minutes. Energies of every",
-                    "two-body style, `fix adapt`, `compute pair` and `pair_write` of it are compared with LAMMPS by the tests.", ""]
+            out += ["Some pair styles have a page with measured agreement and error against time; measuring one takes minutes. Energies of",
+                    "every two-body style, `fix adapt`, `compute pair` and `pair_write` of it are compared with LAMMPS by the tests.", ""]
         for name in catalog.names(category):
             if name in catalog.WRAPPERS or name.startswith("hybrid/"):
                 module = importlib.import_module(style.module_of(category, name))
