@@ -16,7 +16,7 @@ DEFAULTS: dict[str, Any] = {
     "mesh": (0, 0, 0), "mesh/disp": (0, 0, 0), "order": None, "order/disp": 5, "minorder": 2, "overlap": True, "force": -1.0,
     "gewald": 0.0, "gewald/disp": 0.0, "slab": 1.0, "wire": 1.0, "compute": True, "cutoff/adjust": True, "fftbench": False,
     "collective": False, "diff": "ik", "kmax/ewald": (0, 0, 0), "mix/disp": "pair", "force/disp/real": -1.0,
-    "force/disp/kspace": -1.0, "splittol": 1e-6, "pressure/scalar": True, "disp/auto": False}
+    "force/disp/kspace": -1.0, "splittol": 1e-6, "eigtol": 1e-6, "pressure/scalar": True, "disp/auto": False}
 THREE = ("mesh", "mesh/disp", "kmax/ewald")
 SLAB = ("nozforce", "ew2d")
 

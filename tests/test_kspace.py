@@ -177,6 +177,11 @@ def test_choices_without_a_scene():
 @pytest.mark.parametrize("lines, message", [
     (["kspace_style pppm"], "needs one number"), (["kspace_style pppm 0"], "must not be 0"), (["kspace_style pppm many"], "accuracy"),
     (["kspace_style pppm 1e-4", "kspace_modify order 8", "run 0"], "order must be 2 to 7"),
+    (["kspace_style pppm 1e-4", "kspace_modify order 4 minorder 5", "run 0"], "less than kspace_modify minorder 5"),
+    (["kspace_style pppm 1e-4", "kspace_modify wire 3.0", "run 0"], "does not take kspace_modify wire"),
+    (["kspace_style ewald 1e-4", "kspace_modify slab ew2d", "run 0"], "does not take kspace_modify slab ew2d"),
+    (["kspace_style pppm 1e-4", "kspace_modify scafacos tolerance energy", "run 0"], "unknown kspace_modify keyword 'scafacos'"),
+    (["kspace_style scafacos fmm 1e-4"], "unknown kspace style"),
     (["pair_style lj/cut 5.0", "pair_coeff * * 1 1", "kspace_style pppm 1e-4", "run 0"], "needs a pair style that leaves it"),
     (["kspace_style none", "run 0"], "needs a kspace_style"),
     (["set type * charge 0", "kspace_style pppm 1e-4", "run 0"], "all charges are 0"),

@@ -20,9 +20,18 @@ def case(pair, *solver, coeff=LJ, box=(), mix="geometric", modify=TABLES):
                  values=[*VALUES, "c_em", "c_sm[1]", "c_sm[2]"])
 
 
+def npt(kind, **options):
+    """Boxes that grow until they take more waves."""
+    out = case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4", **options)
+    out["commands"][-1] = f"fix 1 all npt temp 300 300 50 {kind} -20000 -20000 30"
+    out["runs"] = ["run 10", "run 5"]
+    return out
+
+
 CASES = {
     "ewald/disp": case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4"),
     "ewald/disp arithmetic, triclinic": case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-5", mix="arithmetic", box=TILT),
+    "ewald/disp, npt": npt("iso"), "ewald/disp, npt, triclinic": npt("tri", box=TILT),
     "ewald/disp without charges": case("lj/long/coul/long long off 5.0", "kspace_style ewald/disp 1e-4"),
     "ewald/disp, Buckingham": case("buck/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4", coeff=BUCK),
     "a cutoff for dispersion": case("lj/long/coul/long cut long 4.5 5.0", "kspace_style ewald/disp 1e-4"),

@@ -24,19 +24,25 @@ def error(waves, length, g, q2, natoms):
     return 2.0 * q2 * g / length * math.sqrt(1.0 / (math.pi * waves * natoms)) * math.exp(-(math.pi * waves / (g * length)) ** 2)
 
 
-def choose(vectors, given, g, q2, natoms, accuracy, numbers, most):
-    """The waves that LAMMPS takes for that box: how many there are; they go to `numbers (m, 3)` as far as there is room.
-
-    `given (3,)`: ``kmax/ewald``, zeros to choose; `most (2, 3)`: largest numbers along each direction, and before tilts made them larger.
-    """
+def edges(vectors, length):
+    """`length (3,)` of a box in LAMMPS's orientation, and its tilts xy, xz, yz."""
     a, b, c = vectors[0], vectors[1], vectors[2]
-    length = np.empty(3)
     length[0] = math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
     xy = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / length[0]
     xz = (a[0] * c[0] + a[1] * c[1] + a[2] * c[2]) / length[0]
     length[1] = math.sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2] - xy * xy)
     yz = (b[0] * c[0] + b[1] * c[1] + b[2] * c[2] - xy * xz) / length[1]
     length[2] = math.sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - xz * xz - yz * yz)
+    return xy, xz, yz
+
+
+def choose(vectors, given, g, q2, natoms, accuracy, numbers, most):
+    """The waves that LAMMPS takes for that box: how many there are; they go to `numbers (m, 3)` as far as there is room.
+
+    `given (3,)`: ``kmax/ewald``, zeros to choose; `most (2, 3)`: largest numbers along each direction, and before tilts made them larger.
+    """
+    length = np.empty(3)
+    xy, xz, yz = edges(vectors, length)
     tilted = abs(xy) + abs(xz) + abs(yz) > 1e-12 * length[0]
     reach = 0.0
     for d in range(3):
@@ -237,23 +243,30 @@ def stretched(vectors, stretch, out, inverse):
     inverse[:] = np.linalg.inv(out)
 
 
+def renew(box, stretch, given, g, strength, natoms, accuracy, room, most, waves, held, inverse, top):
+    """The waves of a box that is not the one that they are for: `room`, `most`, `waves`, `held`, `inverse`; at most `top` along an edge."""
+    stretched(box, stretch, held[:3], inverse)
+    found = choose(held[:3], given, g, strength, natoms, accuracy, room, most)
+    held[3, 1] = min(room.shape[0], found)
+    held[3, 2] = found > room.shape[0]
+    held[3, 0] = weigh(room[:int(held[3, 1])], held[:3], g, waves)
+    largest = max(most[0, 0], most[0, 1], most[0, 2])
+    for d in range(3):
+        most[0, d] = min(top, largest)
+
+
 def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_waves, held, inverse, table, all_sums, sums, constants, acc,
           energy, virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
     `constants`: g_ewald, energy scale, sum of charges, sum of their squares, stretch of the third vector, 1 for a slab's correction or 2
     for no force along z, the charge up to which atoms are passed over, then of the choice of waves: charges squared as energy times length,
-    atoms, accuracy; `held (4, 3)`: the box that the waves are for, its volume, and how many waves there are.
+    atoms, accuracy; `held (4, 3)`: the box that the waves are for, its volume, how many waves there are, and whether there is no room for
+    more.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
-    if tid == 0:
-        if not is_same(box, stretch, held):
-            stretched(box, stretch, held[:3], inverse)
-            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, constants[7], constants[8], constants[9], room, most))
-            held[3, 0] = weigh(room[:int(held[3, 1])], held[:3], g, all_waves)
-            top = table.shape[1] - 1
-            for d in range(3):
-                most[0, d] = min(top, max(most[0, 0], most[0, 1], most[0, 2]))
+    if tid == 0 and not is_same(box, stretch, held):
+        renew(box, stretch, given, g, constants[7], constants[8], constants[9], room, most, all_waves, held, inverse, table.shape[1] - 1)
     barrier(meeting)
     numbers, waves, sfac = room[:int(held[3, 1])], all_waves[:int(held[3, 1])], all_sums[:, :int(held[3, 1])]
     volume = held[3, 0]
@@ -285,8 +298,8 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_wav
 def chooser():
     """`choose`, compiled."""
     b = Builder("waves of an Ewald sum")
-    b.function(error, fast=True)
-    b.function(choose, fast=True)
+    for f in (error, edges, choose):
+        b.function(f, fast=True)
     return b.build().choose
 
 
@@ -298,8 +311,9 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (error, choose, weigh, phases, first_two, structure, fields, shares, is_same, slab):
+    for f in (error, edges, choose, weigh, phases, first_two, structure, fields, shares, is_same, slab):
         b.function(f, fast=True)
     b.function(stretched)
+    b.function(renew)
     b.function(ewald)
     return b.build().ewald

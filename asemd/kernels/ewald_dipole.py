@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels.ewald import choose, first_two, is_same, phases, stretched, weigh
+from asemd.kernels.ewald import choose, edges, first_two, is_same, phases, renew, stretched, weigh
 from asemd.kernels.generate import Builder
 from asemd.kernels.threads import barrier
 
@@ -153,15 +153,9 @@ def ewald_dipole(meeting, tid, x, f, q, lo, hi, box, origin, mu, row, torque, ro
     for, its volume, and how many waves there are; `torque (3, cap)`.
     """
     g, scale, squares, stretch, slabs = constants[0], constants[1], constants[3], constants[4], constants[5]
-    if tid == 0:
-        if not is_same(box, stretch, held):
-            stretched(box, stretch, held[:3], inverse)
-            density = constants[7] / size(held[:3])
-            held[3, 1] = min(room.shape[0], choose(held[:3], given, g, density, constants[8], constants[9], room, most))
-            held[3, 0] = weigh(room[:int(held[3, 1])], held[:3], g, all_waves)
-            top = table.shape[1] - 1
-            for d in range(3):
-                most[0, d] = min(top, max(most[0, 0], most[0, 1], most[0, 2]))
+    if tid == 0 and not is_same(box, stretch, held):
+        density = constants[7] / (stretch * size(box))
+        renew(box, stretch, given, g, density, constants[8], constants[9], room, most, all_waves, held, inverse, table.shape[1] - 1)
     barrier(meeting)
     numbers, waves, sfac = room[:int(held[3, 1])], all_waves[:int(held[3, 1])], all_sums[:, :int(held[3, 1])]
     phases(x, inverse, lo, hi, most[0], table)
@@ -200,8 +194,8 @@ def ewald_dipole(meeting, tid, x, f, q, lo, hi, box, origin, mu, row, torque, ro
 def chooser():
     """`choose` with the estimate for dipoles, compiled."""
     b = Builder("waves of an Ewald sum of dipoles")
-    b.function(error, fast=True)
-    b.function(choose, fast=True)
+    for f in (error, edges, choose):
+        b.function(f, fast=True)
     return b.build().choose
 
 
@@ -213,8 +207,9 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (error, size, choose, weigh, phases, first_two, polarisation, dipole_fields, is_same, dipole_slab):
+    for f in (error, size, edges, choose, weigh, phases, first_two, polarisation, dipole_fields, is_same, dipole_slab):
         b.function(f, fast=True)
     b.function(stretched)
+    b.function(renew)
     b.function(ewald_dipole)
     return b.build().ewald_dipole

@@ -4,11 +4,50 @@ from __future__ import annotations
 import math
 from functools import cache
 
-from asemd.kernels.ewald import BLOCK, fields, first_two, is_same, phases, shares, slab, stretched, structure, weigh
+import numpy as np
+
+from asemd.kernels.ewald import BLOCK, edges, fields, first_two, is_same, phases, shares, slab, stretched, structure, weigh
 from asemd.kernels.generate import Builder
 from asemd.kernels.threads import barrier
 
 ENERGY = PER_ATOM = False
+
+
+def error(waves, length, g, q2, b2, natoms):
+    """Estimated error of forces of both sums by so many waves along an edge."""
+    u = math.pi * waves / (g * length)
+    bell = math.exp(-u * u)
+    return (2.0 * q2 * g / length * math.sqrt(1.0 / (math.pi * waves * natoms)) * bell
+            + 4.0 * b2 * g**7 / 3.0 * math.sqrt(1.0 / (math.pi * natoms)) * bell * (u + 1.0))
+
+
+def choose(vectors, g, q2, b2, natoms, accuracy, numbers):
+    """The waves that LAMMPS takes for that box: how many there are, and the largest number; they go to `numbers (m, 3)` as far as there
+    is room."""
+    length = np.empty(3)
+    edges(vectors, length)
+    reach, top = 0.0, 1
+    for d in range(3):
+        n = 1
+        while error(n, length[d], g, q2, b2, natoms) > accuracy:
+            n += 1
+        top = max(top, n)
+        reach = max(reach, 1.00001 * (2.0 * math.pi * n / length[d]) ** 2)
+    turn = 2.0 * math.pi * np.linalg.inv(vectors)
+    m = 0
+    for n0 in range(top + 1):
+        for n1 in range(-top, top + 1):
+            for n2 in range(-top, top + 1):
+                if n0 == 0 and (n1 < 0 or (n1 == 0 and n2 <= 0)):
+                    continue
+                k0 = turn[0, 0] * n0 + turn[0, 1] * n1 + turn[0, 2] * n2
+                k1 = turn[1, 0] * n0 + turn[1, 1] * n1 + turn[1, 2] * n2
+                k2 = turn[2, 0] * n0 + turn[2, 1] * n1 + turn[2, 2] * n2
+                if k0 * k0 + k1 * k1 + k2 * k2 <= reach:
+                    if m < numbers.shape[0]:
+                        numbers[m, 0], numbers[m, 1], numbers[m, 2] = n0, n1, n2
+                    m += 1
+    return m, top
 
 
 def weigh_dispersion(numbers, volume, g, waves):
@@ -28,24 +67,29 @@ def weigh_dispersion(numbers, volume, g, waves):
         w[7], w[8], w[9] = v * k0 * k1, v * k0 * k2, v * k1 * k2
 
 
-def sums_over_waves(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, signs, numbers, most, waves, held, inverse, table, values,
-                    all_sums, sums, constants, acc, energy, virial):
+def sums_over_waves(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, signs, room, most, all_waves, held, inverse, table, values,
+                    every_sum, sums, constants, choice, acc, energy, virial):
     """All of it for one thread, of charges or, where `factors (ntypes + 1, n)` has rows, of these numbers; `signs (n,)` of
     their products.
 
     `constants` as in `asemd.kernels.ewald.ewald`, then the sums of C6 of all pairs and of atoms with themselves, and those of each of the
-    numbers.
+    numbers; `choice (4,)`: what `choose` takes after the splitting parameter; `held (4, 3)` as in `asemd.kernels.ewald.ewald`.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     attraction = factors.shape[0] > 0
-    if tid == 0:
-        if not is_same(box, stretch, held):
-            stretched(box, stretch, held[:3], inverse)
-            held[3, 0] = weigh(numbers, held[:3], g, waves)
-            if attraction:
-                weigh_dispersion(numbers, held[3, 0], g, waves)
+    if tid == 0 and not is_same(box, stretch, held):
+        stretched(box, stretch, held[:3], inverse)
+        found, top = choose(held[:3], g, choice[0], choice[1], choice[2], choice[3], room)
+        held[3, 2] = found > room.shape[0]
+        found = min(found, room.shape[0])
+        held[3, 1] = found
+        most[:] = min(top, table.shape[1] - 1)
+        held[3, 0] = weigh(room[:found], held[:3], g, all_waves)
+        if attraction:
+            weigh_dispersion(room[:found], held[3, 0], g, all_waves)
     barrier(meeting)
-    volume, n = held[3, 0], values.shape[0]
+    volume, n, m = held[3, 0], values.shape[0], int(held[3, 1])
+    numbers, waves, all_sums = room[:m], all_waves[:m], every_sum[:, :, :m]
     self_energy, all_energy = -scale * g / math.sqrt(math.pi), -0.5 * scale * math.pi / (g * g * volume)
     all_pressure = -all_energy        # LAMMPS's sign for charges that do not add up to 0
     if attraction:
@@ -91,6 +135,15 @@ def sums_over_waves(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, 
 
 
 @cache
+def chooser():
+    """`choose`, compiled."""
+    b = Builder("waves of an Ewald sum with dispersion")
+    for f in (error, edges, choose):
+        b.function(f, fast=True)
+    return b.build().choose
+
+
+@cache
 def kernel(level: int):
     """`sums_over_waves` with that level, see `asemd.kspace.term.KSpaceTerm`."""
     b = Builder("Ewald summation of charges and dispersion")
@@ -98,7 +151,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (weigh, weigh_dispersion, phases, first_two, structure, fields, shares, is_same, slab):
+    for f in (error, edges, choose, weigh, weigh_dispersion, phases, first_two, structure, fields, shares, is_same, slab):
         b.function(f, fast=True)
     b.function(stretched)
     b.function(sums_over_waves)

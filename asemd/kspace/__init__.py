@@ -92,6 +92,9 @@ class KSpace(ABC):
             raise InputError(f"{name} needs three dimensions, this scene has two")
         if system.q is None and self.coulomb:
             raise InputError(f"{name} needs atom attribute q: use atom_style charge or full")
+        if self.slab == "ew2d" or "wire" in self.given:
+            what = "slab ew2d" if self.slab == "ew2d" else "wire"
+            raise InputError(f"{name} does not take kspace_modify {what}, which is for solvers of electrodes; for slabs use slab 3.0")
         if self.slab is not None:
             if not self.takes_slab:
                 raise InputError(f"{name} does not take kspace_modify slab")

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from asemd.errors import SimulationError
 from asemd.kernels import ewald
 from asemd.kspace import KSpace
 from asemd.kspace.term import KSpaceTerm
@@ -22,11 +23,22 @@ class Ewald(KSpace):
     style = flag = "ewald"
     groups = True
 
+    chooser = staticmethod(ewald.chooser)
+
     def choose(self, system):
         self.kmax = np.array(self.modify["kmax/ewald"], np.int64)
         vectors, self.most = system.box.cell * np.array([1.0, 1.0, self.stretch])[:, None], np.zeros((2, 3), np.int64)
-        arguments = vectors, self.kmax, self.g_ewald, self.q2, float(self.n), self.accuracy
-        self.waves = ewald.chooser()(*arguments, np.zeros((0, 3), np.int64), self.most)
+        arguments = vectors, self.kmax, self.g_ewald, self.strength, float(self.n), self.accuracy
+        self.waves = self.chooser()(*arguments, np.zeros((0, 3), np.int64), self.most)
+
+    @property
+    def strength(self) -> float:
+        """What the estimate of the error of the sum takes besides the splitting parameter."""
+        return self.q2
+
+    def follow(self, waves: int, most: np.ndarray) -> None:
+        """The box takes so many waves now."""
+        self.waves, self.most = waves, most.copy()
 
     def lines(self):
         lpr = math.sqrt(sum(ewald.error(m, length, self.g_ewald, self.q2, self.n) ** 2 for m, length in zip(self.most[1], self.prd)) / 3.0)
@@ -43,20 +55,41 @@ class Ewald(KSpace):
         return [EwaldTerm(self)]
 
 
-class EwaldTerm(KSpaceTerm):
+class Waves(KSpaceTerm):
+    """A sum over waves, as many as the box takes: a box that grows takes more."""
+
+    held: np.ndarray
+    most: np.ndarray
+
+    def make_waves(self, engine, count: int, top: int) -> tuple[int, int]:
+        """Room for waves and how many those are, and the largest number along an edge; where the box moves for twice its volume."""
+        if engine.box_moves:
+            count, top = 2 * count + 64, int(1.3 * top) + 2
+        self.numbers, self.waves = np.zeros((count, 3), np.int64), np.zeros((count, 10))
+        self.held, self.inverse = np.zeros((4, 3)), np.zeros((3, 3))
+        return count, top
+
+    def rebuild(self, engine):
+        if self.ready and self.held[3, 2]:
+            raise SimulationError(f"kspace_style {self.solver.style}: the box grew so fast that there is no room for the waves it takes; "
+                                  "let it grow more slowly")
+        if self.ready and engine.box_moves and self.held[3, 1] > 0.7 * len(self.numbers):
+            self.solver.follow(int(self.held[3, 1]), self.most)
+            self.prepare(engine)
+        super().rebuild(engine)
+
+
+class EwaldTerm(Waves):
     """The sum over waves."""
 
     make_kernel = staticmethod(ewald.kernel)
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads
-        # a box that grows takes more waves: room for one of twice the volume
-        m, top = (2 * s.waves + 64, int(1.3 * s.most[0].max()) + 2) if engine.box_moves else (s.waves, int(s.most[0].max()))
-        self.numbers, self.waves = np.zeros((m, 3), np.int64), np.zeros((m, 10))
-        self.held, self.inverse = np.zeros((4, 3)), np.zeros((3, 3))
+        m, top = self.make_waves(engine, s.waves, int(s.most[0].max()))
         self.sfac, self.sums, self.most = np.zeros((nth, m, 2)), np.zeros((nth, 8)), np.zeros((2, 3), np.int64)
         self.table = np.zeros((3, 1 + top, 2, 0))
-        self.constants = np.append(self.constants, [s.q2, s.n, s.accuracy])
+        self.constants = np.append(self.constants[:7], [s.q2, s.n, s.accuracy])
 
     def make_room(self, slots):
         if self.table.shape[3] < slots:

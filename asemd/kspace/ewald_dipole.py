@@ -72,11 +72,11 @@ class EwaldDipole(Ewald):
                 return g
         return 0.0
 
-    def choose(self, system):
-        self.kmax = np.array(self.modify["kmax/ewald"], np.int64)
-        vectors, self.most = system.box.cell * np.array([1.0, 1.0, self.stretch])[:, None], np.zeros((2, 3), np.int64)
-        arguments = vectors, self.kmax, self.g_ewald, self.mu2 / ewald_dipole.size(vectors), float(self.n), self.accuracy
-        self.waves = ewald_dipole.chooser()(*arguments, np.zeros((0, 3), np.int64), self.most)
+    chooser = staticmethod(ewald_dipole.chooser)
+
+    @property
+    def strength(self):
+        return self.mu2 / self.volume
 
     @property
     def real_error(self):

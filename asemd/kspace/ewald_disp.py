@@ -5,7 +5,7 @@ $$ E_6 = -\frac{\pi^{3/2}}{24 V} \sum_{k \neq 0} k^3 \Big[ \sqrt{\pi} \, \mathrm
    \qquad b = \frac{k}{2 g} $$
 
 with C_6 of two types as a sum of products: of its roots for geometric mixing, of the eigenvectors of the matrix of all C_6 for arithmetic
-mixing. Both sums have the same splitting parameter and waves, as many as LAMMPS takes for the box at the start of a run. The pressure of
+mixing. Both sums have the same splitting parameter and waves, as many as LAMMPS takes for the box as it is. The pressure of
 charges that do not add up to 0 has the sign that it has in LAMMPS.  In 't Veld, Ismail, Grest, J. Chem. Phys. 127, 144711 (2007).
 """
 from __future__ import annotations
@@ -18,8 +18,7 @@ import numpy as np
 from asemd.errors import InputError, InputWarning
 from asemd.kernels import ewald_disp
 from asemd.kspace.dispersion import dispersion_of
-from asemd.kspace.ewald import Ewald
-from asemd.kspace.term import KSpaceTerm
+from asemd.kspace.ewald import Ewald, Waves
 
 
 class EwaldDisp(Ewald):
@@ -69,32 +68,17 @@ class EwaldDisp(Ewald):
         return (4.0 * math.pi * self.b2 * g**4 / self.inner.prod() / math.sqrt(self.n) * math.erfc(a)
                 * (6.0 / a**5 + 6.0 / a**3 + 3.0 / a + a) - self.accuracy)
 
-    def error(self, waves: int, length: float) -> float:
-        """Estimated error of forces of both sums by so many waves along an edge."""
-        g = self.g_ewald
-        u = math.pi * waves / (g * length)
-        bell = math.exp(-u * u)
-        return (2.0 * self.q2 * g / length * math.sqrt(1.0 / (math.pi * waves * self.n)) * bell
-                + 4.0 * self.b2 * g**7 / 3.0 * math.sqrt(1.0 / (math.pi * self.n)) * bell * (u + 1.0))
-
     def choose(self, system):
         if self.accuracy >= 1.0:
             raise InputError(f"kspace_style {self.style}: an accuracy of forces of {self.accuracy:g} is too low, it must be below 1")
+        if self.modify["gewald/disp"] not in (0.0, self.g_ewald):
+            raise InputError(f"kspace_style {self.style} has one splitting parameter: use kspace_modify gewald, not gewald/disp")
         vectors = system.box.cell * np.array([1.0, 1.0, self.stretch])[:, None]
-        turn = 2.0 * math.pi * np.linalg.inv(vectors)
-        most = []
-        for length in self.prd:
-            m = 1
-            while self.error(m, length) > self.accuracy:
-                m += 1
-            most.append(m)
-        reach = 1.00001 * max((2.0 * math.pi / length * m) ** 2 for m, length in zip(most, self.prd))
-        axis = np.arange(-max(most), max(most) + 1)
-        n = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
-        half = (n[:, 0] > 0) | ((n[:, 0] == 0) & ((n[:, 1] > 0) | ((n[:, 1] == 0) & (n[:, 2] > 0))))
-        k = n @ turn.T
-        self.numbers = np.ascontiguousarray(n[half & ((k * k).sum(axis=1) <= reach)], np.int64)
-        self.top = max(most)
+        self.choice = np.array([self.q2, self.b2, self.n, self.accuracy])
+        self.waves, self.top = ewald_disp.chooser()(vectors, self.g_ewald, *self.choice, np.zeros((0, 3), np.int64))
+
+    def follow(self, waves, most):
+        self.waves, self.top = waves, int(most.max())
 
     @property
     def constants(self):
@@ -108,7 +92,7 @@ class EwaldDisp(Ewald):
         return out + ([WavesTerm(self, self.dispersion)] if self.dispersion is not None else [])
 
 
-class WavesTerm(KSpaceTerm):
+class WavesTerm(Waves):
     """The sum over waves of charges, or of the numbers whose products are C6."""
 
     make_kernel = staticmethod(ewald_disp.kernel)
@@ -129,17 +113,16 @@ class WavesTerm(KSpaceTerm):
         if self.dispersion is not None:
             self.factors, self.signs = self.dispersion.factors, self.dispersion.signs
             everyone, own, each = self.dispersion.sums(engine.system.type)
-            self.constants = np.concatenate([self.constants, [everyone, own], each])
-        m, n = len(s.numbers), self.factors.shape[1]
-        self.waves, self.held, self.inverse = np.zeros((m, 10)), np.zeros((4, 3)), np.zeros((3, 3))
-        self.most = np.full(3, s.top, np.int64)
+            self.constants = np.concatenate([self.constants[:7], [everyone, own], each])
+        m, top = self.make_waves(engine, s.waves, s.top)
+        n, self.most = self.factors.shape[1], np.zeros(3, np.int64)
         self.all_sums, self.sums = np.zeros((nth, n, m, 2)), np.zeros((nth, 8))
-        self.values, self.table = np.zeros((n, 0)), np.zeros((3, 1 + s.top, 2, 0))
+        self.values, self.table = np.zeros((n, 0)), np.zeros((3, 1 + top, 2, 0))
 
     def make_room(self, slots):
         if self.table.shape[3] < slots:
             self.table, self.values = np.zeros((*self.table.shape[:3], slots)), np.zeros((len(self.values), slots))
 
     def of_solver(self, engine, tid):
-        return (engine.state.type, self.factors, self.signs, self.solver.numbers, self.most, self.waves, self.held, self.inverse,
-                self.table, self.values, self.all_sums, self.sums, self.constants)
+        return (engine.state.type, self.factors, self.signs, self.numbers, self.most, self.waves, self.held, self.inverse,
+                self.table, self.values, self.all_sums, self.sums, self.constants, self.solver.choice)

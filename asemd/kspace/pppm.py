@@ -64,6 +64,8 @@ class PPPM(KSpace):
         self.order = self.modify["order"] or 5
         if not 2 <= self.order <= 7:
             raise InputError(f"kspace_style {self.style}: order must be 2 to 7, not {self.order}")
+        if self.order < self.modify["minorder"]:
+            raise InputError(f"kspace_style {self.style}: order {self.order} is less than kspace_modify minorder {self.modify['minorder']}")
         self.ad = self.modify["diff"] == "ad"
         if self.ad and self._tilted(system):
             raise InputError(f"kspace_style {self.style}: kspace_modify diff ad needs a box that is not triclinic")
