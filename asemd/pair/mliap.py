@@ -26,6 +26,7 @@ class MLIAP(SNAP):
     """Style mliap; its settings have the files."""
 
     head_words = ""
+    coefficients = ()
 
     def parse_settings(self, words):
         what, values, k = f"pair_style {self.name}", {}, 0

@@ -100,6 +100,7 @@ class SNAP(ManyBody):
     """Style snap."""
 
     head_words = "COEFFICIENTS PARAMETERS"
+    coefficients: tuple[str, ...] = ("scale",)      # what ``fix adapt`` may change; of types with themselves it counts
     flat_room = True
     like_lammps = False
 
@@ -134,6 +135,9 @@ class SNAP(ManyBody):
                                  f"{second.name} ask for {count + 1}")
         return {"elements": elements, "by_element": data, "parameters": p, "files": (file, second), "tables": tables}, file
 
+    def join(self, old, new):
+        return {**new, "scale": 1.0}
+
     def report(self, coeff):
         data = coeff["data"]
         first, second = ([f"Reading potential file {f.name} with DATE: {f.date}"] if f.date else [] for f in data["files"])
@@ -165,7 +169,7 @@ class SNAP(ManyBody):
             k = named.index(e)
             inner = [p["sinner"][k], p["dinner"][k]] if p["switchinnerflag"] else [0.0, 0.0]
             by_type[t] = [k if p["chemflag"] else 0, radius, weight, *inner]
-            beta[t] = unit * values
+            beta[t] = unit * filled.get((t, t), {}).get("scale", 1.0) * values
         for i, j in filled:
             rows[0, i, j] = rows[0, j, i] = ((by_type[i, 1] + by_type[j, 1]) * p["rcutfac"]) ** 2
         each = np.arange(chem**3 * len(tables.components))[:, None]

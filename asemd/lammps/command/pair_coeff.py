@@ -9,7 +9,8 @@ def report_files(session, args) -> None:
     """What LAMMPS's log says about potential files, those of this command."""
     for use in session.scene.interactions.uses["pair"]:
         if use.style.many:
-            for c in {c["file"]: c for c in use.coeff.values() if "file" in c and set(c.get("head", [c["file"]])) <= set(args)}.values():
+            told = [c for c in use.coeff.values() if "file" in c and {*c.get("head", [c["file"]]), *c.get("element", ())} <= set(args)]
+            for c in {c["file"]: c for c in told}.values():
                 file, units = c["units"], session.scene.units
                 for line in use.style.report(c):
                     session.print(line)
