@@ -198,3 +198,23 @@ def test_a_box_that_becomes_narrower_than_the_reach_of_the_forces(integrate):
     mine, fresh = loop.engine.collect(), Engine(loop.system.select(np.arange(loop.system.n)), loop.interactions, Settings()).compute()
     assert mine.potential == pytest.approx(fresh.potential, rel=1e-12)
     assert_allclose(mine.forces, fresh.forces, rtol=0, atol=1e-10 * np.abs(fresh.forces).max())
+
+
+def test_empty_slots_stay_where_the_box_moves():
+    """They are no reason to build a list."""
+    session = asemd("""
+        units lj
+        lattice fcc 0.8
+        region box block 0 4 0 4 0 4
+        create_box 1 box
+        create_atoms 1 box
+        mass 1 1
+        velocity all create 1.0 4711
+        pair_style lj/cut 1.5
+        pair_coeff 1 1 1 1
+        fix 1 all npt temp 1 1 0.3 iso 0 3 1
+        run 3""")
+    e = session.loop.engine
+    empty = e.state.row[:e.ns] < 0
+    assert e.mode == "cluster" and empty.any()
+    assert np.array_equal(e.state.x[:, :e.ns][:, empty], e.held[:, :e.ns][:, empty])

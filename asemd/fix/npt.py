@@ -125,16 +125,10 @@ def move_in_box(th, s, bit, q, b, m):
                 x[i] += th.dt * v[i] if mask[i] & bit != 0 else 0.0
             continue
         before, first, between, second, after = b[11, d], m[2, d, d], b[12, d], m[3, d, d], b[13, d]
-        if dilated == 1:
-            for i in range(x.size):
-                y = between + first * (x[i] - before)
-                y += th.dt * v[i] if mask[i] & bit != 0 else 0.0
-                x[i] = after + second * (y - between)
-        else:
-            for i in range(x.size):
-                y = between + first * (x[i] - before) if mask[i] & dilated != 0 else x[i]
-                y += th.dt * v[i] if mask[i] & bit != 0 else 0.0
-                x[i] = after + second * (y - between) if mask[i] & dilated != 0 else y
+        for i in range(x.size):        # empty slots, in no group, stay: lists are built when a slot has moved far enough
+            y = between + first * (x[i] - before) if mask[i] & dilated != 0 else x[i]
+            y += th.dt * v[i] if mask[i] & bit != 0 else 0.0
+            x[i] = after + second * (y - between) if mask[i] & dilated != 0 else y
     if shear:
         take_along(th, s, dilated, b[12], m[3], b[13], True)
 
