@@ -71,7 +71,7 @@ def find_file(name: str, what: str) -> Path:
     for candidate in (path, *(folder / path.name for folder in folders)):
         if candidate.is_file():
             return candidate
-    raise InputError(f"{what}: cannot open file {name}: no such file")
+    raise InputError(f"{what}: cannot open file {name}: no such file here or in a folder of LAMMPS_POTENTIALS")
 
 
 def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str, texts: Collection[str] = (),
