@@ -83,3 +83,14 @@ def test_check_and_page(script):
             atoms.get_forces()
     else:
         assert np.isfinite(atoms.get_forces()).all()
+
+
+def test_net_charge_is_told(tmp_path, monkeypatch):
+    """Once, and not of a neutral box."""
+    monkeypatch.chdir(tmp_path)
+    for charge, count in ((-0.4, 1), (-0.5, 0)):
+        text = ATOMS.format(**SALT, more=LONG.format("pppm")) + f"set type 2 charge {charge}\nrun 0\nrun 0\n"
+        with warnings.catch_warnings(record=True), Lammps(cmdargs=["-screen", "none", "-log", "log"]) as lmp:
+            warnings.simplefilter("always")
+            lmp.commands_string(text)
+        assert (tmp_path / "log").read_text().count("WARNING: System is not charge neutral, net charge = 2.7") == count

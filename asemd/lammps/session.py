@@ -67,6 +67,7 @@ class Session:
                  screen: Callable[[str], None] | None = None, passive: bool = False):
         self.switches = switches or Switches()
         self.passive = passive
+        self.told_charge = False      # that the box is not neutral
         self.scene = scene or self._fresh_scene()
         if screen is None and self.switches.screen != "none" and not passive:
             screen = to_stdout if self.switches.screen is None else _to_file(self.switches.screen)

@@ -14,6 +14,8 @@ from asemd.kspace import solve
 from asemd.pairing import complete
 from asemd.topology import Topology
 
+NEUTRAL = 1e-5      # net charges below are rounding
+
 
 def report_special(session) -> None:
     """Which atoms are one, two and three bonds apart; nothing for atoms without bonds."""
@@ -93,7 +95,13 @@ def report_mixing(session, command: str = "") -> None:
     except InputError:      # what is missing is told when a run needs it
         return
     if solver is not None and (lines := solver.lines()):
-        session.print("\n".join(lines))
+        charge = solver.qsum if solver.coulomb else 0.0
+        session.print(lines[0])
+        if abs(charge) > NEUTRAL and not session.told_charge:
+            session.warn(f"System is not charge neutral, net charge = {charge:.8g}")
+            session.told_charge = True
+        if lines[1:]:
+            session.print("\n".join(lines[1:]))
     if not scene.interactions.hybrid["pair"] and uses[0].style.many:
         return
     mixed = sum(pair not in use.coeff for use, filled in terms if _mixes_energies(use.style) for pair in filled)
