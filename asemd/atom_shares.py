@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels import rows as by_row
@@ -13,7 +14,7 @@ from asemd.kernels.state import aligned
 from asemd.manybody_term import ManyBodyTerm
 from asemd.result import Result
 from asemd.site_terms import OnSites
-from asemd.term import PairRowsTerm, PairTerm
+from asemd.term import PairRowsTerm
 
 if TYPE_CHECKING:
     from asemd.engine import Engine

@@ -10,6 +10,7 @@ from numba import config
 from asemd import atom_shares, faults, live_box
 from asemd import units as unit_styles
 from asemd.bond_term import Bonds, bond_terms
+from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
@@ -25,7 +26,7 @@ from asemd.noise_term import list_term
 from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
 from asemd.site_terms import made
-from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, PairTerm, bonded_terms, store_torques
+from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, bonded_terms, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 SLOTTED = 9           # the first fields of a `State`, those by slot

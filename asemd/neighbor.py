@@ -26,12 +26,14 @@ def kernels(ortho: bool, mark: bool = False):
     b.constant("CLUSTER", CLUSTER)
     b.constant("ORTHO", ortho)
     b.constant("MARK", mark)
+    b.constant("TRACK", False)
     b.constant("SLOT_BITS", cluster.SLOT_BITS)
-    for f in (cluster.wrap, cluster.sort, cluster.near_columns, cluster.build, cluster_rows.exclude, cluster_rows.count,
+    pieces = cluster.reached, cluster.drop, cluster.arrange
+    for f in (cluster.wrap, cluster.sort, cluster.near_columns, *pieces, cluster.build, cluster_rows.exclude, cluster_rows.count,
               cluster_rows.expand, cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather,
               rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear,
               rebuild.closest, rebuild.mark_special, rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs):
-        b.function(f, fast=f in (cluster.near_columns, cluster.build, cluster_rows.rows))
+        b.function(f, fast=f in (cluster.near_columns, *pieces, cluster.build, cluster_rows.rows), inline=f in pieces)
     return b.build()
 
 
@@ -50,7 +52,7 @@ def _counters() -> np.ndarray:
     return table
 
 
-_COUNTERS = _counters()
+COUNTERS = _counters()
 
 
 class BinCell:
@@ -201,7 +203,7 @@ class ClusterList:
                 results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
                                      c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.width, ns, self.row_length[t], _COUNTERS, self.hide[t])
+                                     self.work_codes[t], self.width, ns, self.row_length[t], COUNTERS, self.hide[t])
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t], state.x, self.shifts,

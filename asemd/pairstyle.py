@@ -345,16 +345,16 @@ def largest_radii(system) -> tuple[float, ...]:
     return tuple(out.tolist())
 
 
-def with_series(style: PairStyle, tables: PairTables) -> tuple[PairStyle, np.ndarray]:
+def with_series(style: PairStyle, tables: PairTables, single: bool = False) -> tuple[PairStyle, np.ndarray]:
     """The style for kernels over clusters, and its constants: functions that have a twin which costs less there give way to it.
 
-    A function's attribute ``series`` holds the twin, which takes other constants, and what makes these of its own and the cutoff (None:
-    the twin is not good enough). What follows the constants of the parts stays at the end.
+    A function's attribute ``series`` holds, for double and for `single` precision, the twin, which takes other constants, and what makes
+    these of its own and the cutoff (None: the twin is not good enough). What follows the constants of the parts stays at the end.
     """
     parts, numbers, at, row = [], [], 0, 0
     for part in style.parts:
         own = tables.constants[at:at + len(part.constants)]
-        twin, make = getattr(part.function, "series", (None, None))
+        twin, make = getattr(part.function, "series", {}).get(single, (None, None))
         values = make(*own, math.sqrt(float(tables.rows[row].max()))) if twin else None
         parts.append(part if values is None else replace(make_part(twin, part.cut, set(part.rows)), long=part.long))
         numbers += list(own) if values is None else values

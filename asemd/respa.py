@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from asemd.cluster_term import PairTerm
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
@@ -23,7 +24,7 @@ from asemd.kernels.hooks import Calls
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
 from asemd.neighbor import ClusterList
-from asemd.term import PairListTerm, PairRowsTerm, PairTerm
+from asemd.term import PairListTerm, PairRowsTerm
 
 FORCES = ("bond", "angle", "dihedral", "improper", "pair", "kspace")
 PIECES = ("inner", "middle", "outer")

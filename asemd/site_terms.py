@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from asemd.cluster_term import PairTerm
 from asemd.kernels.charge_sites import on_sites
 from asemd.kernels.state import aligned
-from asemd.term import PairListTerm, PairRowsTerm, PairTerm
+from asemd.term import PairListTerm, PairRowsTerm
 
 if TYPE_CHECKING:
     from asemd.charge_sites import ChargeSites

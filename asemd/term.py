@@ -11,7 +11,6 @@ from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.pair_scaled import scaled
 from asemd.kernels.state import aligned
 from asemd.pairing import NO_REPULSION
-from asemd.pairstyle import with_series
 
 BONDED_KEY = {"bond": "ebond", "angle": "eangle", "dihedral": "edihed", "improper": "eimp"}
 
@@ -143,77 +142,6 @@ class FactorTerm(Term):
         """Take up the present factor of the pair style."""
         if self.factor is not None:
             self.factor[0] = self.owner.use.factor
-
-
-class PairTerm(FactorTerm):
-    """A pair style over the cluster list; `piece` of any pair term: only this part of a force that is split (`asemd.kernels.pair`)."""
-
-    category = "pair"
-    piece = ""
-    share_room: tuple[np.ndarray, np.ndarray] | None = None      # see `asemd.atom_shares`
-
-    def __init__(self, term, single: bool):
-        self.owner, self.style, self.tables, self.single = term, term.style, term.tables, single
-        self.uniform = pair_kernels.uniform_rows(self.tables.rows)
-        self.fast = with_series(self.style, self.tables)[0]
-        self.row = 0
-        self.tables4 = np.zeros((1, 2, 0, 4))
-        self._views: dict[int, tuple] = {}
-
-    def kernel(self, energy, per_atom, virial=False):
-        return self._scaled(pair_kernels.cluster_kernel(self.fast, self.uniform, self.row, energy=energy, exclude=self.exclude,
-                                                        single=self.single, outdated=self.outdated, piece=self.piece,
-                                                        virial=virial or energy and not self.single)[0],
-                            energy or virial)
-
-    def virial_kernel(self):
-        return self.kernel(False, False, virial=True)
-
-    def clusters(self, engine):
-        """The `asemd.neighbor.ClusterList` it runs over."""
-        return engine.list
-
-    def rebuild(self, engine):
-        clusters, slots = self.clusters(engine), engine.state.x.shape[1]
-        if self.tables4.shape[2] != slots:
-            self.tables4 = aligned((engine.threads, 2, slots, 4))
-        self.outdated = engine.settings.outdated
-        self.exclude = engine.exclusions.partners is not None
-        row = pair_kernels.row_length(clusters.longest())
-        if row > self.row:
-            engine.changed = True
-            self.row = pair_kernels.row_length(int(1.15 * clusters.longest()))
-            real = np.float32 if self.single else np.float64
-            size = (7 + 2 * pair_kernels.buffer_rows(len(self.uniform) - sum(self.uniform)) + 1) * self.row
-            self.buffer = aligned((engine.threads, -(-size // 16) * 16), real)
-            self.types = np.zeros((engine.threads, self.row), np.uint32)
-            self.saved = np.zeros((engine.threads, self.row), real)
-            self.rows = pair_kernels.varying_rows(self.tables.rows, self.uniform)
-            self.p = self.scalars()
-
-    def scalars(self) -> tuple:
-        """Coefficients that are the same for all pairs of types, and constants, as the kernel takes them."""
-        return pair_kernels.cluster_tuple(self.tables.rows, with_series(self.style, self.tables)[1], self.uniform, self.single)
-
-    def arguments(self, engine, tid):
-        s, c = engine.state, self.clusters(engine)
-        f, acc = self._sums(engine, tid)
-        first, entries, excluded_first, excluded, buffer, types, saved, hide = self._mine(
-            tid, c.first, c.entries, c.excluded_first, c.excluded, self.buffer, self.types, self.saved, c.hide)
-        return self._with_factor(engine, tid, (
-            s.x, f, s.q, s.type, first, entries, c.own, c.span, c.unshifted, c.shifts4, excluded_first, excluded, int(c.bounds[tid]),
-            int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, buffer, types, saved, *self.tables4[tid], acc, hide,
-            engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1]))
-
-    def _mine(self, tid: int, *arrays: np.ndarray) -> tuple[np.ndarray, ...]:
-        """A thread's rows of arrays; the same views as long as the arrays are the same, for new ones take time to be packed."""
-        known = self._views.get(tid)
-        if known is None or any(a is not b for a, b in zip(known[0], arrays)):
-            known = self._views[tid] = arrays, tuple(a[tid] for a in arrays)
-        return known[1]
-
-    def describe(self, engine, item, value):
-        return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
 
 
 class PairRowsTerm(FactorTerm):

@@ -6,8 +6,8 @@ cluster the images on the positive side. An entry is slot number + (shift code <
 no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
-generated module, and so is MARK (which atoms are beyond reach is wanted). What follows from a list (exclusions, plain pairs, rows of atoms)
-is in `asemd.kernels.cluster_rows`.
+generated module, and so are MARK (which atoms are beyond reach is wanted) and TRACK, see `arrange`. What follows from a list (exclusions,
+plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in `asemd.kernels.prune`.
 """
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 CLUSTER = 8
-ORTHO = MARK = True
+ORTHO = MARK = TRACK = True
 SLOT_BITS = 0x3FFFFFF
 
 
@@ -144,6 +144,99 @@ def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2)
     return m
 
 
+def reached(tx, ty, tz, codes, nt, x, y, z, s, m, r2):
+    """Sets bits 32 to 39 of the codes of candidates 0 to nt - 1: which of the first m atoms of the cluster, at place s of x, y, z, reach
+    them. A sum in floating point, written out, vectorises."""
+    gone = 1e150
+    x0, y0, z0 = (x[s + 0], y[s + 0], z[s + 0]) if m > 0 else (gone, gone, gone)
+    x1, y1, z1 = (x[s + 1], y[s + 1], z[s + 1]) if m > 1 else (gone, gone, gone)
+    x2, y2, z2 = (x[s + 2], y[s + 2], z[s + 2]) if m > 2 else (gone, gone, gone)
+    x3, y3, z3 = (x[s + 3], y[s + 3], z[s + 3]) if m > 3 else (gone, gone, gone)
+    x4, y4, z4 = (x[s + 4], y[s + 4], z[s + 4]) if m > 4 else (gone, gone, gone)
+    x5, y5, z5 = (x[s + 5], y[s + 5], z[s + 5]) if m > 5 else (gone, gone, gone)
+    x6, y6, z6 = (x[s + 6], y[s + 6], z[s + 6]) if m > 6 else (gone, gone, gone)
+    x7, y7, z7 = (x[s + 7], y[s + 7], z[s + 7]) if m > 7 else (gone, gone, gone)
+    for t in range(nt):
+        near = 0.0
+        a, b, c = tx[t] - x0, ty[t] - y0, tz[t] - z0
+        near += 1.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x1, ty[t] - y1, tz[t] - z1
+        near += 2.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x2, ty[t] - y2, tz[t] - z2
+        near += 4.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x3, ty[t] - y3, tz[t] - z3
+        near += 8.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x4, ty[t] - y4, tz[t] - z4
+        near += 16.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x5, ty[t] - y5, tz[t] - z5
+        near += 32.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x6, ty[t] - y6, tz[t] - z6
+        near += 64.0 if a * a + b * b + c * c <= r2 else 0.0
+        a, b, c = tx[t] - x7, ty[t] - y7, tz[t] - z7
+        near += 128.0 if a * a + b * b + c * c <= r2 else 0.0
+        codes[t] |= np.int64(np.int32(near)) << 32
+
+
+def drop(codes, nt):
+    """Take out candidates that nobody reaches; returns how many are left. The counter stays for them: no branches to mispredict."""
+    kept = 0
+    for t in range(nt):
+        codes[np.uint64(kept)] = codes[t]
+        kept += ((codes[t] >> 32) & 0xFF) != 0
+    return kept
+
+
+def arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, empty, hide):
+    """The row of cluster `ci` from ``entries[start]`` on, as `build` says, from its candidates; returns where it ends.
+
+    With MARK `hide` gets the atoms that do not reach an entry; with TRACK, ``hide[old]`` the place in the row of what bits 40 on of a
+    code say was at place `old`.
+    """
+    # counting sort by first + last pair in need; the counters are fields of two numbers, so that none waits for memory
+    below = above = np.uint64(0)
+    for t in range(kept):
+        w = np.uint64((codes[np.uint64(t)] >> 32) & 0xFF)
+        below += sorting[0, w]
+        above += sorting[1, w]
+    before = 0
+    for k in range(8):
+        here = np.int64(((below if k < 4 else above) >> np.uint64(16 * (k % 4))) & np.uint64(0xFFFF))
+        tally[k] = before
+        before += here
+    mine = (tally[3] // width) * width      # the cluster's own place; what it displaces goes behind it
+    for pair in range(4):
+        span[ci, 2 * pair] = min((tally[pair] // width) * width, mine)
+        span[ci, 2 * pair + 1] = ((tally[pair + 4] + CLUSTER + width - 1) // width) * width
+    own[ci] = mine
+    for k in range(CLUSTER):
+        entries[start + mine + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
+    below = above = np.uint64(0)
+    for k in range(4):
+        below |= np.uint64(tally[k]) << np.uint64(16 * k)
+        above |= np.uint64(tally[k + 4]) << np.uint64(16 * k)
+    for t in range(kept):
+        e = codes[np.uint64(t)]
+        w = np.uint64((e >> 32) & 0xFF)
+        one = sorting[0, w]
+        side = below if one != 0 else above
+        q = np.int64((side >> sorting[2, w]) & np.uint64(0xFFFF))
+        below += one
+        above += sorting[1, w]
+        q += CLUSTER if q >= mine else 0
+        entries[np.uint64(start + q)] = np.int32(e & 0xFFFFFFFF)
+        if MARK:
+            hide[np.uint64(start + q)] = np.uint8(255 - (e >> 32))
+        if TRACK:
+            hide[np.uint64(e >> 40)] = q
+    n = start + kept + CLUSTER
+    while (n - start) % width != 0:
+        entries[n] = np.int32(empty) | np.int32(13 << 26)
+        if MARK:
+            hide[n] = np.uint8(255)
+        n += 1
+    return n
+
+
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
           first, entries, own, span, unshifted, work, codes, width, empty, longest, sorting, hide):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are,
@@ -258,88 +351,17 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             ty[nt + k] = x[1, ci * CLUSTER + k]
             tz[nt + k] = x[2, ci * CLUSTER + k]
             codes[nt + k] = np.int64(0)
-        # which atoms of the cluster reach each candidate, as bits above its code: a sum in floating point, written out, vectorises
-        s = ci * CLUSTER
-        gone = 1e150
-        x0, y0, z0 = (x[0, s + 0], x[1, s + 0], x[2, s + 0]) if m > 0 else (gone, gone, gone)
-        x1, y1, z1 = (x[0, s + 1], x[1, s + 1], x[2, s + 1]) if m > 1 else (gone, gone, gone)
-        x2, y2, z2 = (x[0, s + 2], x[1, s + 2], x[2, s + 2]) if m > 2 else (gone, gone, gone)
-        x3, y3, z3 = (x[0, s + 3], x[1, s + 3], x[2, s + 3]) if m > 3 else (gone, gone, gone)
-        x4, y4, z4 = (x[0, s + 4], x[1, s + 4], x[2, s + 4]) if m > 4 else (gone, gone, gone)
-        x5, y5, z5 = (x[0, s + 5], x[1, s + 5], x[2, s + 5]) if m > 5 else (gone, gone, gone)
-        x6, y6, z6 = (x[0, s + 6], x[1, s + 6], x[2, s + 6]) if m > 6 else (gone, gone, gone)
-        x7, y7, z7 = (x[0, s + 7], x[1, s + 7], x[2, s + 7]) if m > 7 else (gone, gone, gone)
-        for t in range(nt + CLUSTER):
-            near = 0.0
-            a, b, c = tx[t] - x0, ty[t] - y0, tz[t] - z0
-            near += 1.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x1, ty[t] - y1, tz[t] - z1
-            near += 2.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x2, ty[t] - y2, tz[t] - z2
-            near += 4.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x3, ty[t] - y3, tz[t] - z3
-            near += 8.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x4, ty[t] - y4, tz[t] - z4
-            near += 16.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x5, ty[t] - y5, tz[t] - z5
-            near += 32.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x6, ty[t] - y6, tz[t] - z6
-            near += 64.0 if a * a + b * b + c * c <= r2 else 0.0
-            a, b, c = tx[t] - x7, ty[t] - y7, tz[t] - z7
-            near += 128.0 if a * a + b * b + c * c <= r2 else 0.0
-            codes[t] |= np.int64(np.int32(near)) << 32
+        reached(tx, ty, tz, codes, nt + CLUSTER, x[0], x[1], x[2], ci * CLUSTER, m, r2)
         if n + nt + CLUSTER + width > entries.shape[0]:
             return -1
-        # candidates that nobody reaches are dropped by not moving the counter: no branches to mispredict
-        kept = 0
-        for t in range(nt):
-            codes[np.uint64(kept)] = codes[t]
-            kept += (codes[t] >> 32) != 0
+        kept = drop(codes, nt)
         if kept > 0xFFFF - CLUSTER:
             return -4
-        # counting sort by first + last pair in need; the counters are fields of two numbers, so that none waits for memory
-        below = above = np.uint64(0)
-        for t in range(kept):
-            w = np.uint64(codes[np.uint64(t)] >> 32)
-            below += sorting[0, w]
-            above += sorting[1, w]
-        before = 0
-        for k in range(8):
-            here = np.int64(((below if k < 4 else above) >> np.uint64(16 * (k % 4))) & np.uint64(0xFFFF))
-            tally[k] = before
-            before += here
-        mine = (tally[3] // width) * width      # the cluster's own place; what it displaces goes behind it
-        for pair in range(4):
-            span[ci, 2 * pair] = min((tally[pair] // width) * width, mine)
-            span[ci, 2 * pair + 1] = ((tally[pair + 4] + CLUSTER + width - 1) // width) * width
-        own[ci] = mine
         start = n
-        for k in range(CLUSTER):
-            entries[start + mine + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
-            if MARK:
-                hide[start + mine + k] = np.uint8(255 - (codes[nt + k] >> 32))
-        below = above = np.uint64(0)
-        for k in range(4):
-            below |= np.uint64(tally[k]) << np.uint64(16 * k)
-            above |= np.uint64(tally[k + 4]) << np.uint64(16 * k)
-        for t in range(kept):
-            e = codes[np.uint64(t)]
-            w = np.uint64(e >> 32)
-            one = sorting[0, w]
-            side = below if one != 0 else above
-            q = np.int64((side >> sorting[2, w]) & np.uint64(0xFFFF))
-            below += one
-            above += sorting[1, w]
-            place = np.uint64(start + q + (CLUSTER if q >= mine else 0))
-            entries[place] = np.int32(e & 0xFFFFFFFF)
-            if MARK:
-                hide[place] = np.uint8(255 - (e >> 32))
-        n = start + kept + CLUSTER
-        while (n - start) % width != 0:
-            entries[n] = np.int32(empty) | np.int32(13 << 26)
-            if MARK:
-                hide[n] = np.uint8(255)
-            n += 1
+        n = arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, empty, hide)
+        if MARK:
+            for k in range(CLUSTER):
+                hide[start + own[ci] + k] = np.uint8(255 - (codes[nt + k] >> 32))
         longest[0] = max(longest[0], n - start)
     first[c1] = n
     return n

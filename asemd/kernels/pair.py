@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, vector_math
+from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, prune, vector_math
 from asemd.kernels.generate import Builder
 from asemd.kernels.target import lanes
 from asemd.pairstyle import SCALE, PairStyle
@@ -118,7 +118,7 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
 
 @cache
 def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, energy: bool, exclude: bool, single: bool,
-                   outdated: bool = False, piece: str = "", virial: bool = False):
+                   outdated: bool = False, piece: str = "", virial: bool = False, pruned: bool = False):
     """The kernel over cluster lists.
 
     Parameters
@@ -135,14 +135,21 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         ``inner``, ``middle`` or ``outer``: only this part of the force; the constants end with the six numbers of `_share`.
     virial : bool
         The virial without the energy.
+    pruned : bool
+        The list is a part of another one, made anew when due (`asemd.kernels.prune`).
     """
     varying = len(uniform) - sum(uniform)
     b = _over_clusters("cluster list", style, uniform, single, energy, piece,
-                       dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(varying), ENERGY=energy,
-                            VIRIAL=virial, CHARGED=style.charged, CHARGE_ROW=6 * style.charged, SHARE=not single, VARYING=bool(varying),
-                            EXCLUDE=exclude, OUTDATED=outdated, HIDE=False, SLOT_BITS=pair_cluster.SLOT_BITS))
+                       dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(varying),
+                            SETS=pair_cluster.SETS, ENERGY=energy, VIRIAL=virial, CHARGED=style.charged, CHARGE_ROW=6 * style.charged,
+                            SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude, OUTDATED=outdated, HIDE=False, PRUNED=pruned,
+                            SLOT_BITS=pair_cluster.SLOT_BITS))
+    if pruned:
+        b.use(prune.module(), "renew")
     for f in (pair_sums.eight, pair_sums.plus, pair_sums.add):
         b.function(f, fast=True)
+    if varying:
+        b.function(pair_cluster.coefficients, fast=True)
     b.function(pair_cluster.inner_two, fast=True)
     b.function(pair_cluster.one_pair, fast=True)
     if outdated:

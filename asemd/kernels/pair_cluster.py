@@ -1,9 +1,9 @@
 """Pair forces over the cluster list: the hot loop.
 
 For each cluster the neighbours are packed, relative to the cluster's first atom, into one flat buffer whose rows are `ROW` apart (a
-constant, so that the compiler sees no aliasing): x y z, force x y z, charge, then the coefficient rows of the two atoms i in hand. Two
-atoms i at a time run over the buffer in a loop that starts at 0, forces on j gather in the buffer and are scattered once. Atoms done and
-excluded partners are moved far away instead of being masked.
+constant, so that the compiler sees no aliasing): x y z, force x y z, charge. Coefficients stand in a second buffer, in the same order:
+NROWS rows for each of up to SETS types of the atoms i of the cluster. Two atoms i at a time run over the buffers in a loop that starts at
+0, forces on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
 
 A list that may be outdated (``neigh_modify check no``, or a delay) still has LAMMPS's meaning: pairs that were beyond its reach when it was
 built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
@@ -12,9 +12,10 @@ then on they look at a mask of the row (`hide`, bit a for atom a of the cluster)
 The virial (VIRIAL) is the sum over the places of the buffer of position times force: six products for a place instead of six for a pair.
 In single precision, where that would cost digits, energies come with a virial summed over pairs.
 
-Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), ENERGY, VIRIAL, CHARGED, VARYING (some
-coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), ROOT (formulas take 1/r), OUTDATED (the list may be);
-`real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
+Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), SETS, ENERGY, VIRIAL, CHARGED, VARYING
+(some coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), ROOT (formulas take 1/r), OUTDATED (the list may
+be), PRUNED (the list is a part of another, and made here); `real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are
+made from the style.
 """
 from __future__ import annotations
 
@@ -29,18 +30,19 @@ from asemd.kernels.pair_sums import add, eight, plus
 CLUSTER = 8
 ROW = 1048
 WIDTH = 8
-NROWS = 0
+NROWS, SETS = 0, 4
 ENERGY = VIRIAL = CHARGED = VARYING = SHARE = ROOT = False
-EXCLUDE = OUTDATED = HIDE = True
+EXCLUDE = OUTDATED = HIDE = PRUNED = True
 SLOT_BITS = 0x3FFFFFF
 CHARGE_ROW = 0           # where charges stand in the buffer, 0 for nowhere
 real = np.float64
 place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
-pair_force = pair_energy = fill_rows = inner_hidden = vector_root = None
+pair_force = pair_energy = fill_rows = inner_hidden = vector_root = renew = None
 
 
-def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
-    """Two atoms a, b against `n` packed ones from place `o` on, whose forces in the buffer it adds to.
+def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb):
+    """Two atoms a, b against `n` packed ones from place `o` on, whose forces in the buffer it adds to; their coefficients are in ``c[ca:]``
+    and ``c[cb:]``.
 
     With HIDE the bits `a0` and `a0 + 1` of ``hide[h + k]`` say which of the two must not meet place k. Returns the forces on a and b,
     energies and virial.
@@ -92,8 +94,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
             qka = zero
             qkb = zero
         if ENERGY:
-            pa, eva, eca = pair_energy(ra, ia, wa, qka, p, b, k + 7 * ROW, meet_a)
-            pb, evb, ecb = pair_energy(rb, ib, wb, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
+            pa, eva, eca = pair_energy(ra, ia, wa, qka, p, c, ca + k, meet_a)
+            pb, evb, ecb = pair_energy(rb, ib, wb, qkb, p, c, cb + k, meet_b)
             ev += eva + evb
             ec += eca + ecb
             if not VIRIAL:
@@ -104,8 +106,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
                 v4 = madd(dxa * dza, pa, madd(dxb * dzb, pb, v4))
                 v5 = madd(dya * dza, pa, madd(dyb * dzb, pb, v5))
         else:
-            pa = pair_force(ra, ia, wa, qka, p, b, k + 7 * ROW, meet_a)
-            pb = pair_force(rb, ib, wb, qkb, p, b, k + (7 + NROWS) * ROW, meet_b)
+            pa = pair_force(ra, ia, wa, qka, p, c, ca + k, meet_a)
+            pb = pair_force(rb, ib, wb, qkb, p, c, cb + k, meet_b)
         fxa = madd(dxa, pa, fxa)
         fya = madd(dya, pa, fya)
         fza = madd(dza, pa, fza)
@@ -118,17 +120,18 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0):
     return fxa, fya, fza, fxb, fyb, fzb, (ev, ec, v0, v1, v2, v3, v4, v5)
 
 
-def one_pair(b, k, x, y, z, qi, p, rows):
-    """One atom against place `k` of the buffer: force on the atom, energies and virial; the opposite force goes into the buffer."""
+def one_pair(b, k, x, y, z, qi, p, c, row):
+    """One atom, with coefficients in ``c[row:]``, against place `k` of the buffer: force on the atom, energies and virial; the opposite
+    force goes into the buffer."""
     dx = x - b[place(k)]
     dy = y - b[place(k + ROW)]
     dz = z - b[place(k + 2 * ROW)]
     r2 = dx * dx + dy * dy + dz * dz
     qq = qi * b[place(k + 6 * ROW)] if CHARGED else real(0)
     if ENERGY:
-        fp, ev, ec = pair_energy(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, b, k + rows, True)
+        fp, ev, ec = pair_energy(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, c, row + k, True)
     else:
-        fp, ev, ec = pair_force(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, b, k + rows, True), real(0), real(0)
+        fp, ev, ec = pair_force(r2, real(1) / r2, real(1) / math.sqrt(r2), qq, p, c, row + k, True), real(0), real(0)
     fx = dx * fp
     fy = dy * fp
     fz = dz * fp
@@ -140,18 +143,38 @@ def one_pair(b, k, x, y, z, qi, p, rows):
     return fx, fy, fz, eight(ev, ec, dx, dy, dz, fx, fy, fz)
 
 
+def coefficients(c, full, rows, t, types, held, filled, other):
+    """Where in `c` the coefficients of an atom of type `t` with its cluster's neighbours stand, and how often rows were filled.
+
+    `held (SETS,)`: types whose rows are there; those of the place `other` stay.
+    """
+    for k in range(min(filled, SETS)):
+        if held[k] == t:
+            return k * NROWS * ROW, filled
+    k = filled % SETS
+    if k * NROWS * ROW == other:
+        filled += 1
+        k = filled % SETS
+    held[k] = t
+    fill_rows(c, full, rows, t, types, k * NROWS * ROW)
+    return k * NROWS * ROW, filled + 1
+
+
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
-                   qqr2e, b, types, saved, near, push, acc, hide, skin, moved, farthest):
+                   qqr2e, b, c, held, types, saved, near, push, acc, hide, skin, moved, farthest, whole):
     """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz).
 
-    The last four arguments are for OUTDATED: the mask of the entries, squared displacements of the slots since the list was built, and
-    `farthest (1,)`, the largest of them.
+    `whole` is for PRUNED: what the list is made of, see `asemd.kernels.prune`. The four arguments before are for OUTDATED: the mask of the
+    entries, squared displacements of the slots since the list was built, and `farthest (1,)`, the largest of them.
     """
     far = real(far_)
     late = False
+    ca = cb = 0
     cap = x.shape[1]
     for k in range(0, cap, 8):
         take8(near, k, x, q)
+    if PRUNED:
+        renew(near, x, shifts, whole, unshifted, c0, c1, first, entries, own, span, excluded_first, excluded, hide)
     if OUTDATED:
         rest = 0.999999 * skin - math.sqrt(farthest[0])      # how far another atom may have moved
     done = real(2) * far      # atoms of the cluster that have had their turn
@@ -176,8 +199,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         if VARYING:
             for k in range(full):
                 types[k] = type_of[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
-            last0 = np.uint32(1 << 30)
-            last1 = np.uint32(1 << 30)
+            filled = 0
         if EXCLUDE:
             xp = excluded_first[ci]
             xe = excluded_first[ci + 1]
@@ -194,14 +216,8 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                 qa = b[place(mine + a0 + 6 * ROW)] * real(qqr2e)
                 qb = b[place(mine + a0 + 1 + 6 * ROW)] * real(qqr2e)
             if VARYING:
-                t0 = types[place(mine + a0)]
-                t1 = types[place(mine + a0 + 1)]
-                if t0 != last0:
-                    last0 = t0
-                    fill_rows(b, full, rows, t0, types, 7 * ROW)
-                if t1 != last1:
-                    last1 = t1
-                    fill_rows(b, full, rows, t1, types, (7 + NROWS) * ROW)
+                ca, filled = coefficients(c, full, rows, types[place(mine + a0)], types, held, filled, -1)
+                cb, filled = coefficients(c, full, rows, types[place(mine + a0 + 1)], types, held, filled, ca)
             b[place(mine + a0)] = done
             b[place(mine + a0 + 1)] = done
             together = True
@@ -215,10 +231,10 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                     xp += 1
             if OUTDATED and late:
                 fxa, fya, fza, fxb, fyb, fzb, sums = inner_hidden(
-                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0)
+                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
             else:
                 fxa, fya, fza, fxb, fyb, fzb, sums = inner_two(
-                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0)
+                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
             if EXCLUDE:
                 for y in range(xp - 1, x0 - 1, -1):
                     b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
@@ -236,12 +252,12 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         if (hide[place(f0 + k)] >> (a0 + ((excluded[y] >> 16) == a0))) & 1:
                             continue
                     if (excluded[y] >> 16) == a0:
-                        gx, gy, gz, one = one_pair(b, k, xb, yb, zb, qb, p, (7 + NROWS) * ROW)
+                        gx, gy, gz, one = one_pair(b, k, xb, yb, zb, qb, p, c, cb)
                         fxb += gx
                         fyb += gy
                         fzb += gz
                     else:
-                        gx, gy, gz, one = one_pair(b, k, xa, ya, za, qa, p, 7 * ROW)
+                        gx, gy, gz, one = one_pair(b, k, xa, ya, za, qa, p, c, ca)
                         fxa += gx
                         fya += gy
                         fza += gz
@@ -252,7 +268,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             if together:
                 # b was hidden from a, too, lest they met twice
                 b[place(mine + a0 + 1)] = xb
-                gx, gy, gz, one = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, 7 * ROW)
+                gx, gy, gz, one = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, c, ca)
                 b[place(mine + a0 + 1)] = done
                 fxa += gx
                 fya += gy

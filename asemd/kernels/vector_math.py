@@ -245,4 +245,4 @@ def paste(b: Builder, single: bool = False) -> None:
 def paste_roots(b: Builder) -> None:
     """Put ``vector_root`` and ``vector_inverse`` into a module; it must define ``madd``."""
     for function in (vector_root, vector_inverse):
-        b.text(plain_source(function), OPTIONS)
+        b.text(plain_source(function), "fastmath={'contract', 'arcp', 'afn', 'ninf'}, forceinline=True")    # estimates will do

@@ -175,8 +175,11 @@ def with_small_factors(n: int) -> int:
         n += 1
 
 
+SINGLE = 1e-5
+
+
 class PPPMTerm(KSpaceTerm):
-    """Mesh, weights and transforms."""
+    """Mesh, weights and transforms; these in single precision where forces are, unless the accuracy asked for is better than SINGLE."""
 
     def __init__(self, solver):
         super().__init__(solver)
@@ -198,10 +201,12 @@ class PPPMTerm(KSpaceTerm):
         self.wrap = np.arange(3 * max(self.mesh) + 8)[None] % self.numbers[:, None]
         self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
         self.lengths, self.own = np.zeros(3), np.zeros((3, 2))
-        self.brick, self.density = np.zeros((nth, nx, ny, nz + self.order + 8)), np.zeros((nx, ny, nz))
+        single = engine.settings.precision == "mixed" and s.accuracy_relative >= SINGLE
+        real, waves = (np.float32, np.complex64) if single else (np.float64, np.complex128)
+        self.brick, self.density = np.zeros((nth, nx, ny, nz + self.order + 8)), np.zeros((nx, ny, nz), real)
         m = 1 if s.ad else 3
-        self.wave, self.waves = np.zeros((nx, ny, nh), complex), np.zeros((m, nx, ny, nh), complex)
-        self.field, self.packed = np.zeros((m, nx, ny, nz)), np.zeros((nx, ny, (nz + self.order) * m + 16))
+        self.wave, self.waves = np.zeros((nx, ny, nh), waves), np.zeros((m, nx, ny, nh), waves)
+        self.field, self.packed = np.zeros((m, nx, ny, nz), real), np.zeros((nx, ny, (nz + self.order) * m + 16))
         self.shares, self.share_field = np.zeros((0, nx, ny, nh), complex), np.zeros((0, nx, ny, nz))
         self.sums = np.zeros((nth, 8))
         self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * WIDE))

@@ -206,7 +206,8 @@ class MeshTerm(PPPMTerm):
             self.constants = np.concatenate([self.constants, [everyone, own], each])
         super().prepare(engine)
         n = self.factors.shape[1]
-        self.density, self.wave = np.zeros((n, *self.density.shape)), np.zeros((n, *self.wave.shape), complex)
+        self.density = np.zeros((n, *self.density.shape), self.density.dtype)
+        self.wave = np.zeros((n, *self.wave.shape), self.wave.dtype)
         self.values = np.zeros((n, 0))
 
     def make_room(self, slots):

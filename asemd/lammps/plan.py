@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
 from asemd.errors import InputError
 from asemd.lammps.plan_memory import holdings, pairs_around
 from asemd.manybody_term import ManyBodyTerm
 from asemd.own_term import OwnTerm
-from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
+from asemd.term import BondedTerm, PairListTerm, PairRowsTerm
 from asemd.text_table import Table
 
 # packages that a run may import -> what needs them

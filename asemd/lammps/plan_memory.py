@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
 from asemd.kernels.cluster import CLUSTER
 from asemd.manybody_term import ManyBodyTerm
-from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
+from asemd.term import BondedTerm, PairListTerm, PairRowsTerm
 from asemd.topology import ATOMS
 
 

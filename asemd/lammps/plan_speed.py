@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
 from asemd.lammps.calibration import Costs
 from asemd.lammps.plan_memory import pairs_around
 from asemd.manybody_term import ManyBodyTerm
-from asemd.term import BondedTerm, PairListTerm, PairRowsTerm, PairTerm
+from asemd.term import BondedTerm, PairListTerm, PairRowsTerm
 
 EMBEDDED = 4        # an embedded-atom potential over clusters costs about so many times the pairs of a simple one
 MANY = 4            # a many-body style costs about so many times the pairs, one by one

@@ -7,6 +7,7 @@ their bare energy that special_bonds takes off, for the solver knows nothing of 
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -50,21 +51,28 @@ def coul_long(r2, qq, g_ewald):
 coul_long.table = coul_long_table
 
 
-DEGREE = 24
-FARTHEST = 3.2      # of g r: up to there the series below is good to 1e-12
+DEGREES = {False: 24, True: 14}      # in double and in single precision
+FARTHEST = 3.2      # of g r: up to there the series below are good to 1e-12, and to 1e-6
 
 
-def _written(names: list[str]) -> str:
-    """Nested products of a polynomial."""
-    return names[0] if len(names) == 1 else f"({_written(names[1:])}) * s + {names[0]}"
+def _nested(names: list[str]) -> str:
+    """Nested products of a polynomial of t."""
+    return names[0] if len(names) == 1 else f"({_nested(names[1:])}) * t + {names[0]}"
 
 
-def _series():
-    """The function as two polynomials of r between 0 and the cutoff, which cost half of the exponential function and a division."""
-    e, f = ([f"{letter}{k}" for k in range(DEGREE + 1)] for letter in "ef")
-    source = (f"def coul_long_series(r2, qq, scale, {', '.join(e + f)}):\n    r2inv = 1.0 / r2\n    rinv = math.sqrt(r2inv)\n"
-              f"    s = scale * (r2 * rinv) - 1.0\n    q = qq * rinv\n"
-              f"    return q * ({_written(e)}), -0.5 * q * ({_written(f)}) * r2inv\n")
+def _series(degree: int):
+    """The function as two polynomials of r between 0 and the cutoff, which cost half of the exponential function and a division.
+
+    Each is written as four polynomials of s^4: nested products wait for each other, but not those of different polynomials.
+    """
+    names = {letter: [f"{letter}{k}" for k in range(degree + 1)] for letter in "ef"}
+    total = {}
+    for letter, all_names in names.items():
+        p = [_nested(all_names[k::4]) for k in range(4)]
+        total[letter] = f"({p[0]}) + s * ({p[1]}) + u * (({p[2]}) + s * ({p[3]}))"
+    source = (f"def coul_long_series(r2, qq, scale, {', '.join(names['e'] + names['f'])}):\n    r2inv = 1.0 / r2\n"
+              f"    rinv = math.sqrt(r2inv)\n    s = scale * (r2 * rinv) - 1.0\n    q = qq * rinv\n    u = s * s\n    t = u * u\n"
+              f"    return q * ({total['e']}), -0.5 * q * ({total['f']}) * r2inv\n")
     scope = {"math": math}
     exec(source, scope)
     function = scope["coul_long_series"]
@@ -72,7 +80,7 @@ def _series():
     return function
 
 
-def _numbers(g_ewald: float, cut: float) -> list[float] | None:
+def _numbers(degree: int, g_ewald: float, cut: float) -> list[float] | None:
     """Constants of `coul_long_series` for a splitting parameter and a cutoff; None where the series is not good enough."""
     x = g_ewald * cut
     if not 0.0 < x <= FARTHEST:
@@ -83,7 +91,7 @@ def _numbers(g_ewald: float, cut: float) -> list[float] | None:
         values = [coul_long(v * v, v, g_ewald) for v in r]
         return np.array([e if k == 0 else -2.0 * d * v * v for v, (e, d) in zip(r, values)])
 
-    return [2.0 / cut, *(c for k in (0, 1) for c in chebyshev.cheb2poly(chebyshev.chebinterpolate(both, DEGREE, (k,))))]
+    return [2.0 / cut, *(c for k in (0, 1) for c in chebyshev.cheb2poly(chebyshev.chebinterpolate(both, degree, (k,))))]
 
 
-coul_long.series = _series(), _numbers
+coul_long.series = {single: (_series(degree), partial(_numbers, degree)) for single, degree in DEGREES.items()}

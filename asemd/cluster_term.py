@@ -1,0 +1,95 @@
+"""The term of a pair style over the cluster list."""
+from __future__ import annotations
+
+import numpy as np
+
+from asemd.errors import SimulationError
+from asemd.kernels import pair as pair_kernels
+from asemd.kernels.pair_cluster import SETS
+from asemd.kernels.state import aligned
+from asemd.pairstyle import with_series
+from asemd.pruned import PrunedList
+from asemd.term import FactorTerm
+
+
+class PairTerm(FactorTerm):
+    """A pair style over the cluster list; `piece` of any pair term: only this part of a force that is split (`asemd.kernels.pair`)."""
+
+    category = "pair"
+    piece = ""
+    share_room: tuple[np.ndarray, np.ndarray] | None = None      # see `asemd.atom_shares`
+    pruned: PrunedList | None = None
+
+    def __init__(self, term, single: bool):
+        self.owner, self.style, self.tables, self.single = term, term.style, term.tables, single
+        self.uniform = pair_kernels.uniform_rows(self.tables.rows)
+        self.fast = with_series(self.style, self.tables, single)[0]
+        self.row = 0
+        self.tables4 = np.zeros((1, 2, 0, 4))
+        self._views: dict[tuple[int, int], tuple] = {}
+
+    def kernel(self, energy, per_atom, virial=False):
+        return self._scaled(pair_kernels.cluster_kernel(self.fast, self.uniform, self.row, energy=energy, exclude=self.exclude,
+                                                        single=self.single, outdated=self.outdated, piece=self.piece,
+                                                        pruned=self.pruned is not None, virial=virial or energy and not self.single)[0],
+                            energy or virial)
+
+    def virial_kernel(self):
+        return self.kernel(False, False, virial=True)
+
+    def clusters(self, engine):
+        """The `asemd.neighbor.ClusterList` it runs over."""
+        return engine.list
+
+    def rebuild(self, engine):
+        clusters, slots = self.clusters(engine), engine.state.x.shape[1]
+        if self.tables4.shape[2] != slots:
+            self.tables4 = aligned((engine.threads, 2, slots, 4))
+        self.outdated = engine.settings.outdated
+        self.exclude = engine.exclusions.partners is not None
+        row = pair_kernels.row_length(clusters.longest())
+        if row > self.row:
+            engine.changed = True
+            self.row = pair_kernels.row_length(int(1.15 * clusters.longest()))
+            real = np.float32 if self.single else np.float64
+            self.buffer = aligned((engine.threads, 8 * self.row), real)
+            sets = SETS * pair_kernels.buffer_rows(len(self.uniform) - sum(self.uniform))
+            self.coefficients = aligned((engine.threads, sets * self.row + 16), real)
+            self.held = np.zeros((engine.threads, SETS), np.uint32)
+            self.types = np.zeros((engine.threads, self.row), np.uint32)
+            self.saved = np.zeros((engine.threads, self.row), real)
+            self.rows = pair_kernels.varying_rows(self.tables.rows, self.uniform)
+            self.p = self.scalars()
+        skin, cut = engine.settings.skin, clusters.reach - engine.settings.skin
+        if self.pruned is None and PrunedList.pays(skin, cut, engine.system.n / engine.volume, self.fast):
+            self.pruned = PrunedList(engine.threads, skin, cut, self.fast)
+        if self.pruned is not None:
+            self.pruned.rebuild(clusters, engine.state.x, self.row, engine.ns)
+
+    def scalars(self) -> tuple:
+        """Coefficients that are the same for all pairs of types, and constants, as the kernel takes them."""
+        return pair_kernels.cluster_tuple(self.tables.rows, with_series(self.style, self.tables, self.single)[1], self.uniform, self.single)
+
+    def arguments(self, engine, tid):
+        s, c = engine.state, self.clusters(engine)
+        f, acc = self._sums(engine, tid)
+        near = c if self.pruned is None else self.pruned
+        first, entries, excluded_first, excluded, hide, *room = self._mine(
+            tid, near.first, near.entries, near.excluded_first, near.excluded, near.hide, self.buffer, self.coefficients, self.held,
+            self.types, self.saved)
+        whole = () if self.pruned is None else self.pruned.whole(c, tid, self._mine)
+        return self._with_factor(engine, tid, (
+            s.x, f, s.q, s.type, first, entries, near.own, near.span, c.unshifted, c.shifts4, excluded_first, excluded, int(c.bounds[tid]),
+            int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, *room, *self.tables4[tid], acc, hide,
+            engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], whole))
+
+    def _mine(self, tid: int, *arrays: np.ndarray) -> tuple[np.ndarray, ...]:
+        """A thread's rows of arrays; the same views as long as the arrays are the same, for new ones take time to be packed."""
+        key = tid, len(arrays)
+        known = self._views.get(key)
+        if known is None or any(a is not b for a, b in zip(known[0], arrays)):
+            known = self._views[key] = arrays, tuple(a[tid] for a in arrays)
+        return known[1]
+
+    def describe(self, engine, item, value):
+        return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
