@@ -79,7 +79,9 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         around = min(float(n), 2.0 * pairs_around(e))
         marked = e.settings.outdated or e.sparse
         entries = (cap / CLUSTER * (1.5 * around + 64) + 1024 * threads) * (5 if marked else 4)
-        out.append(Holding("neighbour list", entries + cap * (62 + 5 * threads), f"about {pairs:.3g} pairs, in clusters", "pair_style"))
+        pruned = sum(getattr(t, "pruned", None) is not None for t in e.terms)
+        entries *= 1 + pruned
+        out.append(Holding("neighbour list", entries + cap * (62 + 5 * threads) + 74e3 * threads, f"about {pairs:.3g} pairs, in clusters", "pair_style"))
     if e.mode == "plain" or e.expanded or e.sparse:
         held = 4.0 * pairs * (1 + len(e.rows)) if e.sparse else 12.0 * pairs if e.expanded else 12.0 * _power(pairs)
         out.append(Holding("pairs one by one", held, f"about {pairs:.3g} pairs", e.why if e.mode == "plain" else "pair_style"))
@@ -87,7 +89,7 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         if t.category == "kspace":
             out.append(Holding(f"k-space {t.solver.style}", *_of_solver(t, cap, threads), "kspace_style"))
         elif isinstance(t, (PairTerm, PairRowsTerm)):
-            out.append(Holding(f"pair {t.style.name}", (64.0 if t.owner.is_plain else 88.0) * threads * cap,
+            out.append(Holding(f"pair {t.style.name}", ((64.0 if t.owner.is_plain else 88.0) * cap + 47e3) * threads,
                                "positions and forces by cluster", "pair_style"))
         elif isinstance(t, EmbeddedTerm):
             out.append(Holding(f"pair {t.style.name}", (72.0 if t.owner.is_plain else 96.0) * threads * cap + 6.0 * pairs,
