@@ -80,17 +80,19 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         marked = e.settings.outdated or e.sparse
         entries = (cap / CLUSTER * (1.5 * around + 64) + 1024 * threads) * (5 if marked else 4)
         pruned = sum(getattr(t, "pruned", None) is not None for t in e.terms)
-        entries *= 1 + pruned
-        out.append(Holding("neighbour list", entries + cap * (62 + 5 * threads) + 74e3 * threads, f"about {pairs:.3g} pairs, in clusters", "pair_style"))
+        room = cap * (62 + 5 * threads) + 74e3 * threads
+        out.append(Holding("neighbour list", entries * (1 + pruned) + room, f"about {pairs:.3g} pairs, in clusters", "pair_style"))
     if e.mode == "plain" or e.expanded or e.sparse:
         held = 4.0 * pairs * (1 + len(e.rows)) if e.sparse else 12.0 * pairs if e.expanded else 12.0 * _power(pairs)
         out.append(Holding("pairs one by one", held, f"about {pairs:.3g} pairs", e.why if e.mode == "plain" else "pair_style"))
     for t in e.terms:
         if t.category == "kspace":
             out.append(Holding(f"k-space {t.solver.style}", *_of_solver(t, cap, threads), "kspace_style"))
-        elif isinstance(t, (PairTerm, PairRowsTerm)):
+        elif isinstance(t, PairTerm):
             out.append(Holding(f"pair {t.style.name}", ((64.0 if t.owner.is_plain else 88.0) * cap + 47e3) * threads,
                                "positions and forces by cluster", "pair_style"))
+        elif isinstance(t, PairRowsTerm) and not t.owner.is_plain:
+            out.append(Holding(f"pair {t.style.name}", 24.0 * cap * threads, "forces before their factor", "pair_style"))
         elif isinstance(t, EmbeddedTerm):
             out.append(Holding(f"pair {t.style.name}", (72.0 if t.owner.is_plain else 96.0) * threads * cap + 6.0 * pairs,
                                "positions, densities and forces by cluster, pairs in reach", "pair_style"))
