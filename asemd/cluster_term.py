@@ -41,6 +41,11 @@ class PairTerm(FactorTerm):
         """The `asemd.neighbor.ClusterList` it runs over."""
         return engine.list
 
+    def prunes(self, engine) -> bool:
+        """Whether it runs over a shorter list than the engine's."""
+        skin = engine.settings.skin
+        return PrunedList.pays(skin, self.clusters(engine).reach - skin, engine.system.n / engine.volume, self.fast)
+
     def rebuild(self, engine):
         clusters, slots = self.clusters(engine), engine.state.x.shape[1]
         if self.tables4.shape[2] != slots:
@@ -60,9 +65,9 @@ class PairTerm(FactorTerm):
             self.saved = np.zeros((engine.threads, self.row), real)
             self.rows = pair_kernels.varying_rows(self.tables.rows, self.uniform)
             self.p = self.scalars()
-        skin, cut = engine.settings.skin, clusters.reach - engine.settings.skin
-        if self.pruned is None and PrunedList.pays(skin, cut, engine.system.n / engine.volume, self.fast):
-            self.pruned = PrunedList(engine.threads, skin, cut, self.fast)
+        if self.pruned is None and self.prunes(engine):
+            skin = engine.settings.skin
+            self.pruned = PrunedList(engine.threads, skin, clusters.reach - skin, self.fast)
         if self.pruned is not None:
             self.pruned.rebuild(clusters, engine.state.x, self.row, engine.ns)
 

@@ -1,6 +1,8 @@
 """What computes of chunks share: the compute chunk/atom they sum over."""
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from asemd.compute import Compute
@@ -65,3 +67,42 @@ class Chunked(Compute):
 
     def pieces(self, state) -> Pieces:
         return Pieces(state.system, *self.index(state))
+
+
+class SinceStart(Chunked, ABC):
+    """Base class: what a value of each chunk has become since the start of the first run after the compute was made."""
+
+    columns = 4     # of the array
+
+    def __init__(self, group: str = "all", chunks=None):
+        super().__init__(group, chunks)
+        self.original: np.ndarray | None = None
+
+    @abstractmethod
+    def value(self, state) -> np.ndarray:
+        """(chunks, 3) that of now."""
+
+    @abstractmethod
+    def products(self, now: np.ndarray) -> np.ndarray:
+        """(chunks, 3) of the present value and the original one."""
+
+    def setup(self, state) -> None:
+        """At the start of the first run: the values of now are the original ones."""
+        if self.original is None:
+            self.original = self.value(state)
+
+    def array(self, state) -> np.ndarray:
+        """(chunks, 4) x, y, z and their sum.
+
+        Raises
+        ------
+        InputError
+            The number of chunks is not that of the start.
+        """
+        self.setup(state)
+        now = self.value(state)
+        if len(now) != len(self.original):
+            raise InputError(f"compute {self.id} ({self.style}): there were {len(self.original)} chunks, now {len(now)}; "
+                             "let compute chunk/atom have nchunk once")
+        products = self.products(now)
+        return np.column_stack([products, products.sum(axis=1)])

@@ -196,7 +196,9 @@ def _term(e: Engine, t) -> Item:
         rows = f"{varying} of {len(t.uniform)} coefficients by type pair" if varying else "coefficients the same for all pairs of types"
         hidden = "excluded partners moved away" if e.exclusions.partners is not None else "no exclusions"
         precision = "single" if t.single else "double"
-        return Item(f"pair {style.name}", f"cluster kernel, {precision} precision, {charged}, {rows}, {hidden}{times}", "pair_style")
+        listed = ", over a pruned list" if t.prunes(e) else ""
+        what = f"cluster kernel{listed}, {precision} precision, {charged}, {rows}, {hidden}{times}"
+        return Item(f"pair {style.name}", what, "pair_style")
     if isinstance(t, PairRowsTerm):
         hidden = "excluded partners left out of the rows" if e.exclusions.partners is not None else "no exclusions"
         which = {"same": ", pairs within molecules", "other": ", pairs between molecules"}.get(t.owner.molecules, "")

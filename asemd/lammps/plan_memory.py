@@ -79,7 +79,7 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         around = min(float(n), 2.0 * pairs_around(e))
         marked = e.settings.outdated or e.sparse
         entries = (cap / CLUSTER * (1.5 * around + 64) + 1024 * threads) * (5 if marked else 4)
-        pruned = sum(getattr(t, "pruned", None) is not None for t in e.terms)
+        pruned = sum(isinstance(t, PairTerm) and t.prunes(e) for t in e.terms)
         room = cap * (62 + 5 * threads) + 74e3 * threads
         out.append(Holding("neighbour list", entries * (1 + pruned) + room, f"about {pairs:.3g} pairs, in clusters", "pair_style"))
     if e.mode == "plain" or e.expanded or e.sparse:

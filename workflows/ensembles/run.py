@@ -24,7 +24,7 @@ STEPS = {("LJ liquid", d): 200000 for d in NVT} | {
     ("LJ liquid", "nvt"): 600000, ("LJ liquid", "temp/csvr"): 100000, ("LJ liquid", "temp/csld"): 40000, ("LJ liquid", "npt"): 200000,
     ("polymer melt", "nvt"): 600000, ("polymer melt", "npt"): 200000,
     ("rigid water", "shake + nvt"): 150000, ("rigid water", "rigid/nvt/small"): 100000, ("rigid water", "shake + npt"): 100000,
-    ("flexible water", "nvt"): 200000, ("flexible water", "npt"): 100000}
+    ("flexible water", "nvt"): 200000, ("flexible water", "npt"): 400000}
 QUICK = {("LJ liquid", "nvt"): 12000, ("LJ liquid", "langevin"): 12000, ("LJ liquid", "temp/berendsen"): 12000}
 
 
