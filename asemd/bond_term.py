@@ -132,7 +132,7 @@ class ReleasedPairTerm(PairListTerm):
         """The pairs in the order of the bonds: kind 1 of those that hold, others never interact here."""
         b, rules = self.bonds, engine.exclusions
         self.i, self.j, self.code = closest_pairs(engine, b.items[b.order])
-        self.shifts = engine.shifts27
+        self.shifts = engine.close_shifts
         self.code[b.slot_types == 0] += 1
         if len(rules.rules):
             left = np.arange(len(self.i), dtype=np.int32)
@@ -156,14 +156,14 @@ class WeightedBondTerm(PairListTerm):
 
     def rebuild(self, engine):
         self.i, self.j, self.code = closest_pairs(engine, self.items)
-        self.shifts = engine.shifts27
+        self.shifts = engine.close_shifts
 
 
 def closest_pairs(engine, pairs: np.ndarray) -> list[np.ndarray]:
     """Slots and codes of pairs of rows, with the image that is closest, all of kind 1."""
     out = [np.empty(len(pairs), np.int32) for _ in range(3)]
-    engine.k.special_pairs(np.ascontiguousarray(pairs), np.ones(len(pairs), np.int32), engine.slot_of, engine.state.x, engine.shifts27,
-                           engine.periodic27, *out)
+    engine.k.special_pairs(np.ascontiguousarray(pairs), np.ones(len(pairs), np.int32), engine.slot_of, engine.state.x, engine.close_shifts,
+                           engine.close_periodic, *out)
     return out
 
 

@@ -21,7 +21,7 @@ from asemd.kernels.team import Team
 from asemd.kspace import solve
 from asemd.late import Late
 from asemd.manybody_term import all_pairs, many_term
-from asemd.neighbor import IMAGES, SMALL, BinCell, ClusterList, PlainList, Rows, kernels
+from asemd.neighbor import SMALL, BinCell, ClusterList, PlainList, Rows, close_images, kernels
 from asemd.noise_term import list_term
 from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
@@ -154,8 +154,8 @@ class Engine:
         self.inverse = np.ascontiguousarray(box.inverse)
         self.widths, self.volume = 1.0 / np.linalg.norm(self.inverse, axis=0), abs(float(np.linalg.det(self.vectors)))
         self.cell = cell_arrays(self.vectors, self.periodic)
-        self.shifts27 = IMAGES @ self.cell.reduced
-        self.periodic27 = (IMAGES[:, ~self.periodic] == 0).all(axis=1)
+        self.close_images, self.close_shifts = close_images(self.cell.reduced, self.vectors)
+        self.close_periodic = (self.close_images[:, ~self.periodic] == 0).all(axis=1)
         self.k = kernels(self.ortho, self.settings.outdated or self.sparse)
         self._bins = None
 
@@ -247,7 +247,7 @@ class Engine:
             weighted, kinds = self.exclusions.weighted, self.exclusions.weighted_kinds
             self.special = [np.empty(len(weighted), np.int32) for _ in range(3)]
             if len(weighted) and not self.expanded:
-                k.special_pairs(weighted, kinds, self.slot_of, s.x, self.shifts27, self.periodic27, *self.special)
+                k.special_pairs(weighted, kinds, self.slot_of, s.x, self.close_shifts, self.close_periodic, *self.special)
                 left = k.drop_excluded(s.row, *self.special, len(weighted), *self.exclusions.rule_arrays)
                 self.special = [a[:left] for a in self.special]
         elif self.mode == "plain":
@@ -282,7 +282,7 @@ class Engine:
             return len(all_pairs(self)[0])
         if self.mode == "cluster" and not self.expanded:
             i, j, code = self.special
-            d = self.held[:, i] - self.held[:, j] - self.shifts27[code >> 2].T
+            d = self.held[:, i] - self.held[:, j] - self.close_shifts[code >> 2].T
             others = (sum(rows.entries for rows in self.rows.values()) if self.sparse else
                       self.list.count(self.k, self.state, self.held, self._partners()))
             return others + int(((d * d).sum(axis=0) <= self.reach**2).sum())

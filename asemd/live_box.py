@@ -8,7 +8,6 @@ import numpy as np
 from asemd.errors import LostAtoms
 from asemd.kernels.rows import span
 from asemd.kernels.state import BoxState
-from asemd.neighbor import IMAGES
 
 INSIDE = 1e-9       # of the box: whoever is that far from its faces is inside, whatever rounding does
 
@@ -26,7 +25,7 @@ def live(engine) -> BoxState:
         shifts = engine.list.shifts
     reduction = np.rint(engine.cell.reduced @ np.linalg.inv(engine.vectors))
     return BoxState(engine.vectors, engine.origin, engine.periodic.astype(float), engine.cell, reduction,
-                    np.rint(shifts @ np.linalg.inv(engine.vectors)), shifts, shifts4, IMAGES.copy(), engine.shifts27,
+                    np.rint(shifts @ np.linalg.inv(engine.vectors)), shifts, shifts4, engine.close_images, engine.close_shifts,
                     np.vstack([engine.origin, engine.vectors]), np.array([float(engine.system.box.triclinic)]))
 
 

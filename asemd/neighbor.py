@@ -89,6 +89,17 @@ def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tup
     return np.array(cells, float) @ vectors, opposite
 
 
+def close_images(reduced: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Images (m, 3), in numbers of the reduced cell vectors, one of which brings an atom of the cell closest to another one; and shifts.
+
+    27 of them, more where the cell is tilted so far that its vectors are not the reduced ones.
+    """
+    spread = np.abs(np.rint(vectors @ np.linalg.inv(reduced))).sum(axis=0)      # a difference of positions is within one cell vector each
+    ranges = [range(-int(k), int(k) + 1) for k in np.maximum(spread, 1.0)]
+    images = np.array(list(itertools.product(*ranges)), float)
+    return images, images @ reduced
+
+
 class Rows:
     """Neighbours of single atoms, made of a cluster list.
 

@@ -209,7 +209,7 @@ class PairListTerm(Term):
 
     def rebuild(self, engine):
         if self.pairs in ("all", "special"):
-            found = (*engine.plain, engine.plain_shifts) if self.pairs == "all" else (*engine.special, engine.shifts27)
+            found = (*engine.plain, engine.plain_shifts) if self.pairs == "all" else (*engine.special, engine.close_shifts)
             self.i, self.j, self.code, self.shifts = found
             rules = engine.exclusions
             self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul)
@@ -226,9 +226,9 @@ class PairListTerm(Term):
         else:
             pairs, kinds, weights = self.one_four
             out = [np.empty(len(pairs), np.int32) for _ in range(3)]
-            engine.k.special_pairs(pairs, kinds, engine.slot_of, engine.state.x, engine.shifts27, engine.periodic27, *out)
+            engine.k.special_pairs(pairs, kinds, engine.slot_of, engine.state.x, engine.close_shifts, engine.close_periodic, *out)
             self.i, self.j, self.code = out
-            self.shifts, self.lj, self.coul = engine.shifts27, weights, weights
+            self.shifts, self.lj, self.coul = engine.close_shifts, weights, weights
 
     def scale(self, engine) -> None:
         """Take up the present factor of the pair style; the arrays that kernels work on stay the same."""

@@ -51,9 +51,9 @@ def follow(box):
     for k in range(box.shifts4.shape[0]):
         for d in range(3):
             box.shifts4[k, d] = box.shifts[k, d]
-    for k in range(27):
+    for k in range(box.close_images.shape[0]):
         for d in range(3):
-            box.shifts27[k, d] = box.images27[k, 0] * r[0, d] + box.images27[k, 1] * r[1, d] + box.images27[k, 2] * r[2, d]
+            box.close_shifts[k, d] = box.close_images[k, 0] * r[0, d] + box.close_images[k, 1] * r[1, d] + box.close_images[k, 2] * r[2, d]
 
 
 def corner_moves(box):

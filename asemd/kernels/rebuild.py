@@ -205,8 +205,8 @@ def special_pairs(pairs, kinds, slot_of, x, shifts, periodic_shifts, out_i, out_
         i = slot_of[pairs[p, 0]]
         j = slot_of[pairs[p, 1]]
         best = 1e300
-        at = 13
-        for s in range(27):
+        at = 0
+        for s in range(shifts.shape[0]):
             if not periodic_shifts[s]:
                 continue
             dx = x[0, i] - x[0, j] - shifts[s, 0]

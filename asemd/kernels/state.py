@@ -30,8 +30,8 @@ class BoxState(NamedTuple):
     images: np.ndarray        # (m, 3) whole numbers: the images of the neighbour list
     shifts: np.ndarray        # (m, 3) ``images @ vectors``
     shifts4: np.ndarray       # (m, 4) the same with a column of zeros; (0, 4) where no kernel takes it
-    images27: np.ndarray      # (27, 3) whole numbers: the images of special pairs
-    shifts27: np.ndarray      # (27, 3) ``images27 @ reduced``
+    close_images: np.ndarray      # (m, 3) whole numbers: the images of special pairs
+    close_shifts: np.ndarray      # (m, 3) ``close_images @ reduced``
     held: np.ndarray          # (4, 3) origin and vectors when the list was built
     triclinic: np.ndarray     # (1,) 1 or 0
 
