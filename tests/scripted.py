@@ -94,7 +94,7 @@ def by_lammps(cases: dict[str, dict], folder: Path) -> dict[str, list[dict]]:
     """The cases run by LAMMPS in one other process."""
     (folder / "cases.json").write_text(json.dumps(cases))
     command = [sys.executable, __file__, str(folder / "cases.json"), str(folder / "out.json")]
-    if subprocess.run(command, timeout=300).returncode != 0:      # it was seen to fail by chance: fix nphug with a pressure that is no number
+    if subprocess.run(command, timeout=300).returncode != 0:      # seen to fail by chance: fix nphug, a pressure that is no number
         subprocess.run(command, check=True, timeout=300)
     return json.loads((folder / "out.json").read_text())
 
