@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 
 import numpy as np
 
@@ -18,6 +19,7 @@ ENTRY = 6.8              # pairs that kernels compute for an entry of the list
 INTERVAL = 3             # force evaluations for which a pruned list serves, at least
 
 
+@cache
 def operations(style) -> int:
     """Of the formulas of a pair style: arithmetic, exponential functions and their like counting twenty."""
     count = 0
