@@ -101,7 +101,7 @@ class System:
         self.q = None if self.q is None else np.array(np.broadcast_to(self.q, n), float)
         self.rmass = None if self.rmass is None else np.array(np.broadcast_to(self.rmass, n), float)
         largest = {"ntypes": self.type, **{f"n{kind}types": types for kind, _, types in self.topology}}
-        self.counts = {name: int(max(largest[name], default=0)) if name in largest else 0 for name in COUNTS} | self.counts
+        self.counts = {name: int(np.max(largest[name], initial=0)) if name in largest else 0 for name in COUNTS} | self.counts
         if self.mass is None:
             self.mass = np.full(self.counts["ntypes"] + 1, np.nan)
         unset = max(0, self.counts["ntypes"] + 1 - len(self.mass))
