@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import copy
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -15,25 +16,30 @@ WELLS = (("eia", "eib", "eic"), ("eja", "ejb", "ejc"))
 COEFF = "epsilon sigma eia eib eic eja ejb ejc [cut]"
 
 
-class EllipsoidPair(PairStyle):
-    """A pair style of ellipsoids; `potential` is the function that `asemd.kernels.pair_ellipsoid` asks for. Its constants are the
-    settings and whether torques are those of the energy.
+class OrientedPair(PairStyle):
+    """A pair style of bodies with orientations; `potential` is the function that `asemd.kernels.pair_ellipsoid` asks for."""
+
+    listed = True
+    oriented = "ellipsoid"
+    exact = True
+
+    def __init__(self, name: str, potential, **options):
+        super().__init__(name, [(lj_cut, "cut")], **{**dict(see=f"LAMMPS manual, pair_style {name}"), **options})
+        self.potential = potential
+        self.twin = copy.copy(self)
+        self.twin.exact = False
+
+
+class EllipsoidPair(OrientedPair, ABC):
+    """A pair style of ellipsoids. The constants of its potential are the settings and whether torques are those of the energy.
 
     Relative well depths are given with pairs of types, but belong to one type each: those that are not all zero, of the last line that
     speaks of the type.
     """
 
-    listed = True
-    oriented = "ellipsoid"
-
-    exact = True
-
     def __init__(self, name: str, potential, **options):
-        super().__init__(name, [(lj_cut, "cut")], **{**dict(coeff=COEFF, units={k: "" for well in WELLS for k in well},
-                         mix={"epsilon": "sigma", "sigma": "distance"}, see=f"LAMMPS manual, pair_style {name}"), **options})
-        self.potential = potential
-        self.twin = copy.copy(self)
-        self.twin.exact = False
+        super().__init__(name, potential, **{**dict(coeff=COEFF, units={k: "" for well in WELLS for k in well},
+                         mix={"epsilon": "sigma", "sigma": "distance"}), **options})
 
     def check(self, coeff, settings):
         for names in WELLS:
@@ -80,13 +86,13 @@ class EllipsoidPair(PairStyle):
         """(ntypes + 1, 3) diameters of each type; points before `learn`."""
         return np.array(settings.get("shapes", ((0.0, 0.0, 0.0),) * (ntypes + 1)))
 
+    @abstractmethod
     def bodies(self, settings: Mapping, wells: Mapping[int, list[float]], ntypes: int) -> np.ndarray:
         """(ntypes + 1, 9) what the kernel takes of each type: squared semi-axes, tensor of well depths, semi-axes."""
-        raise NotImplementedError
 
+    @abstractmethod
     def form(self, i: int, j: int, bodies: np.ndarray, settings: Mapping) -> float:
         """What a pair of types is: 0 for two spheres, others are for `potential`."""
-        raise NotImplementedError
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, shift)

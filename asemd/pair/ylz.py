@@ -16,9 +16,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from asemd.ellipsoid_pairs import EllipsoidPair
+from asemd.ellipsoid_pairs import OrientedPair
 from asemd.errors import InputError
-from asemd.pairstyle import PairStyle
 from asemd.style import register
 
 
@@ -50,7 +49,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     return energy
 
 
-class YLZ(EllipsoidPair):
+class YLZ(OrientedPair):
     def check(self, coeff, settings):
         if coeff["sigma"] <= 0.0:
             raise InputError(f"pair_coeff ylz: sigma must be positive, got {coeff['sigma']:g}")
@@ -61,11 +60,8 @@ class YLZ(EllipsoidPair):
         if (points := system.extra["shape"][:, 0] == 0.0).any():
             raise InputError(f"pair style ylz: atom {system.id[points].min()} is a point without orientation, set its shape first")
 
-    def filled(self, coeffs, settings, ntypes, rule=None, only=None):
-        return PairStyle.filled(self, coeffs, settings, ntypes, rule, only)
-
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
-        tables = PairStyle.pack_pairs(self, settings, filled, ntypes, units, False)
+        tables = super().pack_pairs(settings, filled, ntypes, units, False)
         more = np.zeros((4, ntypes + 1, ntypes + 1))
         for (i, j), c in filled.items():
             more[:, i, j] = more[:, j, i] = [1.0, c["zeta"], c["mu"], c["beta"]]
