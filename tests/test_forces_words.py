@@ -39,6 +39,7 @@ def lmp():
     "viscous 0.5 scale 1 2.0", "drag 1.0 NULL 2.0 0.5 0.1", "gravity v_e chute 20.0", "gravity 1.0 vector 0.0 0.0 1.0 disable",
     "spring tether 1.0 NULL 0.0 0.0 2.0", "spring couple one 1.0 NULL 0.0 0.0 2.0", "spring/self v_a xy", "spring/rg 1.0 NULL",
     "smd cvel 1.0 0.1 couple one auto NULL 1.0 2.0", "smd cfor 1.0 tether 0.0 NULL 1.0 2.0", "efield v_a v_e 0.0 region ball energy v_a",
+    "efield/tip4p v_a v_e 0.0 region ball energy v_a",
     "restrain bond 1 2 1.0 2.0 3.0 4.0 angle 1 2 1 1.0 1.0 90.0 dihedral 1 2 1 2 1.0 1.0 90.0 mult 2",
     "wall/lj93 ylo v_e 1.0 1.0 2.5 units box", "wall/morse zhi EDGE 1.0 1.0 1.0 2.5", "wall/lepton zhi EDGE k*r^2;k=2 2.5",
     "wall/reflect ylo EDGE yhi v_e", "oneway 3 ball -x", "recenter INIT NULL 5.0 units box", "move rotate 0 0 0 0 0 1 10.0",

@@ -22,9 +22,15 @@ for lines in given["scripts"]:
 COLUMNS = ("evdwl", "ecoul", "elong", "pxx", "pyz")
 
 
-def data(path, last: str = "O H H") -> str:
-    """Twenty-seven bent molecules at random in a tilted box; the ids of the last one in another order."""
+SHEAR = np.array([[0.9, 0.0, 0.0], [1.3 / EDGE, 0.9, 0.0], [-0.8 / EDGE, 0.9 / EDGE, 0.9]])
+
+
+def data(path, last: str = "O H H", cut: bool = True) -> str:
+    """Twenty-seven bent molecules at random in a tilted box; the ids of the last one in another order; sides of the box may cut them."""
     rng, atoms, bonds, angles = np.random.default_rng(4), [], [], []
+
+    def place(x) -> str:
+        return " ".join(f"{v:.10f}" for v in (x if cut else (x + 1.6) @ SHEAR + 0.4)) + " 1 -2 0" * (not cut)
     for m, corner in enumerate(np.ndindex(3, 3, 3)):
         o = np.array(corner) * EDGE / 3 + rng.uniform(-0.3, 0.3, 3)
         turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
@@ -33,7 +39,7 @@ def data(path, last: str = "O H H") -> str:
         ids = {name: 3 * m + k + 1 for k, name in enumerate(names)}
         for name in names:
             kind, charge = (1, -1.04) if name == "O" else (2, 0.52)
-            atoms.append(f"{ids[name]} {m + 1} {kind} {charge} " + " ".join(f"{v:.10f}" for v in places[name]))
+            atoms.append(f"{ids[name]} {m + 1} {kind} {charge} " + place(places[name]))
         bonds += [f"{len(bonds) + k} 1 {ids['O']} {ids[h]}" for k, h in ((1, "H"), (2, "h"))]
         angles.append(f"{m + 1} 1 {ids['H']} {ids['O']} {ids['h']}")
     counts = [f"{len(atoms)} atoms", f"{len(bonds)} bonds", f"{len(angles)} angles", "2 atom types", "1 bond types", "1 angle types"]

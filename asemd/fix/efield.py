@@ -19,6 +19,14 @@ from asemd.fix import hook
 from asemd.fix.forcing import Forcing, tally, unwrapped
 from asemd.fix.formula import Value, read, write
 from asemd.kernels.threads import reduce_sum
+from asemd.result import COMPONENTS
+
+
+def turn(s, i, mx, my, mz, ex, ey, ez):
+    """Add to a slot the torque of a field on a dipole."""
+    s.torque[0, i] += ez * my - ey * mz
+    s.torque[1, i] += ex * mz - ez * mx
+    s.torque[2, i] += ey * mx - ex * my
 
 
 class EField(Forcing):
@@ -100,7 +108,7 @@ class EField(Forcing):
         if self.energy is not None or self.potential is not None:
             self.a[:, 4] = (self.energy or self.potential)(loop)
 
-    @hook(uses=[unwrapped, tally])
+    @hook(uses=[unwrapped, tally, turn])
     def post_force(th, s, p, a):
         bit, some, unit, dipoles, constant, mode = np.int32(np.int64(p[0])), p[2] != 0.0, p[10], p[11] != 0.0, p[12] != 0.0, p[13]
         own, mu = a
@@ -130,9 +138,7 @@ class EField(Forcing):
                     if p[1] != 0.0:
                         tally(th, s, i, fx, fy, fz)
                 if dipoles:
-                    s.torque[0, i] += unit * (ez * mu[row, 1] - ey * mu[row, 2])
-                    s.torque[1, i] += unit * (ex * mu[row, 2] - ez * mu[row, 0])
-                    s.torque[2, i] += unit * (ey * mu[row, 0] - ex * mu[row, 1])
+                    turn(s, i, mu[row, 0], mu[row, 1], mu[row, 2], unit * ex, unit * ey, unit * ez)
                     if constant:
                         energy -= unit * (ex * mu[row, 0] + ey * mu[row, 1] + ez * mu[row, 2])
         energy = reduce_sum(th, energy)
@@ -143,3 +149,13 @@ class EField(Forcing):
     def scalar(self) -> float:
         """Energy in the field, energy units."""
         return float(self.p[3])
+
+    def virials(self, state) -> np.ndarray:
+        """(n, 6) each atom's virial, xx yy zz xy xz yz, energy units; `state` is a `asemd.engine.Snapshot`."""
+        system = state.system
+        if not self.constant or system.q is None:
+            return np.zeros((system.n, 6))
+        acts = state.mask(self.group) if self.a is None else state.mask(self.group) & (self.a[:, 0] != 0.0)
+        force = state.units.qe2f * np.where(acts, system.q, 0.0)[:, None] * np.array(self.values)
+        r = system.box.unwrap(self.places(system), system.image)
+        return np.stack([force[:, i] * r[:, j] for i, j in COMPONENTS], axis=1)

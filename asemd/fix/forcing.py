@@ -111,11 +111,15 @@ class Forcing(Fix):
                 self.a[:, 1 + k] = value
         return self.a
 
+    def places(self, system) -> np.ndarray:
+        """(n, 3) where the fix acts on each atom, distance units."""
+        return system.x
+
     def follow(self, loop: Loop) -> None:
         if self.region is not None:
             loop.sync_out()
             self.region.see(loop)
-            self.a[:, 0] = self.region.inside(loop.system.x)
+            self.a[:, 0] = self.region.inside(self.places(loop.system))
         for k, value in enumerate(self.values):
             if callable(value):
                 now = value(loop)
