@@ -79,7 +79,7 @@ class Engine:
             if kind == "type":
                 for t in terms:
                     t.exclude(*pair)
-        self.pair_terms, self.many_terms = [t for t in terms if t.style.parts], [t for t in terms if t.style.many]
+        self.pair_terms, self.many_terms = [t for t in terms if t.style.parts], [t for t in terms if not t.style.parts]
         self.has_pairs = bool(terms)
         self.cutoff = max((float(t.tables.rows[t.cut_rows].max()) ** 0.5 + t.margin for t in terms), default=0.0)
         self.reach = self.cutoff + s.skin

@@ -2,7 +2,8 @@
 
 A line of coefficients says which types of hydrogen atoms, which of the two types of the line is the donor, and the numbers of the bond;
 lines for the same types add up. The energy is a function of the distance of donor and acceptor times a power of the cosine of the angle
-donor-hydrogen-acceptor, switched off between two distances and zero for small angles.
+donor-hydrogen-acceptor, switched off between two distances and zero for small angles. Styles with an angle of rest turn that angle by what
+the angle of rest lacks to a straight line.
 """
 from __future__ import annotations
 
@@ -25,9 +26,11 @@ class HydrogenBond(PairStyle):
     Parameters
     ----------
     form : callable
-        ``form(r2, p)`` gives energy and derivative by r2; its coefficients begin at ``p[4]``.
+        ``form(r2, p)`` gives energy and derivative by r2; its coefficients begin at ``p[7]``.
     names : str
         Words of the coefficients after the donor flag, of which the first is an energy.
+    turned : bool
+        The best angle is a setting and a coefficient, not a straight line.
     """
 
     many = True
@@ -37,8 +40,9 @@ class HydrogenBond(PairStyle):
     extra = 2                 # numbers for compute pair: bonds, and their energy
     needs_newton = True
 
-    def __init__(self, name: str, form: Callable, names: str, units, **options):
-        super().__init__(name, [], settings="n inner outer angle", coeff=f"ktype donor {names} [n] [inner] [outer] [angle]",
+    def __init__(self, name: str, form: Callable, names: str, units, turned: bool = False, **options):
+        super().__init__(name, [], settings="n inner outer angle" + " rest" * turned,
+                         coeff=f"ktype donor {names} [n] [inner] [outer] [angle]" + " [rest]" * turned,
                          units={"n": "integer", "angle": "", "ktype": "word", "donor": "word", **units}, **options)
         self.form, self.names = form, tuple(names.split())
         self.twin = copy.copy(self)
@@ -52,6 +56,8 @@ class HydrogenBond(PairStyle):
                              "negative")
         if not 0.0 <= values["angle"] <= 180.0:
             raise InputError(f"{what}: angle must be 0 to 180 degrees, got {values['angle']:g}")
+        if not 90.0 <= values.get("rest", 180.0) <= 180.0:
+            raise InputError(f"{what}: the angle of rest must be 90 to 180 degrees, got {values['rest']:g}")
         return values
 
     def parse_settings(self, words):
@@ -94,9 +100,11 @@ class HydrogenBond(PairStyle):
                 lo, hi = read.bounds(b["ktype"], 1, ntypes, f"pair_coeff {self.name}: hydrogen type")
                 donor, acceptor = (i, j) if b["donor"] == "i" else (j, i)
                 kind_of[donor, acceptor, lo:hi + 1] = len(params)
-                params.append([b["inner"] ** 2, b["outer"] ** 2, math.radians(b["angle"]), b["n"], *(b[n] for n in self.names)])
+                turn = math.radians(180.0 - b.get("rest", 180.0))
+                params.append([b["inner"] ** 2, b["outer"] ** 2, math.radians(b["angle"]), b["n"], turn, math.cos(turn), math.sin(turn),
+                               *(b[n] for n in self.names)])
                 cut2[0, i, j] = cut2[0, j, i] = max(cut2[0, i, j], b["outer"] ** 2)
-        table = np.array(params) if params else np.zeros((1, 4 + len(self.names)))
+        table = np.array(params) if params else np.zeros((1, 7 + len(self.names)))
         return PairTables(cut2, np.zeros(0), (table, kind_of))
 
     def check_scene(self, interactions, system):
@@ -111,7 +119,7 @@ class HydrogenBond(PairStyle):
 def hydrogen_bond(name: str, names: str, *, units, **options):
     """Register ``form(r2, p)``, which gives energy and derivative by r2, as a style of hydrogen bonds with the coefficients `names`."""
     def decorate(form):
-        doc = inspect.getdoc(inspect.getmodule(form)) or ""
+        doc = options.pop("doc", None) or inspect.getdoc(inspect.getmodule(form)) or ""
         register(HydrogenBond(name, form, names, units, doc=doc, **options))
         return form
     return decorate

@@ -27,6 +27,8 @@ A style that is no sum of such sites (densities first, then forces) has `forces`
 that `asemd.kernels.manybody.site_forces` has and the helpers of that module. Its threads own atoms ``lo..hi-1``, may use
 ``shared (shares, cap)``, rows of numbers by slot that all threads see, and wait for each other with ``barrier(meeting)``.
 
+A sum over pairs whose coefficients are in a file has `parts`, as any pair style, and neither `site` nor `forces`.
+
 More words before the elements, as a library of elements and a second file: `head_words`, `head`, `read_head`.
 
 A file for each pair of types, as eam has: ``elements=False``, and ``coeff`` as for any pair style. Cutoffs are whatever `pack_pairs`
@@ -53,8 +55,8 @@ class ManyBody(PairStyle, ABC):
     Parameters
     ----------
     name : str
-    site, forces : callable
-        One of the two, see above; `helpers` are functions that it calls.
+    site, forces, parts
+        One of the three, see above; `helpers` are functions that `site` or `forces` calls.
     block : callable, optional
         ``block(i, n, m, full, b, constants)``, the same energy for tables that `fits` agrees to, on ``full`` neighbours, a multiple of
         eight, in vector code: see `asemd.kernels.manybody.site_forces`. Loops without branches, indices ``b[place(row * ROW + k)]``.
@@ -77,12 +79,12 @@ class ManyBody(PairStyle, ABC):
     whole = False                  # one kernel, with energies, for all steps: where the compiler takes long
 
     def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,
-                 helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="",
+                 parts=(), helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="",
                  example="", **options):
         coeff, notes = ("file element", {"file": "path", "element": "word"}) if elements else (coeff, {})
         options["units"] = {**notes, **options.get("units", {})}
-        options.setdefault("doc", inspect.getdoc(inspect.getmodule(site or forces)) or "")
-        super().__init__(name, [], settings=settings, coeff=coeff, example=example, **options)
+        options.setdefault("doc", inspect.getdoc(inspect.getmodule(site or forces or parts[0][0])) or "")
+        super().__init__(name, parts, settings=settings, coeff=coeff, example=example, **options)
         self.site, self.forces, self.block, self.helpers = site, forces, block, tuple(helpers)
         self.reads = name.partition("/")[0]      # the word for it in LAMMPS's log
         self.rooms, self.shares, self.elements, self.converts = rooms, shares, elements, converts

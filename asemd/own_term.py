@@ -42,7 +42,7 @@ def own_terms(pair_terms, ntypes: int, qqr2e: float) -> list[OwnTerm]:
     for owner in pair_terms:
         numbers = owner.style.own_energy(owner.use.settings, owner.filled, ntypes, qqr2e)
         if numbers is not None:
-            served = {t for pair in owner.filled for t in pair}
-            numbers[:, [t for t in range(ntypes + 1) if t not in served]] = 0.0
-            out.append(OwnTerm(owner, numbers))
+            full, served = np.tile([0.0, 0.0, 0.0, -np.inf, np.inf], (ntypes + 1, 1)), sorted({t for pair in owner.filled for t in pair})
+            full[served, :len(numbers)] = numbers[:, served].T
+            out.append(OwnTerm(owner, full))
     return out

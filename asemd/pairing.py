@@ -66,7 +66,7 @@ class PairTerm:
     @property
     def cut_rows(self) -> list[int]:
         """Which rows of the tables are squared cutoffs: the first one of each part."""
-        if self.style.many:
+        if not self.style.parts:
             return [0]
         lengths = [2 + len(part.rows) for part in self.style.parts]
         return [sum(lengths[:k]) for k in range(len(lengths))]
@@ -136,7 +136,7 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
             for style in use.style.variant(use.settings, interactions.compat).pieces():
                 style = style.bind(use.settings, filled)
                 molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
-                settings = {**use.settings, **interactions.long_range} if style.solvers else use.settings
+                settings = {**use.settings, **interactions.long_range} if style.solvers or style.needs(use.settings) else use.settings
                 arrays: tuple = ()
                 if interactions.table.get("table") and not settings.keys().isdisjoint(("g_ewald", "smooth0")):
                     style = coulomb_table.tabled(style)

@@ -5,6 +5,7 @@ error names the file and the line.
 """
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -117,6 +118,34 @@ class PotentialFile:
         if (self.units, units) not in CONVERT:
             raise self.error(f"the file is in {self.units} units, but {units} units are in use", 1)
         return CONVERT[self.units, units]
+
+
+def read_elements(file: PotentialFile, elements: Sequence[str], names: str, wrong: Callable[[dict], str]) -> dict[str, dict[str, float]]:
+    """A file with a line for each element: its name and numbers with these `names`; others than `elements` do not count.
+
+    Parameters
+    ----------
+    wrong : callable
+        ``wrong(numbers)`` says what is wrong with the numbers of an element, if anything is.
+
+    Raises
+    ------
+    InputError
+        An element is missing or twice there, or its numbers are wrong.
+    """
+    found: dict[str, dict[str, float]] = {}
+    for record in file.records(1 + len(names.split())):
+        element, numbers = record.word("an element"), record.numbers(names)
+        if element not in elements:
+            continue
+        bad = "it is there twice" if element in found else wrong(numbers)
+        if bad or not all(map(math.isfinite, numbers.values())):
+            raise InputError(f"{file.what}: element {element}: {bad or 'its numbers must be finite'}", record.where)
+        found[element] = numbers
+    for element in elements:
+        if element not in found:
+            raise file.error(f"element {element} is not in the potential file", 1)
+    return found
 
 
 def file_among(words: Sequence[str], begin: int, what: str, *others: str) -> int:

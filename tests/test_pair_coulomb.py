@@ -146,7 +146,7 @@ def check_many(name):
     np.testing.assert_allclose(forces[0], forces[1][:len(forces[0])], rtol=0, atol=1e-11 * np.abs(forces[0]).max())
 
 
-@pytest.mark.parametrize("name", [n for n in style.names("pair") if style.find("pair", n).parts and style.find("pair", n).charged])
+@pytest.mark.parametrize("name", [n for n in style.names("pair") if (s := style.find("pair", n)).parts and s.charged and not s.many])
 def test_second_derivatives(name):
     """Those of each part that has them are differences of the first ones (those of LAMMPS's erfc are good to 1e-5)."""
     s = style.find("pair", name)

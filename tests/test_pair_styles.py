@@ -21,7 +21,7 @@ from asemd.errors import InputError
 from asemd.kernels.generate import plain_source
 from asemd.pairstyle import mix_distance, mix_energy
 
-STYLES = [n for n in style.names("pair") if style.find("pair", n).parts and n != "table"]
+STYLES = [n for n in style.names("pair") if style.find("pair", n).parts and not style.find("pair", n).many and n != "table"]
 QQ = -302.0
 RADII = (0.5, 0.5)
 LONG_RANGE = {"g_ewald": 0.29, "g_ewald_6": 0.27} | {

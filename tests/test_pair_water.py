@@ -70,6 +70,10 @@ CASES = [
     ("hybrid/overlay lj/cut 4.5 hbond/dreiding/lj 4 4.0 5.0 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/lj 2 i 4.0 2.75"), ()),
     ("hybrid/overlay lj/cut 4.5 hbond/dreiding/morse 2 5.4 5.5 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/morse * j 3.9 1.7 2.9 3"),
      ()),
+    ("hybrid/overlay lj/cut 4.5 hbond/dreiding/lj/angleoffset 4 4.0 5.0 90 130",
+     ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/lj/angleoffset 2 i 4.0 2.75"), ()),
+    ("hybrid/overlay lj/cut 4.5 hbond/dreiding/morse/angleoffset 2 5.4 5.5 90 180",
+     ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/morse/angleoffset * j 3.9 1.7 2.9 3 4.5 5.5 95 150"), ()),
 ]
 
 
@@ -85,9 +89,10 @@ def test_against_lammps(tmp_path):
             np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
 
 
-def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path):
-    """Between the cutoffs too, where LAMMPS's is not."""
-    lines = script(data(tmp_path / "water.data"), *next(case for case in CASES if "dreiding/lj" in case[0]))
+@pytest.mark.parametrize("name", ["dreiding/lj 4", "dreiding/lj/angleoffset", "dreiding/morse/angleoffset"])
+def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path, name):
+    """Between the cutoffs and for angles of rest too, where LAMMPS's is not."""
+    lines = script(data(tmp_path / "water.data"), *next(case for case in CASES if name in case[0]))
     mine = Lammps(cmdargs=["-log", "none", "-screen", "none"])
     mine.commands_string(lines + "\nfix d all numdiff 1 1e-4\nrun 0")
     forces = np.array(mine.gather_atoms("f", 1, 3)).reshape(-1, 3)
@@ -107,6 +112,9 @@ def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path):
     ("lj/long/tip4p/long long long 1 2 1 1 0.15 5.0", LJ, ("kspace_style pppm/disp 1e-3",), "pppm/disp needs a pair style"),
     ("hbond/dreiding/lj 4 5.0 4.0 90", (), (), "inner cutoff 5 must be less than outer cutoff 4"),
     ("hbond/dreiding/lj 4 4.0 5.0 190", (), (), "angle must be 0 to 180"),
+    ("hbond/dreiding/lj/angleoffset 4 4.0 5.0 90 80", (), (), "the angle of rest must be 90 to 180"),
+    ("hbond/dreiding/morse/angleoffset 4 4.0 5.0 90", (), (), "rest"),
+    ("hbond/dreiding/lj/angleoffset 4 4.0 5.0 90 120", ("1 1 2 i 4.0 2.75 4 4.0 5.0 90 181",), (), "the angle of rest must be 90 to 180"),
     ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 2 k 4.0 2.75",), (), "the donor flag must be i or j"),
     ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 2 i 4.0 2.75 4 4.0",), (), "inner and outer cutoffs come together"),
     ("hbond/dreiding/lj 4 4.0 5.0 90", ("1 1 3 i 4.0 2.75",), (), "hydrogen type"),

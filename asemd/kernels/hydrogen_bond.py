@@ -38,8 +38,9 @@ def find_triples(i, j, code, opposite, type_of, row, kind_of, first, partner, sl
 def hydrogen_bonds(x, f, triples, images, vectors, shifts, weights, params, exact, lo, hi, sums, acc, atom_energy, atom_virial, bad):
     """Triples lo..hi-1; `sums` gets the number of bonds and their energy.
 
-    Columns of `params`: squares of the inner and outer cutoff, least angle, power of the cosine, then those of `radial`. `exact` is 0
-    for LAMMPS's force between the cutoffs. ``images (m, 3)`` are the multiples of the box vectors that bring the hydrogen to its donor.
+    Columns of `params`: squares of the inner and outer cutoff, least angle, power of the cosine, what is added to the angle, with its
+    cosine and sine, then those of `radial`. `exact` is 0 for LAMMPS's forces where they are no gradient. ``images (m, 3)`` are the
+    multiples of the box vectors that bring the hydrogen to its donor.
     """
     count, total = 0.0, 0.0
     for m in range(lo, hi):
@@ -62,10 +63,14 @@ def hydrogen_bonds(x, f, triples, images, vectors, shifts, weights, params, exac
                 bad[0], bad[1], bad[2] = 1.0, m, math.sqrt(r2)
             continue
         over = 1.0 / math.sqrt(d2 * a2)
-        c = min(max((dx * ax + dy * ay + dz * az) * over, -1.0), 1.0)
-        angle = math.acos(c)
+        # the vector across both bonds is as long as the sine of the angle: no digits are lost near a straight line
+        nx, ny, nz = dy * az - dz * ay, dz * ax - dx * az, dx * ay - dy * ax
+        sine = math.sqrt(nx * nx + ny * ny + nz * nz) * over
+        straight = (dx * ax + dy * ay + dz * az) * over
+        angle = math.atan2(sine, straight) + p[4]
         if angle <= p[2] or angle >= 2.0 * math.pi - p[2]:
             continue
+        c = straight * p[5] - sine * p[6]
         e, slope = radial(r2, p)
         power, low = 1.0, 0.0
         for _ in range(int(p[3])):
@@ -82,12 +87,19 @@ def hydrogen_bonds(x, f, triples, images, vectors, shifts, weights, params, exac
         total += w * e * power
         # the distance pulls at donor and acceptor, the cosine at all three
         g, t = 2.0 * w * slope, w * e * p[3] * low
-        tx = t * (ax * over - c * dx / d2) - g * rx
-        ty = t * (ay * over - c * dy / d2) - g * ry
-        tz = t * (az * over - c * dz / d2) - g * rz
-        ux = t * (dx * over - c * ax / a2) + g * rx
-        uy = t * (dy * over - c * ay / a2) + g * ry
-        uz = t * (dz * over - c * az / a2) + g * rz
+        aside = 0.0
+        if p[6] != 0.0:      # the slope of the turned cosine is the quotient of the sines
+            if exact > 0.0:
+                t *= (sine * p[5] + straight * p[6]) / max(sine, 1e-300)
+            else:
+                aside = t * (straight - c)
+        t *= over
+        tx = (t * (ny * dz - nz * dy) + aside * dx) / d2 - g * rx
+        ty = (t * (nz * dx - nx * dz) + aside * dy) / d2 - g * ry
+        tz = (t * (nx * dy - ny * dx) + aside * dz) / d2 - g * rz
+        ux = (t * (ay * nz - az * ny) + aside * ax) / a2 + g * rx
+        uy = (t * (az * nx - ax * nz) + aside * ay) / a2 + g * ry
+        uz = (t * (ax * ny - ay * nx) + aside * az) / a2 + g * rz
         f[0, i] -= tx
         f[1, i] -= ty
         f[2, i] -= tz

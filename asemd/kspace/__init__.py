@@ -193,12 +193,15 @@ class KSpace(ABC):
         InputError
             Cutoffs of several pair styles differ.
         """
-        return self.cutoff_of([(use, part) for use in uses for part in use.style.variant(use.settings).parts
-                               if part.long or (part.charged and not use.style.solvers)])
+        return self.one_cutoff([use.settings[name] for use in uses for name in use.style.solver_cuts(use.settings)])
 
     def cutoff_of(self, parts) -> float:
         """The cutoff that all of these parts have, pairs of a `Use` and a part of its style."""
-        cutoffs = {float(use.settings[part.cut]) for use, part in parts}
+        return self.one_cutoff([use.settings[part.cut] for use, part in parts])
+
+    def one_cutoff(self, values) -> float:
+        """The cutoff that all of these are."""
+        cutoffs = {float(value) for value in values}
         if len(cutoffs) > 1:
             raise InputError(f"Coulomb cutoffs of the sub-styles differ ({', '.join(f'{c:g}' for c in sorted(cutoffs))}): "
                              f"kspace_style {self.style} needs one")

@@ -14,6 +14,6 @@ from asemd.hydrogen_bond import hydrogen_bond
 @hydrogen_bond("hbond/dreiding/lj", "epsilon sigma", units={"epsilon": "energy", "sigma": "distance"}, settings_example="4 9.0 11.0 90.0",
                example="2 i 4.0 2.75 4 8.0 9.5 85.0", see="LAMMPS manual, pair_style hbond/dreiding/lj")
 def twelve_ten(r2, p):
-    u = p[5] * p[5] / r2
+    u = p[8] * p[8] / r2
     u5 = u * u * u * u * u
-    return p[4] * u5 * (5.0 * u - 6.0), -30.0 * p[4] * u5 * (u - 1.0) / r2
+    return p[7] * u5 * (5.0 * u - 6.0), -30.0 * p[7] * u5 * (u - 1.0) / r2

@@ -15,5 +15,5 @@ from asemd.hydrogen_bond import hydrogen_bond
                see="LAMMPS manual, pair_style hbond/dreiding/morse")
 def morse(r2, p):
     r = math.sqrt(r2)
-    u = math.exp(-p[5] * (r - p[6]))
-    return p[4] * u * (u - 2.0), -p[4] * p[5] * u * (u - 1.0) / r
+    u = math.exp(-p[8] * (r - p[9]))
+    return p[7] * u * (u - 2.0), -p[7] * p[8] * u * (u - 1.0) / r
