@@ -8,8 +8,7 @@ the part 1/r is that of coul/wolf, and a and f go to zero with their slopes at t
 zeta and Z.  Streitz and Mintmire, Phys. Rev. B 50, 11996 (1994).
 
 With ``wolf`` LAMMPS also moves the force to zero at the cutoff, so that it is not minus the gradient of its energy. Here it is;
-``compat="lammps"`` gives LAMMPS's force. With ``ewald`` LAMMPS takes the g that the solver had before the run: give it, with
-``kspace_modify gewald``, to get the same energy. Digits get lost where two zeta are nearly but not exactly the same.
+``compat="lammps"`` gives LAMMPS's force. Digits get lost where two zeta are nearly but not exactly the same.
 """
 from __future__ import annotations
 
