@@ -64,7 +64,7 @@ class Setfl:
     polynomial: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
-class _Lines:
+class Lines:
     """The lines of a file one after the other; comments after ``#`` and empty lines count only where lines are skipped."""
 
     def __init__(self, file: PotentialFile):
@@ -141,7 +141,7 @@ def read_funcfl(file: PotentialFile) -> Funcfl:
     InputError
         Something is missing or no number; the message names file and line.
     """
-    lines = _Lines(file)
+    lines = Lines(file)
     lines.skip(1)
     number, mass = lines.element()
     nrho, drho, nr, dr, cut, _ = lines.sizes()
@@ -150,10 +150,10 @@ def read_funcfl(file: PotentialFile) -> Funcfl:
 
 def elements_of(file: PotentialFile) -> tuple[str, ...]:
     """The elements of a setfl file."""
-    return _elements(_Lines(file))[0]
+    return _elements(Lines(file))[0]
 
 
-def _elements(lines: _Lines) -> tuple[tuple[str, ...], Record]:
+def _elements(lines: Lines) -> tuple[tuple[str, ...], Record]:
     lines.skip(3)
     record = lines.record("the line with the elements")
     count = record.whole("the number of elements")
@@ -180,7 +180,7 @@ def read_setfl(file: PotentialFile, chosen, *, pairs: bool = False, rhomax: bool
     InputError
         An element is not there; something is missing or no number. The message names file and line.
     """
-    lines = _Lines(file)
+    lines = Lines(file)
     elements, record = _elements(lines)
     count = len(elements)
     if polynomial and count != 2:

@@ -32,14 +32,14 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "nb3b/harmonic": ("MOH.nb3b.harmonic", "M O H", 2.6), "nb3b/screened": ("PSiO.nb3b.screened", "P Si O", 5.1),
     "vashishta/table 2000 0.4": ("SiC.vashishta", "Si C", 4.4), "polymorphic": ("GaN_tersoff.poly", "Ga N", 4.6),
     "extep": ("BN.extep", "B N", 3.6), "atm 4.0 2.4": ("", "A B", 3.4), "threebody/table": ("HERE/a.3b", "A B", 4.0),
-    "sw/angle/table": ("HERE/a.sw", "A B", 3.9),
+    "sw/angle/table": ("HERE/a.sw", "A B", 3.9), "local/density": ("", "A B", 3.4),
     "eim": ("F Li ffield.eim", "Li F", 4.6), "meam": ("library.meam Si C SiC.meam", "C Si", 4.6),
     "meam/ms": ("library.msmeam H Ga4 HGa.msmeam", "Ga4 H", 4.6),
     "meam/spline": ("TiO.meam.spline", "Ti O", 4.6), "meam/sw/spline": ("Si.b.meam.sw.spline", "Si", 5.2),
     "rebo": ("CH.rebo", "C H", 3.4), "airebo 1.5 1 1 1.1": ("CH.airebo", "C H", 4.0), "airebo 3.0": ("CH.airebo", "C C", 3.6),
     "airebo/morse 1.4 1 1 1.0": ("CH.airebo-m", "H C", 4.0),
 }
-COEFF = {"atm 4.0 2.4": ["* * * 0.5", "1 2 2 -0.3", "1 1 1*1 0.7"]}
+COEFF = {"atm 4.0 2.4": ["* * * 0.5", "1 2 2 -0.3", "1 1 1*1 0.7"], "local/density": ["* * HERE/a.ld"]}
 TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
 TABLED |= dict.fromkeys(("rebo", "airebo", "airebo/morse"), 3e-10)      # and rounds off in polynomials of coordinations
 OWN = ("threebody/table", "airebo 3.0")      # forces that are not derivatives; another airebo takes less time
@@ -84,6 +84,14 @@ def write_tables(folder: Path) -> None:
     (folder / "a.sw").write_text("\n".join(entries) + "\n")
 
 
+def write_densities(folder: Path) -> None:
+    """A file for local/density, some of whose densities are beyond the ends of the tables."""
+    rng = np.random.default_rng(6)
+    blocks = [("1.5 2.9", "1 2", "2", "0.5 4.0 0.5"), ("0.0 2.4", "1", "1 2", "0.2 3.7 0.5"), ("2.2 2.6", "2", "1", "6 13 1")]
+    text = "\n\n".join("\n".join([*head, *map(str, rng.normal(size=8).round(4))]) for head in blocks)
+    (folder / "a.ld").write_text(f"# local densities\n\n3 8\n\n{text}\n\n")
+
+
 def scene(name: str, units: str, cells: int = 1, folder="") -> list[str]:
     """A few atoms at random around the places of a crystal, in a tilted cell that is narrower than the cutoff."""
     file, elements, a = CASES[name]
@@ -93,7 +101,7 @@ def scene(name: str, units: str, cells: int = 1, folder="") -> list[str]:
     return [f"units {units}", f"lattice diamond {a}", f"region box block 0 {cells} 0 {cells} 0 {cells}", f"create_box {n} box",
             f"create_atoms 1 box {basis}", "mass * 28", "displace_atoms all random 0.1 0.1 0.1 4711", "change_box all triclinic",
             f"change_box all xy final {0.1 * a * cells} yz final {-0.05 * a * cells} remap", f"pair_style {name}",
-            *(f"pair_coeff {c}" for c in COEFF.get(name, [f"* * {file.replace('HERE', str(folder))} {elements}"])),
+            *(f"pair_coeff {c}".replace("HERE", str(folder)) for c in COEFF.get(name, [f"* * {file} {elements}"])),
             "compute ea all pe/atom", "compute sa all stress/atom NULL", *shares,
             *(f"compute r{k} all reduce sum v_a{k}" for k in range(7)), *(f"variable s{k} equal c_r{k}" for k in range(7)),
             "thermo_style custom step pe pxx pyy pzz pxy pxz pyz " + " ".join(f"v_s{k}" for k in range(7)), "thermo_modify norm no",
@@ -169,6 +177,7 @@ def potentials() -> str:
 
 def test_like_lammps(tmp_path):
     write_tables(tmp_path)
+    write_densities(tmp_path)
     jobs = {f"{name}, {units}": scene(name, units, folder=tmp_path) for name in CASES for units in UNITS.get(name, ("metal", "real"))}
     other = {"GaN_tersoff.poly Ga N": "FeCH_BOP_II.poly H Fe C", "create_box 2": "create_box 3"}      # eta 3: tables of triples
     for mine, theirs in other.items():
@@ -186,6 +195,7 @@ def test_like_lammps(tmp_path):
 
 def test_forces_and_virial_are_derivatives_of_the_energy(potentials, tmp_path):
     write_tables(tmp_path)
+    write_densities(tmp_path)
     found = uncompiled(GRADIENT, {name: scene(name, "metal", folder=tmp_path) for name in CASES if name not in OWN}, potentials)
     for name, (slope, force, strained, virial, largest) in found.items():
         scale = STEPS.get(name, 1e-7) * (largest + abs(slope) + abs(strained))

@@ -74,6 +74,28 @@ def test_wrong_files_of_triples(pair, text, table, says, tmp_path, monkeypatch):
         lmp.commands_list([f"pair_style {pair}", "pair_coeff * * a.file B"])
 
 
+DENSITY = "a\n\n1 3\n\n1.0 2.0\n1\n1\n0 4 2\n0.1\n0.2\n0.4\n"
+
+
+@pytest.mark.parametrize(("old", "new", "says"), [
+    ("1.0 2.0", "2.0 2.0", r"R1 must be less than R2 and not negative, got 2 and 2 \(a.file:5"), ("1.0 2.0", "nan 2.0", "R1 must be less"),
+    ("1.0 2.0", "1.0", r"R2 is missing \(a.file:5"), ("\n1\n0 4", "\n2\n0 4", "a.file names type 2, but there are 1"),
+    ("\n1\n0 4", "\n0\n0 4", r"a type of neighbours must be at least 1, got 0 \(a.file:7"),
+    ("\n1\n0 4", "\nB\n0 4", "a type of neighbours must be a whole number, got 'B'"),
+    ("0 4 2", "4 4 2", "first density must be less than the last one"), ("0.2\n", "x\n", r"must be a number, got 'x' \(a.file:10"),
+    ("0.4\n", "", "3 values, 2 of them were read"), ("0.2\n", "inf\n", "not a finite number"), ("1 3", "0 3", "at least 1 potential"),
+    ("1 3", "2 3", "ends before R1 and R2"), ("a\n", "# UNITS: real\n", "in real units, but metal units are in use"),
+])
+def test_wrong_files_of_local_densities(old, new, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    Path("a.file").write_text(DENSITY.replace(old, new, 1))
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "mass 1 1", "create_atoms 1 single 1 1 1"])
+    with pytest.raises(InputError, match=says):
+        lmp.commands_list(["pair_style local/density", "pair_coeff * * a.file", "run 0"])
+
+
 @pytest.mark.parametrize(("pair", "change", "words", "says"), [
     ("rebo", ("REBO2", "REBO"), "C H", r"not one of REBO2, which the first or second line must name \(CH:1"),
     ("rebo", ("1.7\t", "l.7\t"), "C", r"rcmin_CC: expected a number, got 'l.7' \(CH:7"),
