@@ -178,10 +178,6 @@ class PairStyle(Style):
         """Kinds of kspace_style that may stand beside it: by default those that it needs."""
         return self.needs(settings)
 
-    def solver_cuts(self, settings: Mapping[str, Any]) -> list[str]:
-        """Names of the settings that are the cutoff which a solver beside the style must know."""
-        return [p.cut for p in self.variant(settings).parts if p.long or (p.charged and not self.solvers)]
-
     def variant(self, settings: Mapping[str, Any], compat: str = "") -> PairStyle:
         """The style whose parts are computed: this one, unless settings or ``compat="lammps"`` ask for other functions."""
         return self.twin if compat == "lammps" and self.twin else self
@@ -284,10 +280,7 @@ class PairStyle(Style):
 
     def own_energy(self, settings: Mapping[str, Any], filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int,
                    qqr2e: float) -> np.ndarray | None:
-        """For styles whose energy holds that of each charge by itself, q (a + b q): a and b of each type, (2, ntypes + 1).
-
-        With three more rows w, l, m there is w times the square of what the charge is below l or above m.
-        """
+        """For styles whose energy holds that of each charge by itself: the numbers of `asemd.kernels.own_energy` (2 or 5, ntypes + 1)."""
 
     def pack_pairs(self, settings: Mapping[str, Any], filled: Mapping[tuple[int, int], Mapping[str, Any]], ntypes: int, units,
                    shift: bool = False) -> PairTables:

@@ -1,4 +1,4 @@
-"""Energy that charges have by themselves, with five numbers of each type; no forces."""
+"""Energy that charges have by themselves, with five numbers of each type, or two; no forces."""
 from __future__ import annotations
 
 from asemd.kernels.target import njit
@@ -11,7 +11,7 @@ def nothing(q, type_of, row, lo, hi, numbers, factor, acc, share):
 
 @njit(cache=True, nogil=True)
 def alone(q, number):
-    """q (a + b q), and w times the square of what is beyond the range from l to m; `number (5,)`: a, b, w, l, m."""
+    """q (a + b q), and w times the square of what is beyond the range from l to m; `number (5,)`: a, b, w (0), l, m."""
     beyond = min(q - number[3], 0.0) + max(q - number[4], 0.0)
     return q * (number[0] + number[1] * q) + number[2] * beyond * beyond
 

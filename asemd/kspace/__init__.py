@@ -193,7 +193,9 @@ class KSpace(ABC):
         InputError
             Cutoffs of several pair styles differ.
         """
-        return self.one_cutoff([use.settings[name] for use in uses for name in use.style.solver_cuts(use.settings)])
+        whole = [use.settings["cut"] for use in uses if not use.style.parts]      # no sum of parts, with one cutoff
+        return self.one_cutoff(whole + [use.settings[part.cut] for use in uses for part in use.style.variant(use.settings).parts
+                                        if part.long or (part.charged and not use.style.solvers)])
 
     def cutoff_of(self, parts) -> float:
         """The cutoff that all of these parts have, pairs of a `Use` and a part of its style."""

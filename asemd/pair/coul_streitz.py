@@ -111,9 +111,6 @@ class StreitzMintmire(ManyBody):
     def needs(self, settings):
         return frozenset({"pppm", "ewald"} if settings["kind"] == "ewald" else ())
 
-    def solver_cuts(self, settings):
-        return ["cut"]
-
     def check_scene(self, interactions, system):
         super().check_scene(interactions, system)
         if system.q is None:
