@@ -196,17 +196,18 @@ def embedding(i, shared, atom, constants):
         a, b, c = squares(shared, i, 7 + MOMENTS)
         total = -a - b - c
     square = (p, q, w)
-    ts = (0.0, 0.0, 0.0)
+    means = (0.0, 0.0, 0.0)
     if rho0 > 0.0 or alloy == 2.0:
         for k in range(3):
             t = atom[T + k]
-            if alloy == 0.0:
+            if SECOND:      # LAMMPS's sums, no means
+                t = shared[1 + k, i] if alloy != 2.0 else 0.0
+            elif alloy == 0.0:
                 t = shared[1 + k, i] / rho0
             elif alloy == 1.0:
                 t = shared[1 + k, i] / shared[4 + k, i] if shared[4 + k, i] != 0.0 else 0.0
-            if SECOND:      # it is in the weights of the densities
-                t = 1.0
-            ts = (ts[1], ts[2], t)
+            means = (means[1], means[2], t)
+    ts = (1.0, 1.0, 1.0) if SECOND else means      # or they are in the weights of the densities
     total += ts[0] * square[0] + ts[1] * square[1] + ts[2] * square[2]
     weight = 1.0 / (rho0 * rho0) if rho0 > 0.0 else 0.0
     gamma = total * weight
@@ -214,7 +215,7 @@ def embedding(i, shared, atom, constants):
     background, by_t = atom[BACKGROUND], 0.0
     if mixed == 1.0 and atom[IBAR] > 0.0:
         z2 = 1.0 / (atom[Z] * atom[Z])
-        mean = (ts[0] * atom[SHAPE] + ts[1] * atom[SHAPE + 1] + ts[2] * atom[SHAPE + 2]) * z2
+        mean = (means[0] * atom[SHAPE] + means[1] * atom[SHAPE + 1] + means[2] * atom[SHAPE + 2]) * z2
         gbar, dgbar = correction(mean, atom[IBAR], factor)
         background *= gbar
         by_t = -dgbar / gbar * z2
@@ -223,12 +224,15 @@ def embedding(i, shared, atom, constants):
     by_gamma = slope * rho0 * dg / background
     by_rho0 = slope * g / background - (2.0 * by_gamma * gamma / rho0 if rho0 > 0.0 else 0.0)
     for k in range(3):
-        t, d = ts[k], by_gamma * square[k] * weight + slope * rho * by_t * atom[SHAPE + k]
+        t = means[k]
+        d = (0.0 if SECOND else by_gamma * square[k] * weight) + slope * rho * by_t * atom[SHAPE + k]
         count, shared[1 + k, i] = shared[4 + k, i], 0.0
         shared[4 + k, i] = 0.0
-        if SECOND or alloy == 2.0 or rho0 <= 0.0:
+        if alloy == 2.0 or rho0 <= 0.0 or (SECOND and constants[8] == 1.0):
             continue
-        if alloy == 0.0:
+        if SECOND:
+            shared[1 + k, i] = d
+        elif alloy == 0.0:
             shared[1 + k, i] = d / rho0
             by_rho0 -= d * t / rho0
         elif count != 0.0:

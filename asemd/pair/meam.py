@@ -68,8 +68,6 @@ class ModifiedEmbedded(ManyBody):
         if name != "NULL":
             files.append(PotentialFile(name, what))
             read_parameters(files[-1], made)
-        if self.second and made.mixture_ref_t:
-            raise InputError(f"{what}: {name}: mixture_ref_t = 1 is not supported with meam/ms: leave it out")
         made.complete()
         return {"parameters": made, "files": files, "tables": {}}, file
 

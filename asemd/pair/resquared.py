@@ -10,7 +10,7 @@ $$\eta = \frac{\det S_1/\sigma_1^2 + \det S_2/\sigma_2^2}{\sqrt{\det H / (\sigma
 
 Points are single spheres of diameter sigma, two of them interact as by lj/cut with epsilon = A; with an ellipsoid, eta is 1 and its product
 becomes that of one body, times $3/4\pi$ and $(2\sigma/h)^3$ or $60(\sigma/h)^3$, and contact is that of semi-axes s + sigma/2. Coefficients
-of unlike types must be given: LAMMPS refuses to mix those of ellipsoids, and points whose coefficients it mixes do not interact there.
+of unlike types must be given: those of ellipsoids have no mean, and points whose coefficients LAMMPS mixes do not interact there.
 Source: R. Everaers, M. R. Ejtehadi, Phys. Rev. E 67, 041710 (2003); M. Babadi, R. Everaers, M. R. Ejtehadi, J. Chem. Phys. 124, 174708.
 """
 from __future__ import annotations
