@@ -30,7 +30,8 @@ CASES = {     # lattices and ibar of the elements, lines of the parameter file
     "hcp": ("hcp 3 hcp 4", "lattce(1,2)=hcp; nn2(1,2)=1; nn2(1,1)=1"),
     "second fcc": ("fcc 0 hcp 3", "nn2(1,2)=1"), "second l12": ("dia 1 hcp 3", "lattce(1,2)=l12"),
     "second zig": ("zig 0 dim 3", "lattce(1,2)=zig; theta(1,2)=105; ialloy=0"), "second dia": ("dia 0 dim 1", "lattce(1,2)=dia; ialloy=2"),
-    "second mixed t": ("dia 1 hcp 3", "mixture_ref_t=1"), "second mixed t, b1": ("dia 1 dia 3", "mixture_ref_t=1; ialloy=0; lattce(1,2)=b1"),
+    "second mixed t": ("dia 1 hcp 3", "mixture_ref_t=1"),
+    "second mixed t, b1": ("dia 1 dia 3", "mixture_ref_t=1; ialloy=0; lattce(1,2)=b1"),
     "second, no mean": ("dia 1 hcp 3", "mixture_ref_t=1; ialloy=2"),
     "second c11": ("fcc 0 hcp 3", "lattce(1,2)=c11; bkgd_dyn=1"),
 }
