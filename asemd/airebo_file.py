@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asemd import words as read
+from asemd.errors import InputError
 from asemd.potential_file import PotentialFile
 
 PAIRS = ("CC", "CH", "HH")
@@ -88,9 +90,9 @@ def read_hydrocarbons(file: PotentialFile, morse: bool, title: str) -> Hydrocarb
                 raise file.error(f"the file ends before {what}", lines[-1][0] if lines else 1)
             number, text = lines[at]
             try:
-                out[k] = float(text.split()[0])
-            except ValueError:
-                raise file.error(f"{what}: expected a number, got {text.split()[0]!r}", number) from None
+                out[k] = read.number(text.split()[0], what)
+            except InputError as e:
+                raise file.error(e.message, number) from None
             at += 1
         return out
 

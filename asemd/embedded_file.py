@@ -8,11 +8,13 @@ and w of each pair. Arrays begin on a line of their own and may go over several.
 """
 from __future__ import annotations
 
+import re
+import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.potential_file import PotentialFile, Record
 
 
@@ -104,7 +106,19 @@ class Lines:
                 raise self.file.error(f"a value of {what} is not a finite number", self.at)
             out[n:n + len(values)] = values
             n += len(values)
+        if len(record.words) > len(words):
+            self.warn(f"{what} has {count} values, what follows on the line of its last one is left out")
         return out
+
+    def end(self) -> None:
+        """Warn of numbers behind the last table."""
+        for line in self.file.raw[self.at:]:
+            self.at += 1
+            if re.match(r"\s*[-+.]?\d", line):
+                return self.warn("the file goes on where it should end: is a number of values too small?")
+
+    def warn(self, message: str) -> None:
+        warnings.warn(f"{self.file.what}: {message} ({self.file.where(self.at)})", InputWarning, stacklevel=4)
 
     def grid(self, record: Record, name: str, spacing: str) -> tuple[int, float]:
         """Number of values and their distance."""
@@ -145,7 +159,9 @@ def read_funcfl(file: PotentialFile) -> Funcfl:
     lines.skip(1)
     number, mass = lines.element()
     nrho, drho, nr, dr, cut, _ = lines.sizes()
-    return Funcfl(number, mass, drho, dr, cut, lines.array(nrho, "F(rho)"), lines.array(nr, "Z(r)"), lines.array(nr, "rho(r)"))
+    tables = lines.array(nrho, "F(rho)"), lines.array(nr, "Z(r)"), lines.array(nr, "rho(r)")
+    lines.end()
+    return Funcfl(number, mass, drho, dr, cut, *tables)
 
 
 def elements_of(file: PotentialFile) -> tuple[str, ...]:
@@ -208,5 +224,6 @@ def read_setfl(file: PotentialFile, chosen, *, pairs: bool = False, rhomax: bool
         if degree < 0:
             raise InputError(f"{file.what}: the degree of h(x) must not be negative, got {degree}", record.where)
         h = np.array([record.number(f"coefficient {k} of h(x)") for k in range(degree + 1)])
+    lines.end()
     return Setfl(elements, np.array(masses), drho, dr, cut, top - (nrho - 1) * drho if rhomax else 0.0, top, np.array(embedding),
                  np.array(density), *tables, polynomial=h)

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from asemd.errors import InputError, Where
-from asemd.tabulated import find_file
+from asemd.tabulated import find_file, lines_of_file
 
 EV = 23.060549     # kcal/mol, LAMMPS's factor between real and metal
 CONVERT = {("metal", "real"): EV, ("real", "metal"): 1.0 / EV, ("metal", "ase"): 1.0, ("real", "ase"): 1.0 / EV}
@@ -38,7 +39,7 @@ class Record:
         return self.words[self.at - 1]
 
     def number(self, name: str = "a number") -> float:
-        """The next word, a number; Fortran's exponents (1.0d-3) are refused as in LAMMPS."""
+        """The next word, a finite number; Fortran's exponents (1.0d-3) are refused as in LAMMPS."""
         return self._as(float, name, "a number")
 
     def whole(self, name: str = "a whole number") -> int:
@@ -51,9 +52,9 @@ class Record:
     def _as(self, kind: Callable, name: str, expected: str):
         word = self.word(name)
         try:
-            if "_" in word:
+            if "_" in word or not isfinite(value := kind(word)):
                 raise ValueError
-            return kind(word)
+            return value
         except ValueError:
             raise InputError(f"{self.what}: {name} must be {expected}, got {word!r}", self.where) from None
 
@@ -78,7 +79,7 @@ class PotentialFile:
 
     def __init__(self, name: str, what: str):
         self.name, self.what, self.path = name, what, Path(find_file(name, what))
-        text = self.path.read_text(encoding="utf-8", errors="replace").splitlines()
+        text = lines_of_file(self.path, name, what)
         tags = text[0].split() if text else []
         self.units, self.date = (tags[tags.index(t) + 1] if t in tags[:-1] else "" for t in ("UNITS:", "DATE:"))
         self.raw = text

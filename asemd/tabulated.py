@@ -12,6 +12,8 @@ import numpy as np
 
 from asemd.errors import InputError, InputWarning, Where, nearest
 
+PACKED = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"PK\x03\x04")      # how files of gzip, bzip2, xz and zip begin
+
 
 @dataclass(eq=False)
 class Section:
@@ -71,7 +73,31 @@ def find_file(name: str, what: str) -> Path:
     for candidate in (path, *(folder / path.name for folder in folders)):
         if candidate.is_file():
             return candidate
+    if path.is_dir():
+        raise InputError(f"{what}: {name} is a folder: name a file in it")
     raise InputError(f"{what}: cannot open file {name}: no such file here or in a folder of LAMMPS_POTENTIALS")
+
+
+def lines_of_file(path: Path, name: str, what: str) -> list[str]:
+    """The lines of a text file, which is called `name` in messages.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is empty, compressed or no text.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as e:
+        raise InputError(f"{what}: cannot read file {name}: {e.strerror}") from None
+    if content.startswith(PACKED):
+        raise InputError(f"{what}: the file is compressed: unpack it and name the text file", Where(name, 1))
+    if b"\0" in content:
+        line = content[:content.index(b"\0")].count(b"\n") + 1
+        raise InputError(f"{what}: the file is not a text file, it has bytes of value 0", Where(name, line))
+    if not content.strip():
+        raise InputError(f"{what}: the file is empty", Where(name, 1))
+    return content.decode("utf-8", "replace").splitlines()
 
 
 def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str, texts: Collection[str] = (),
@@ -99,7 +125,7 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         No such file or section, an unknown parameter, N missing, too few lines, something that is not a number; with file and line.
     """
     path = find_file(name, what)
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = lines_of_file(path, name, what)
     found = re.search(r"UNITS:\s*(\S+)", lines[0]) if lines else None
     words = [(k, line.split("#")[0].split()) for k, line in enumerate(lines)]
     words = [(k, w) for k, w in words if w]

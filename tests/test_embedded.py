@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 from wheel import ask
 
+from asemd.embedded_file import read_setfl
 from asemd.embedded_term import EmbeddedTerm
 from asemd.engine import Engine
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.lammps import Lammps
 from asemd.manybody_term import ManyBodyTerm
+from asemd.potential_file import PotentialFile
 from asemd.result import Settings
 
 pytestmark = pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
@@ -227,6 +229,16 @@ def test_files_that_end_too_soon(tmp_path):
     with pytest.raises(InputError, match="the file ends before the line with atomic number"):
         path.write_text("one line\n")
         run(scene("eam", [f"pair_coeff * * {path}"], 2, 2.6, 3))
+
+
+def test_files_with_too_many_values(tmp_path):
+    """LAMMPS leaves them out without a word."""
+    path = small(tmp_path)
+    text = path.read_text()
+    for new, says in (("99 0.5 200", r"F\(rho\) of A has 99 values, what follows .* is left out .*small:26"), ("100 0.5 200", "small:248")):
+        path.write_text(text.replace("100 0.5 200", new) + "1.0 2.0\n" * (new[0] == "1"))
+        with pytest.warns(InputWarning, match=says):
+            read_setfl(PotentialFile(str(path), "pair_coeff eam/alloy"), ("A", "B"))
 
 
 def test_masses_come_from_the_file(tmp_path):

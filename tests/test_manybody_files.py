@@ -1,6 +1,7 @@
 """Files and commands of many-body potentials that are wrong, and what a restart file keeps of them."""
 from __future__ import annotations
 
+import gzip
 import os
 from pathlib import Path
 
@@ -22,6 +23,7 @@ GOOD = "Si Si Si 2.1683 2.0951 1.80 21.0 1.20 -0.333333333333\n 7.049556277 0.60
 
 @pytest.mark.parametrize(("text", "words", "says"), [
     (GOOD.replace("2.1683", "2.l683"), "Si", r"epsilon must be a number, got '2.l683' \(Si.sw:1"),
+    (GOOD.replace("2.1683", "nan"), "Si", r"epsilon must be a number, got 'nan' \(Si.sw:1"),
     (GOOD.replace("4.0 0.0 0.0", "4.0 0.0"), "Si", r"needs 14 words, got 13 \(Si.sw:1"),
     (GOOD + "# again\n" + GOOD, "Si", r"Si Si Si is there twice, first in line 1 \(Si.sw:4"),
     (GOOD.replace("2.0951", "-2.0951"), "Si", r"entry Si Si Si: sigma must not be negative, got -2.0951 \(Si.sw:1"),
@@ -42,6 +44,22 @@ def test_wrong_files(text, words, says, tmp_path, monkeypatch):
         lmp.command("run 0")
 
 
+@pytest.mark.parametrize(("style", "words"), [("sw", "X.file Si"), ("eam", "X.file"), ("eam/alloy", "X.file Si"), ("rebo", "X.file C"),
+                                              ("meam", "X.file Si NULL Si"), ("polymorphic", "X.file Si"), ("meam/spline", "X.file Si")])
+@pytest.mark.parametrize(("content", "says"), [
+    (gzip.compress(GOOD.encode()), r"the file is compressed: unpack it and name the text file \(X.file:1"),
+    (b"# a\n\0\1\2", r"not a text file, it has bytes of value 0 \(X.file:2"), (b" \n", r"the file is empty \(X.file:1"),
+    (None, "X.file is a folder: name a file in it")])
+def test_no_text_files(style, words, content, says, tmp_path, monkeypatch):
+    from asemd.lammps import Lammps
+    monkeypatch.chdir(tmp_path)
+    Path("X.file").mkdir() if content is None else Path("X.file").write_bytes(content)
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", f"pair_style {style}"])
+    with pytest.raises(InputError, match=says):
+        lmp.command(f"pair_coeff * * {words}")
+
+
 EXTEP = "B B B 3 1 0 26617.3 141.2 -0.13 1.1422470 0.01498959 2.5211820 2768.7 2.0 0.2 2.6857244 3376.3\n"
 GRID = "".join(f"B B {i} {j} 0.0 0.0 0.0 0.0\n" for i in range(5) for j in range(5))
 ENTRY = "B B B 2.8 t.table T linear 2\n"
@@ -52,6 +70,8 @@ ENTRY = "B B B 2.8 t.table T linear 2\n"
     ("extep", EXTEP + GRID.replace("B B 4 4 0.0", "B B 4 4 x"), "", r"the value must be a number, got 'x' .*:26"),
     ("extep", EXTEP + GRID + "B B 0 5 0 0 0 0\n", "", r"go from 0 to 4, got 0 5 .*:27"),
     ("extep 1.0", EXTEP + GRID, "", "takes no words|no values|extep"),
+    ("polymorphic", "# a\n1 0\n14 28 B\n6 6 6 1.0\n1 0\n" + "0 0\n" * 5 + "0 inf\n" + "0 0\n" * 40, "",
+     r"a value of the tables U, V and W must be a number, got 'inf' .*:11"),
     ("threebody/table", ENTRY.replace("linear", "spline"), "", r"must be linear, got 'spline' .*:1"),
     ("threebody/table", ENTRY.replace("2.8", "-1"), "", "cutoff must be positive, got -1"),
     ("threebody/table", ENTRY, "T\n\n", "no line of parameters"),
@@ -99,6 +119,7 @@ def test_wrong_files_of_local_densities(old, new, says, tmp_path, monkeypatch):
 @pytest.mark.parametrize(("pair", "change", "words", "says"), [
     ("rebo", ("REBO2", "REBO"), "C H", r"not one of REBO2, which the first or second line must name \(CH:1"),
     ("rebo", ("1.7\t", "l.7\t"), "C", r"rcmin_CC: expected a number, got 'l.7' \(CH:7"),
+    ("rebo", ("1.7\t", "-inf\t"), "C", r"rcmin_CC: expected a finite number, got '-inf' \(CH:7"),
     ("rebo", ("\n# pCH", "\n1.0\n# pCH"), "C", ""), ("rebo", (None, 5000), "C", r"ends before the splines of coordinations \(CH:"),
     ("rebo", ("# gH\n\n4", "# gH\n\n5"), "C", "the angular function of hydrogen: expected 4 ends of pieces, got 5"),
     ("rebo", ("", ""), "Si", "elements must be C, H or NULL, got Si"), ("rebo 3.0", ("", ""), "C", "needs 0 values, got 1"),

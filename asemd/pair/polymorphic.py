@@ -13,10 +13,10 @@ import math
 
 import numpy as np
 
-from asemd.errors import InputError
 from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
 from asemd.manybody import ManyBody, element_of
 from asemd.pairstyle import PairTables
+from asemd.potential_file import Record
 from asemd.style import register
 
 
@@ -138,12 +138,16 @@ class Polymorphic(ManyBody):
         def take(kind, count, name):
             nonlocal at
             if at + count > len(words):
-                raise file.error(f"the file ends before {name}", places[-1] if places else 1)
+                raise file.error(f"the file ends before the last of {count} numbers of {name}", places[-1] if places else 1)
             at += count
             try:
-                return [kind(w) for w in words[at - count:at]]
+                out = [kind(w) for w in words[at - count:at]]
+                if kind is str or np.isfinite(out).all():
+                    return out
             except ValueError:
-                raise file.error(f"{name}: expected numbers", places[at - count]) from None
+                pass
+            for word, place in zip(words[at - count:at], places[at - count:at]):      # raises at the first that is none
+                getattr(Record([word], file.where(place), file.what), "whole" if kind is int else "number")(f"a value of {name}")
 
         n, eta = take(int, 2, "the number of elements and eta")
         if eta not in (0, 1, 2, 3):
@@ -151,9 +155,9 @@ class Polymorphic(ManyBody):
         names = [take(str, 3, "an element")[2] for _ in range(n)]
         for element in elements:
             if element not in names:
-                raise InputError(f"{file.what}: {file.name} has no element {element}, only {' '.join(names)}")
+                raise file.error(f"the file has no element {element}, only {' '.join(names)}", places[0])
         if len(elements) != n:
-            raise InputError(f"{file.what}: {file.name} has {n} elements, {' '.join(names)}, and needs them all, got {' '.join(elements)}")
+            raise file.error(f"the file has {n} elements, {' '.join(names)}, and needs them all, got {' '.join(elements)}", places[0])
         nr, ng, nx = take(int, 3, "the lengths of the tables")
         largest, = take(float, 1, "the largest argument of F")
         if min(nr, ng, nx) < 6 or not largest > 0.0:
