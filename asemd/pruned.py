@@ -1,33 +1,18 @@
 """The shorter list that a pair term runs over between two builds of the whole one."""
 from __future__ import annotations
 
-import ast
-from functools import cache
-
 import numpy as np
 
 from asemd.kernels import prune
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.state import aligned
 from asemd.neighbor import COUNTERS, ClusterList
-from asemd.style import text_of
+from asemd.pairstyle import operations
 
 PART = 0.35              # of the skin, which pruned lists begin with
 MAKING, BARE, EACH = 6.0, 0.5, 0.025      # times, up to a factor: of pruning an entry, of a pair without its formula, of an operation
-DEAR = {f"math.{name}" for name in ("exp", "log", "erfc", "pow", "sin", "cos")}
 ENTRY = 6.8              # pairs that kernels compute for an entry of the list
 INTERVAL = 3             # force evaluations for which a pruned list serves, at least
-
-
-@cache
-def operations(style) -> int:
-    """Of the formulas of a pair style: arithmetic, exponential functions and their like counting twenty."""
-    count = 0
-    for part in style.parts:
-        for node in ast.walk(ast.parse(text_of(part.function))):
-            count += isinstance(node, ast.BinOp)
-            count += 20 * (isinstance(node, ast.Call) and ast.unparse(node.func) in DEAR)
-    return count
 
 
 class PrunedList:

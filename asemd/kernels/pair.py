@@ -9,10 +9,11 @@ import numpy as np
 
 from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, prune, vector_math
 from asemd.kernels.generate import Builder
-from asemd.kernels.target import lanes
-from asemd.pairstyle import SCALE, PairStyle
+from asemd.kernels.target import lanes, many_registers
+from asemd.pairstyle import SCALE, PairStyle, operations
 from asemd.style import text_of
 
+SHORT = 20               # operations in the formulas
 ROWS = (608, 1120, 2144, 4192, 8288, 16480, 32864)
 
 
@@ -88,6 +89,14 @@ def takes_roots(style: PairStyle) -> bool:
     return any(part.coordinate == "r" or "math.sqrt(r2" in text_of(part.function) for part in style.parts)
 
 
+def two_at_a_time(style: PairStyle) -> bool:
+    """Whether two atoms of a cluster run over its neighbours together, which halves loads and stores and takes twice the registers.
+
+    Where there are few of these, short formulas lose more by numbers that do not fit into them (decision 14).
+    """
+    return many_registers() or style.charged or takes_roots(style) or operations(style) > SHORT
+
+
 def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single: bool, energy: bool, piece: str,
                    constants: dict) -> Builder:
     """What kernels over cluster lists have in common: constants, the style's formulas, coefficients of the neighbours."""
@@ -139,22 +148,25 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         The list is a part of another one, made anew when due (`asemd.kernels.prune`).
     """
     varying = len(uniform) - sum(uniform)
+    paired = two_at_a_time(style)
     b = _over_clusters("cluster list", style, uniform, single, energy, piece,
                        dict(CLUSTER=pair_cluster.CLUSTER, ROW=row, WIDTH=lanes(single), NROWS=buffer_rows(varying),
                             SETS=pair_cluster.SETS, ENERGY=energy, VIRIAL=virial, CHARGED=style.charged, CHARGE_ROW=6 * style.charged,
-                            SHARE=not single, VARYING=bool(varying), EXCLUDE=exclude, OUTDATED=outdated, HIDE=False, PRUNED=pruned,
-                            SLOT_BITS=pair_cluster.SLOT_BITS))
+                            SHARE=not single, PAIRED=paired, VARYING=bool(varying), EXCLUDE=exclude, OUTDATED=outdated,
+                            HIDE=False, PRUNED=pruned, SLOT_BITS=pair_cluster.SLOT_BITS))
     if pruned:
         b.use(prune.module(), "renew")
     for f in (pair_sums.eight, pair_sums.plus, pair_sums.add):
         b.function(f, fast=True)
     if varying:
         b.function(pair_cluster.coefficients, fast=True)
-    b.function(pair_cluster.inner_two, fast=True)
-    b.function(pair_cluster.one_pair, fast=True)
+    inner = pair_cluster.inner_two if paired else pair_cluster.inner_one
+    b.function(inner, fast=True)
+    if paired:
+        b.function(pair_cluster.one_pair, fast=True)
     if outdated:
         b.constants["HIDE"] = True
-        b.function(pair_cluster.inner_two, "inner_hidden", fast=True)
+        b.function(inner, "two_hidden" if paired else "one_hidden", fast=True)
     b.function(pair_cluster.cluster_forces, fast=True)
     module = b.build()
     return module.cluster_forces, module

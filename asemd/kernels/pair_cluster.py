@@ -2,8 +2,8 @@
 
 For each cluster the neighbours are packed, relative to the cluster's first atom, into one flat buffer whose rows are `ROW` apart (a
 constant, so that the compiler sees no aliasing): x y z, force x y z, charge. Coefficients stand in a second buffer, in the same order:
-NROWS rows for each of up to SETS types of the atoms i of the cluster. Two atoms i at a time run over the buffers in a loop that starts at
-0, forces on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
+NROWS rows for each of up to SETS types of the atoms i of the cluster. Two atoms i at a time (PAIRED), or one, run over the buffers; forces
+on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
 
 A list that may be outdated (``neigh_modify check no``, or a delay) still has LAMMPS's meaning: pairs that were beyond its reach when it was
 built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
@@ -13,9 +13,9 @@ The virial (VIRIAL) is the sum over the places of the buffer of position times f
 In single precision, where that would cost digits, energies come with a virial summed over pairs.
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), SETS, ENERGY, VIRIAL, CHARGED, VARYING
-(some coefficient differs between type pairs), EXCLUDE, SHARE (one division for two pairs), ROOT (formulas take 1/r), OUTDATED (the list may
-be), PRUNED (the list is a part of another, and made here); `real` is the working precision; `pair_force`, `pair_energy` and `fill_rows` are
-made from the style.
+(some coefficient differs between type pairs), EXCLUDE, PAIRED, SHARE (one division for two pairs), ROOT (formulas take 1/r), OUTDATED (the
+list may be), PRUNED (the list is a part of another, and made here); `real` is the working precision; `pair_force`, `pair_energy` and
+`fill_rows` are made from the style.
 """
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ ROW = 1048
 WIDTH = 8
 NROWS, SETS = 0, 4
 ENERGY = VIRIAL = CHARGED = VARYING = SHARE = ROOT = False
-EXCLUDE = OUTDATED = HIDE = PRUNED = True
+EXCLUDE = OUTDATED = HIDE = PRUNED = PAIRED = True
 SLOT_BITS = 0x3FFFFFF
 CHARGE_ROW = 0           # where charges stand in the buffer, 0 for nowhere
 real = np.float64
 place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
-pair_force = pair_energy = fill_rows = inner_hidden = vector_root = renew = None
+pair_force = pair_energy = fill_rows = two_hidden = one_hidden = vector_root = renew = None
 
 
 def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb):
@@ -118,6 +118,51 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
         b[place(k + 4 * ROW)] = madd(-dya, pa, madd(-dyb, pb, b[place(k + 4 * ROW)]))
         b[place(k + 5 * ROW)] = madd(-dza, pa, madd(-dzb, pb, b[place(k + 5 * ROW)]))
     return fxa, fya, fza, fxb, fyb, fzb, (ev, ec, v0, v1, v2, v3, v4, v5)
+
+
+def inner_one(b, o, n, x, y, z, q, p, hide, h, a, c, ca):
+    """As `inner_two` for one atom, whose bit of `hide` is `a`: half as many numbers at hand, for processors with few vector registers."""
+    if HIDE:
+        bit = np.uint8(1 << a)
+    meet = True
+    zero = real(0)
+    fx, fy, fz = zero, zero, zero
+    ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
+    for m in range(n):
+        k = o + m
+        dx = x - b[place(k)]
+        dy = y - b[place(k + ROW)]
+        dz = z - b[place(k + 2 * ROW)]
+        r2 = madd(dx, dx, madd(dy, dy, dz * dz))
+        if HIDE:
+            meet = (hide[place(h + k)] & bit) == 0
+        if ROOT:
+            w = vector_root(r2)
+            i2 = w * w
+        else:
+            i2 = real(1) / r2
+            w = math.sqrt(i2)
+        qq = q * b[place(k + 6 * ROW)] if CHARGED else zero
+        if ENERGY:
+            fp, one_v, one_c = pair_energy(r2, i2, w, qq, p, c, ca + k, meet)
+            ev += one_v
+            ec += one_c
+            if not VIRIAL:
+                v0 = madd(dx * dx, fp, v0)
+                v1 = madd(dy * dy, fp, v1)
+                v2 = madd(dz * dz, fp, v2)
+                v3 = madd(dx * dy, fp, v3)
+                v4 = madd(dx * dz, fp, v4)
+                v5 = madd(dy * dz, fp, v5)
+        else:
+            fp = pair_force(r2, i2, w, qq, p, c, ca + k, meet)
+        fx = madd(dx, fp, fx)
+        fy = madd(dy, fp, fy)
+        fz = madd(dz, fp, fz)
+        b[place(k + 3 * ROW)] = madd(-dx, fp, b[place(k + 3 * ROW)])
+        b[place(k + 4 * ROW)] = madd(-dy, fp, b[place(k + 4 * ROW)])
+        b[place(k + 5 * ROW)] = madd(-dz, fp, b[place(k + 5 * ROW)])
+    return fx, fy, fz, (ev, ec, v0, v1, v2, v3, v4, v5)
 
 
 def one_pair(b, k, x, y, z, qi, p, c, row):
@@ -203,86 +248,118 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         if EXCLUDE:
             xp = excluded_first[ci]
             xe = excluded_first[ci + 1]
-        for a0 in range(0, CLUSTER, 2):
-            base = np.int64(span[ci, a0])
-            count = np.int64(span[ci, a0 + 1]) - base
-            xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
-            xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
-            if OUTDATED:
-                late = rest <= 0.0 or max(moved[place(s + a0)], moved[place(s + a0 + 1)]) > rest * rest
-            qa = real(0)
-            qb = real(0)
-            if CHARGED:
-                qa = b[place(mine + a0 + 6 * ROW)] * real(qqr2e)
-                qb = b[place(mine + a0 + 1 + 6 * ROW)] * real(qqr2e)
-            if VARYING:
-                ca, filled = coefficients(c, full, rows, types[place(mine + a0)], types, held, filled, -1)
-                cb, filled = coefficients(c, full, rows, types[place(mine + a0 + 1)], types, held, filled, ca)
-            b[place(mine + a0)] = done
-            b[place(mine + a0 + 1)] = done
-            together = True
-            if EXCLUDE:
-                # what either atom must not meet is hidden from both, and met one by one by the other atom
-                x0 = xp
-                while xp < xe and (excluded[xp] >> 16) <= a0 + 1:
-                    k = np.uint32(excluded[xp] & np.int32(0xFFFF))
-                    saved[xp - x0] = b[k]
-                    b[k] = far
-                    xp += 1
-            if OUTDATED and late:
-                fxa, fya, fza, fxb, fyb, fzb, sums = inner_hidden(
-                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
-            else:
-                fxa, fya, fza, fxb, fyb, fzb, sums = inner_two(
-                    b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
-            if EXCLUDE:
-                for y in range(xp - 1, x0 - 1, -1):
-                    b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
-                for y in range(x0, xp):
-                    k = np.int64(excluded[y] & np.int32(0xFFFF))
-                    if k == mine + a0 + 1:
-                        together = False
-                        continue
-                    twin = False
-                    for z in range(x0, xp):
-                        twin = twin or (z != y and (excluded[z] & np.int32(0xFFFF)) == k)
-                    if twin:
-                        continue
-                    if OUTDATED and late:
-                        if (hide[place(f0 + k)] >> (a0 + ((excluded[y] >> 16) == a0))) & 1:
+        if PAIRED:
+            for a0 in range(0, CLUSTER, 2):
+                base = np.int64(span[ci, a0])
+                count = np.int64(span[ci, a0 + 1]) - base
+                xa, ya, za = b[place(mine + a0)], b[place(mine + a0 + ROW)], b[place(mine + a0 + 2 * ROW)]
+                xb, yb, zb = b[place(mine + a0 + 1)], b[place(mine + a0 + 1 + ROW)], b[place(mine + a0 + 1 + 2 * ROW)]
+                if OUTDATED:
+                    late = rest <= 0.0 or max(moved[place(s + a0)], moved[place(s + a0 + 1)]) > rest * rest
+                qa = real(0)
+                qb = real(0)
+                if CHARGED:
+                    qa = b[place(mine + a0 + 6 * ROW)] * real(qqr2e)
+                    qb = b[place(mine + a0 + 1 + 6 * ROW)] * real(qqr2e)
+                if VARYING:
+                    ca, filled = coefficients(c, full, rows, types[place(mine + a0)], types, held, filled, -1)
+                    cb, filled = coefficients(c, full, rows, types[place(mine + a0 + 1)], types, held, filled, ca)
+                b[place(mine + a0)] = done
+                b[place(mine + a0 + 1)] = done
+                together = True
+                if EXCLUDE:
+                    # what either atom must not meet is hidden from both, and met one by one by the other atom
+                    x0 = xp
+                    while xp < xe and (excluded[xp] >> 16) <= a0 + 1:
+                        k = np.uint32(excluded[xp] & np.int32(0xFFFF))
+                        saved[xp - x0] = b[k]
+                        b[k] = far
+                        xp += 1
+                if OUTDATED and late:
+                    fxa, fya, fza, fxb, fyb, fzb, sums = two_hidden(
+                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
+                else:
+                    fxa, fya, fza, fxb, fyb, fzb, sums = inner_two(
+                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
+                if EXCLUDE:
+                    for y in range(xp - 1, x0 - 1, -1):
+                        b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
+                    for y in range(x0, xp):
+                        k = np.int64(excluded[y] & np.int32(0xFFFF))
+                        if k == mine + a0 + 1:
+                            together = False
                             continue
-                    if (excluded[y] >> 16) == a0:
-                        gx, gy, gz, one = one_pair(b, k, xb, yb, zb, qb, p, c, cb)
-                        fxb += gx
-                        fyb += gy
-                        fzb += gz
-                    else:
-                        gx, gy, gz, one = one_pair(b, k, xa, ya, za, qa, p, c, ca)
-                        fxa += gx
-                        fya += gy
-                        fza += gz
+                        twin = False
+                        for z in range(x0, xp):
+                            twin = twin or (z != y and (excluded[z] & np.int32(0xFFFF)) == k)
+                        if twin:
+                            continue
+                        if OUTDATED and late:
+                            if (hide[place(f0 + k)] >> (a0 + ((excluded[y] >> 16) == a0))) & 1:
+                                continue
+                        if (excluded[y] >> 16) == a0:
+                            gx, gy, gz, one = one_pair(b, k, xb, yb, zb, qb, p, c, cb)
+                            fxb += gx
+                            fyb += gy
+                            fzb += gz
+                        else:
+                            gx, gy, gz, one = one_pair(b, k, xa, ya, za, qa, p, c, ca)
+                            fxa += gx
+                            fya += gy
+                            fza += gz
+                        if ENERGY:
+                            sums = plus(sums, one)
+                if OUTDATED and late:
+                    together = together and ((hide[place(f0 + mine + a0 + 1)] >> a0) & 1) == 0
+                if together:
+                    # b was hidden from a, too, lest they met twice
+                    b[place(mine + a0 + 1)] = xb
+                    gx, gy, gz, one = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, c, ca)
+                    b[place(mine + a0 + 1)] = done
+                    fxa += gx
+                    fya += gy
+                    fza += gz
                     if ENERGY:
                         sums = plus(sums, one)
-            if OUTDATED and late:
-                together = together and ((hide[place(f0 + mine + a0 + 1)] >> a0) & 1) == 0
-            if together:
-                # b was hidden from a, too, lest they met twice
-                b[place(mine + a0 + 1)] = xb
-                gx, gy, gz, one = one_pair(b, mine + a0 + 1, xa, ya, za, qa, p, c, ca)
-                b[place(mine + a0 + 1)] = done
-                fxa += gx
-                fya += gy
-                fza += gz
+                b[place(mine + a0 + 3 * ROW)] += fxa
+                b[place(mine + a0 + 4 * ROW)] += fya
+                b[place(mine + a0 + 5 * ROW)] += fza
+                b[place(mine + a0 + 1 + 3 * ROW)] += fxb
+                b[place(mine + a0 + 1 + 4 * ROW)] += fyb
+                b[place(mine + a0 + 1 + 5 * ROW)] += fzb
                 if ENERGY:
-                    sums = plus(sums, one)
-            b[place(mine + a0 + 3 * ROW)] += fxa
-            b[place(mine + a0 + 4 * ROW)] += fya
-            b[place(mine + a0 + 5 * ROW)] += fza
-            b[place(mine + a0 + 1 + 3 * ROW)] += fxb
-            b[place(mine + a0 + 1 + 4 * ROW)] += fyb
-            b[place(mine + a0 + 1 + 5 * ROW)] += fzb
-            if ENERGY:
-                add(acc, sums)
+                    add(acc, sums)
+        else:
+            for a in range(CLUSTER):
+                base = np.int64(span[ci, a // 2 * 2])
+                count = np.int64(span[ci, a // 2 * 2 + 1]) - base
+                xa, ya, za = b[place(mine + a)], b[place(mine + a + ROW)], b[place(mine + a + 2 * ROW)]
+                if OUTDATED:
+                    late = rest <= 0.0 or moved[place(s + a)] > rest * rest
+                qa = b[place(mine + a + 6 * ROW)] * real(qqr2e) if CHARGED else real(0)
+                if VARYING:
+                    ca, filled = coefficients(c, full, rows, types[place(mine + a)], types, held, filled, -1)
+                b[place(mine + a)] = done
+                x0 = 0
+                if EXCLUDE:
+                    x0 = xp
+                    while xp < xe and (excluded[xp] >> 16) <= a:
+                        k = np.uint32(excluded[xp] & np.int32(0xFFFF))
+                        saved[xp - x0] = b[k]
+                        b[k] = far
+                        xp += 1
+                if OUTDATED and late:
+                    fxa, fya, fza, sums = one_hidden(b, base, count, xa, ya, za, qa, p, hide, f0, a, c, ca)
+                else:
+                    fxa, fya, fza, sums = inner_one(b, base, count, xa, ya, za, qa, p, hide, f0, a, c, ca)
+                if EXCLUDE:
+                    for y in range(xp - 1, x0 - 1, -1):
+                        b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
+                b[place(mine + a + 3 * ROW)] += fxa
+                b[place(mine + a + 4 * ROW)] += fya
+                b[place(mine + a + 5 * ROW)] += fza
+                if ENERGY:
+                    add(acc, sums)
         if VIRIAL:
             for a in range(CLUSTER):
                 b[place(mine + a)] = real(x[0, place(s + a)] - ox)

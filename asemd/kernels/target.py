@@ -17,9 +17,14 @@ def prefer_wide_vectors() -> None:
 prefer_wide_vectors()
 
 
+def many_registers() -> bool:
+    """Whether there are 32 vector registers (AVX-512), and not 16."""
+    return "+avx512f" in (numba.config.CPU_FEATURES or "")
+
+
 def lanes(single: bool) -> int:
     """What rows of neighbours are padded to: numbers per vector, and at least 8.
 
     Sixteen single-precision numbers on a processor whose vectors hold eight take half as long again as they should.
     """
-    return 16 if single and "+avx512f" in (numba.config.CPU_FEATURES or "") else 8
+    return 16 if single and many_registers() else 8

@@ -11,31 +11,37 @@ README, SPEED = ROOT / "README.md", ROOT / "docs" / "speed.md"
 
 
 def keep(new: dict) -> None:
-    """Add results to those that are kept (``{"sizes": ..., "cases": {...}}``: those of the same names are replaced), write the pages."""
+    """Add results of this machine to those that are kept (``{"sizes": ..., "cases": {...}}``: those of the same names are replaced), and
+    write the pages."""
+    machine = compare.machine()
     found = json.loads(FILE.read_text()) if FILE.exists() else {}
+    here = found.setdefault(f"{machine['cpu']}, {machine['vectors']}", {})
     for part, values in new.items():
-        found[part] = {**found.get(part, {}), **values} if part != "sizes" else values
-    found["machine"] = compare.machine()
+        here[part] = {**here.get(part, {}), **values} if part != "sizes" else values
+    here["machine"] = machine
     FILE.write_text(json.dumps(found, indent=1) + "\n")
     write(found)
 
 
 def write(found: dict) -> None:
-    """Put the tables between their marks."""
-    from tests.benchmarks import cases, sizes
-    tables = {}
-    if "cases" in found:
-        tables["cases"] = cases.table(found["cases"])
-    if "other" in found:
-        tables["other"] = ["```text", *(line for name, values in found["other"].items() for line in compare.lines(name, values)), "```"]
-    if "sizes" in found:
-        tables["sizes"] = sizes.table(found["sizes"])
-    machine = "Machine: " + ", ".join(f"{k} {v}" for k, v in found["machine"].items()) + "."
-    for path in (README, SPEED):
+    """Put the tables between their marks: of all machines, one after the other; the README has those of the first."""
+    first = next(iter(found))
+    for path, machines in ((README, {first: found[first]}), (SPEED, found)):
         text = path.read_text()
-        for name, lines in tables.items():
-            begin, end = f"<!-- benchmarks {name}: begin -->", f"<!-- benchmarks {name}: end -->"
-            if begin in text:
+        for part in ("cases", "sizes", "other"):
+            begin, end = f"<!-- benchmarks {part}: begin -->", f"<!-- benchmarks {part}: end -->"
+            lines = [line for here in machines.values() if part in here for line in ("", *table(part, here))]
+            if begin in text and lines:
                 before, _, rest = text.partition(begin)
-                text = before + "\n".join([begin, *lines, "", machine, end]) + rest.partition(end)[2]
+                text = before + "\n".join([begin, *lines[1:], end]) + rest.partition(end)[2]
         path.write_text(text)
+
+
+def table(part: str, here: dict) -> list[str]:
+    """Of one machine."""
+    from tests.benchmarks import cases, sizes
+    if part == "other":
+        lines = ["```text", *(line for name, values in here["other"].items() for line in compare.lines(name, values)), "```"]
+    else:
+        lines = {"cases": cases, "sizes": sizes}[part].table(here[part])
+    return [*lines, "", "Machine: " + ", ".join(f"{k} {v}" for k, v in here["machine"].items()) + "."]
