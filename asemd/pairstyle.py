@@ -12,7 +12,6 @@ Annotations and bodies follow the rules of `asemd.style`.
 """
 from __future__ import annotations
 
-import ast
 import copy
 import inspect
 import math
@@ -25,9 +24,8 @@ from typing import Any
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.style import Parameter, Style, register, text_of, units_of
+from asemd.style import Parameter, Style, register, units_of
 
-DEAR = {f"math.{name}" for name in ("exp", "log", "erfc", "pow", "sin", "cos")}
 SCALE = "coulomb_scale"      # a row of Coulomb parts, see `asemd.coulomb_scale`
 
 
@@ -398,14 +396,3 @@ def pair_sum(name: str, *parts: tuple[Callable, str], **options) -> PairStyle:
     """Register the fused sum of `parts` (function, name of its cutoff) as pair style `name`."""
     doc = inspect.getdoc(inspect.getmodule(inspect.stack()[1][0])) or ""
     return register(options.pop("cls", PairStyle)(name, list(parts), doc=doc, **options))
-
-
-@cache
-def operations(style) -> int:
-    """Of the formulas of a pair style: arithmetic, exponential functions and their like counting twenty."""
-    count = 0
-    for part in style.parts:
-        for node in ast.walk(ast.parse(text_of(part.function))):
-            count += isinstance(node, ast.BinOp)
-            count += 20 * (isinstance(node, ast.Call) and ast.unparse(node.func) in DEAR)
-    return count

@@ -7,7 +7,7 @@ from asemd.kernels import prune
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.state import aligned
 from asemd.neighbor import COUNTERS, ClusterList
-from asemd.pairstyle import operations
+from asemd.style import operations
 
 PART = 0.35              # of the skin, which pruned lists begin with
 MAKING, BARE, EACH = 6.0, 0.5, 0.025      # times, up to a factor: of pruning an entry, of a pair without its formula, of an operation
@@ -27,7 +27,7 @@ class PrunedList:
     def __init__(self, threads: int, skin: float, cut: float, style):
         self.memo = np.zeros((threads, 7))
         self.memo[:, prune.SKIN], self.memo[:, prune.MOST], self.memo[:, prune.CUT] = PART * skin, skin, cut
-        self.memo[:, prune.COST] = MAKING / (ENTRY * (BARE + EACH * operations(style)))
+        self.memo[:, prune.COST] = MAKING / (ENTRY * (BARE + EACH * operations(*style.functions())))
         self.seen = np.zeros((threads, 3, 0))
         self.first = self.entries = self.excluded = np.zeros((threads, 0), np.int32)
         self.own = np.zeros(0, np.int32)
@@ -41,7 +41,7 @@ class PrunedList:
         """
         around = 0.35 * (CLUSTER / max(density, 1e-300)) ** (1 / 3)
         less = 1.0 - ((cut + PART * skin + around) / (cut + skin + around)) ** 3
-        return ENTRY * less * (BARE + EACH * operations(style)) > MAKING / INTERVAL
+        return ENTRY * less * (BARE + EACH * operations(*style.functions())) > MAKING / INTERVAL
 
     @property
     def renewals(self) -> int:

@@ -10,8 +10,8 @@ import numpy as np
 from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, prune, vector_math
 from asemd.kernels.generate import Builder
 from asemd.kernels.target import lanes, many_registers
-from asemd.pairstyle import SCALE, PairStyle, operations
-from asemd.style import text_of
+from asemd.pairstyle import SCALE, PairStyle
+from asemd.style import operations, text_of
 
 SHORT = 20               # operations in the formulas
 ROWS = (608, 1120, 2144, 4192, 8288, 16480, 32864)
@@ -94,7 +94,7 @@ def two_at_a_time(style: PairStyle) -> bool:
 
     Where there are few of these, short formulas lose more by numbers that do not fit into them (decision 14).
     """
-    return many_registers() or style.charged or takes_roots(style) or operations(style) > SHORT
+    return many_registers() or style.charged or takes_roots(style) or operations(*style.functions()) > SHORT
 
 
 def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single: bool, energy: bool, piece: str,
