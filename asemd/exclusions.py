@@ -39,7 +39,8 @@ class Exclusions:
         self.weight_lj = np.array([1.0, *interactions.special_lj, 0.0])
         self.weight_coul = np.array([1.0, *interactions.special_coul, 0.0])
         self.keep = np.array([True, *((self.weight_lj[1:] != 0.0) | (self.weight_coul[1:] != 0.0))])
-        if any(part.long for use in interactions.uses["pair"] for part in use.style.parts):
+        parts = (part for use in interactions.uses["pair"] for part in use.style.parts)
+        if any(part.long and not getattr(part.function, "leaves_out", False) for part in parts):
             self.keep[1:4] = True         # the solver has the whole interaction of these pairs, which is to be taken off
         self.partners = None
         self.weighted, self.weighted_kinds = np.zeros((0, 2), np.int32), np.zeros(0, np.int32)

@@ -29,6 +29,10 @@ CASES = {      # name of the style, and what makes a case another one -> command
     "lj/cut/coul/wolf": "pair_style lj/cut/coul/wolf 0.1 6\n" + LJ + "pair_modify shift yes",
     "born/coul/wolf": "pair_style born/coul/wolf 0.1 5 7\n" + BORN,
     "born/coul/dsf": "pair_style born/coul/dsf 0.1 5 7\n" + BORN,
+    "buck6d/coul/gauss/dsf": "pair_style buck6d/coul/gauss/dsf 0.9 5 7\npair_coeff * * 10304 3.06 457.2 4.06 0.61\n"
+            "pair_coeff 1 2 9000 2.9 400 3 0.5 6",
+    "buck6d/coul/gauss/dsf unswitched": "pair_style buck6d/coul/gauss/dsf 1 5 7\npair_coeff * * 10304 3.06 457.2 4.06 0.61\n"
+            "pair_modify shift yes",
     "lj/class2/coul/cut": "pair_style lj/class2/coul/cut 5 7\npair_coeff 1 1 0.1 2.5 4 6\npair_coeff 2 2 0.3 2.2\npair_modify tail yes",
     "nm/cut/coul/cut": "pair_style nm/cut/coul/cut 5 7\npair_coeff * * 0.1 3 9 6\npair_coeff 1 2 0.2 2.9 8 5 4 6\npair_modify tail yes",
     "lj/cut/coul/cut/soft": "pair_style lj/cut/coul/cut/soft 2 0.5 5 5 7\npair_coeff * * 0.1 2.5 0.7\npair_modify shift yes",

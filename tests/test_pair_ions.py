@@ -43,6 +43,8 @@ CASES = {      # pair style and what follows, atom style, commands before and af
     "coul/ctip bonds": ("pair_style coul/ctip 0.3 4.0\npair_coeff * * {file} Ni O\nbond_coeff *\ncreate_bonds many all all 1 0.1 2.1\n"
                         "special_bonds coul 0.4 0.3 0.5",
                         *BONDS),
+    "coul/ctip bonds left out": ("pair_style coul/ctip 0.3 4.0\npair_coeff * * {file} Ni O\nbond_coeff *\n"
+                                 "create_bonds many all all 1 0.1 2.1\nspecial_bonds coul 0 0.3 0.5", *BONDS),
     "coul/streitz wolf": ("pair_style coul/streitz 6.5 wolf 0.31\npair_coeff * * {file} Al O", "charge", "", ""),
     "coul/streitz one element": ("pair_style coul/streitz 6.5 wolf 0.2\npair_coeff * * {file} O O", "charge", "", ""),
     "coul/streitz ewald": ("pair_style coul/streitz 6.5 ewald\npair_coeff * * {file} Al O" + SOLVER, "charge", "", ""),

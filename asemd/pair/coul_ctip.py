@@ -6,8 +6,8 @@ Charge transfer ionic potential: the damped Coulomb energy of a neutral surround
 $\gamma = \sqrt{\gamma_i \gamma_j}$, and the energy of each ion by itself. k, l and m make the energy, the force and its slope go to zero at
 the cutoff, s follows from them; x is what the charge is below qmin or above qmax. Charges are those of the atoms. A line of the file is an
 element with chi, eta, gamma, zeta, Z, qmin, qmax and omega; zeta and Z do not count. Special pairs lose the part of q_i q_j / r that
-special_bonds takes off. The complementary error function is LAMMPS's approximation, good to 1.5e-7, and its derivative that of the exact
-function.  Source: LAMMPS manual, pair_style coul/ctip.
+special_bonds takes off, but those that are left out (weights 0) have no such part either, as in LAMMPS. The complementary error function
+is LAMMPS's approximation, good to 1.5e-7, and its derivative that of the exact function.  Source: LAMMPS manual, pair_style coul/ctip.
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.manybody import ManyBody, element_of
 from asemd.pair.coul_dsf import APPROXIMATE
-from asemd.pair.coul_wolf import ROOT_PI, bare_special
+from asemd.pair.coul_wolf import ROOT_PI, bare_listed
 from asemd.pairstyle import pack_parts
 from asemd.potential_file import read_elements
 from asemd.style import register
@@ -37,7 +37,7 @@ def coul_ctip_d2(r2, qq, third, level, slope, bend, alpha, bell, cut):
     return 0.25 * qq * (second - first / r) / r2
 
 
-@bare_special
+@bare_listed
 def coul_ctip(r2, qq, third, level, slope, bend, alpha: "1/distance", bell: "1/distance", cut: "distance"):
     r = math.sqrt(r2)
     gauss = math.exp(-alpha * alpha * r2)

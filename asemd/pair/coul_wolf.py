@@ -24,6 +24,12 @@ def bare_special(function):
     return function
 
 
+def bare_listed(function):
+    """The same for those special pairs that are not left out, with weights that are not all 0."""
+    function.leaves_out = True
+    return bare_special(function)
+
+
 class DampedPair(PairStyle):
     """Derives what the functions need of alpha and the cutoff: ``bell``, and how far energy and force stand from zero at the end."""
 
