@@ -50,6 +50,7 @@ class PairTerm(FactorTerm):
         clusters, slots = self.clusters(engine), engine.state.x.shape[1]
         if self.tables4.shape[2] != slots:
             self.tables4 = aligned((engine.threads, 2, slots, 4))
+            self._tables_of = [tuple(mine) for mine in self.tables4]
         self.outdated = engine.settings.outdated
         self.exclude = engine.exclusions.partners is not None
         row = pair_kernels.row_length(clusters.longest())
@@ -85,7 +86,7 @@ class PairTerm(FactorTerm):
         whole = () if self.pruned is None else self.pruned.whole(c, tid, self._mine)
         return self._with_factor(engine, tid, (
             s.x, f, s.q, s.type, first, entries, near.own, near.span, c.unshifted, c.shifts4, excluded_first, excluded, int(c.bounds[tid]),
-            int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, *room, *self.tables4[tid], acc, hide,
+            int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, *room, *self._tables_of[tid], acc, hide,
             engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], whole))
 
     def _mine(self, tid: int, *arrays: np.ndarray) -> tuple[np.ndarray, ...]:

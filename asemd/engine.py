@@ -223,11 +223,10 @@ class Engine:
         bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
             raise SimulationError(f"atom {self.system.id[s.row[bad]]}: position is not finite")
-        if not self.periodic.all():
-            live_box.faces(self)
+        shares = live_box.faces(self)
         if self.mode == "cluster":
             if self._bins is None or not self.periodic.all():
-                self._bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
+                self._bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
             bins = self._bins
             if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
                 self._allocate(self.list.capacity)
@@ -238,8 +237,7 @@ class Engine:
         if self.mode == "cluster":
             partners = self.exclusions.partners
             hide = None if self.expanded or self.sparse else partners
-            self.list.build(k, s, self.ns, self.vectors, self.periodic, hide, self.slot_of, self.parallel,
-                            self.cell.reduced * self.periodic[:, None])
+            self.list.build(k, s, self.ns, self.cell, self.periodic, hide, self.slot_of, self.parallel)
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             for molecules, rows in self.rows.items():
@@ -251,7 +249,7 @@ class Engine:
                 left = k.drop_excluded(s.row, *self.special, len(weighted), *self.exclusions.rule_arrays)
                 self.special = [a[:left] for a in self.special]
         elif self.mode == "plain":
-            bins = BinCell(self.vectors, self.origin, self.periodic, s.x, s.row, self.ns)
+            bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
         self.moved[:] = 0.0
         self.listed = None

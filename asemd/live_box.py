@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from asemd.errors import LostAtoms
-from asemd.kernels.rows import span
+from asemd.kernels.rows import extent
 from asemd.kernels.state import BoxState
 
 INSIDE = 1e-9       # of the box: whoever is that far from its faces is inside, whatever rounding does
@@ -46,16 +46,22 @@ def shrunk(engine) -> None:
         engine.load(listed=False)
 
 
-def faces(engine) -> None:
-    """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost."""
-    box = engine.system.box
-    if not box.is_lammps_frame:
-        return
-    s, fixed, shares = engine.state, "".join(box.boundary), np.empty((2, 3))
-    if not set(fixed) & set("sm"):
-        span(s.x, s.row, engine.ns, engine.origin, engine.inverse, shares)
-        if (shares[:, ~engine.periodic] > INSIDE).all() and (shares[:, ~engine.periodic] < 1.0 - INSIDE).all():
-            return
+def faces(engine) -> np.ndarray:
+    """Shrink-wrapped faces follow the atoms; an atom beyond a fixed face is lost.
+
+    Returns
+    -------
+    (2, 3)
+        Smallest and largest fractional coordinates in the box that there is then; those along periodic directions are within the cell.
+    """
+    box, s = engine.system.box, engine.state
+    shares = np.array([[0.0] * 3, [1.0] * 3]) if engine.periodic.all() else extent(s.x, s.row, engine.ns, engine.origin, engine.inverse)
+    if not box.is_lammps_frame or engine.periodic.all():
+        return shares
+    if "s" not in (fixed := "".join(box.boundary)) and "m" not in fixed:
+        low, high = shares.tolist()
+        if all(p or (a > INSIDE and b < 1.0 - INSIDE) for p, a, b in zip(engine.periodic.tolist(), low, high)):
+            return shares
     rows = s.row[:engine.ns]
     inside = rows >= 0
     x, rows = s.x[:, :engine.ns].T[inside], rows[inside]
@@ -72,3 +78,4 @@ def faces(engine) -> None:
         raise LostAtoms(f"{len(lost)} atom{'s' * (len(lost) > 1)} lost: atom {ids.min()} at {'xyz'[a]} = {x[first, a]:g} left the box "
                         f"[{box.lo[a]:g}, {box.hi[a]:g}] through a fixed boundary; use a shrink-wrapped boundary, a wall, "
                         "or a shorter time step", np.sort(rows[lost]))
+    return extent(s.x, s.row, engine.ns, engine.origin, engine.inverse)

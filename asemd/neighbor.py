@@ -11,7 +11,7 @@ from asemd.errors import InputError
 from asemd.kernels import cluster, cluster_rows, pair_list, rebuild
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
-from asemd.kernels.rows import span
+from asemd.kernels.state import Cell
 
 SMALL = 32             # below this many atoms a plain list: clusters would save some 15 microseconds a step and take 5 s more to compile
 MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
@@ -56,24 +56,28 @@ COUNTERS = _counters()
 
 
 class BinCell:
-    """The cell that bins cover: the periodic cell, and along other directions the extent of the atoms."""
+    """The cell that bins cover: the periodic cell, and along other directions the extent of the atoms.
 
-    def __init__(self, vectors: np.ndarray, origin: np.ndarray, periodic: np.ndarray, x: np.ndarray, row: np.ndarray, ns: int):
-        v, o = vectors.copy(), origin.copy()
-        if not periodic.all():
-            s = np.empty((2, 3))
-            span(x, row, ns, origin, np.ascontiguousarray(np.linalg.inv(vectors)), s)
-            for a in np.flatnonzero(~periodic):
-                low, high = s[:, a] if s[0, a] <= s[1, a] else (0.0, 1.0)
-                length = np.linalg.norm(vectors[a])
-                margin = max(1e-3 * (high - low), 1e-9, 1e-6 / max(length, 1e-300))
-                o = o + (low - margin) * vectors[a]
-                v[a] = vectors[a] * (high - low + 2 * margin)
-        self.vectors, self.origin = v, o
-        self.inverse = np.ascontiguousarray(np.linalg.inv(v))
-        self.widths = 1.0 / np.linalg.norm(self.inverse, axis=0)
-        self.volume = abs(np.linalg.det(v))
-        self.far = o + v.sum(0) + np.abs(v).sum(0)      # no atom is near
+    Parameters
+    ----------
+    vectors (3, 3), origin (3,), inverse (3, 3), periodic (3,)
+        The cell.
+    extent : (2, 3)
+        Smallest and largest fractional coordinates of the atoms; those along open directions count.
+    """
+
+    def __init__(self, vectors: np.ndarray, origin: np.ndarray, inverse: np.ndarray, periodic: np.ndarray, extent: np.ndarray):
+        first, size = np.zeros(3), np.ones(3)
+        for a, (low, high) in enumerate(extent.T.tolist()):
+            if not periodic[a]:
+                low, high = (low, high) if low <= high else (0.0, 1.0)
+                margin = max(1e-3 * (high - low), 1e-9, 1e-6 / max(math.hypot(*vectors[a].tolist()), 1e-300))
+                first[a], size[a] = low - margin, high - low + 2 * margin
+        self.vectors, self.origin, self.inverse = vectors * size[:, None], origin + first @ vectors, inverse / size
+        (a, b, c), (d, e, f), (g, h, i) = self.vectors.tolist()
+        self.volume = abs(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
+        self.widths = 1.0 / np.sqrt((self.inverse * self.inverse).sum(axis=0))
+        self.far = self.origin + (self.vectors + np.abs(self.vectors)).sum(axis=0)      # no atom is near
 
 
 def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
@@ -142,29 +146,38 @@ class ClusterList:
         self.candidates = 2048
         self.shares = None
         self.row_length = np.zeros((threads, 1), np.int64)
-        self.bins, self.n = None, -1
+        self.bins, self.n, self.cell = None, -1, None
+        self._cells = self.column_start = np.zeros(0, np.int32)
 
-    def shape(self, bins: BinCell, n: int) -> bool:
-        """Choose the grid; True if arrays had to be made anew (their slots' arrays too)."""
-        if bins is self.bins and n == self.n:
-            return False
-        self.bins, self.n = bins, n
-        wa, wb, wc = bins.widths
+    def _grid(self) -> tuple[int, int, int]:
+        """Numbers of cells along each direction that suit the bins and the number of atoms."""
+        n, (wa, wb, wc) = self.n, self.bins.widths.tolist()
         share = CLUSTER / max(n, 1)
         # edge of the cube that holds one cluster; in layers and rows that are thinner than that, of the square or the line
-        h = max((share * bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))),
+        h = max((share * self.bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))),
                 share * max(wa, wb, wc))
         nx, ny = max(1, round(wa / h)), max(1, round(wb / h))
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
             nx, ny, nz = max(1, nx * 3 // 4), max(1, ny * 3 // 4), max(1, nz * 3 // 4)
-        if (nx, ny, nz) == (self.nx, self.ny, self.nz) and self.capacity >= n + nx * ny * CLUSTER + 2 * CLUSTER:
+        return nx, ny, nz
+
+    def shape(self, bins: BinCell, n: int, grid: tuple[int, int, int] | None = None) -> bool:
+        """Choose the grid, unless it is given; True if arrays had to be made anew (their slots' arrays too)."""
+        if bins is self.bins and n == self.n:
             return False
-        self.nx, self.ny, self.nz = nx, ny, nz
-        self.capacity = n + nx * ny * CLUSTER + 2 * CLUSTER
-        ncl, ncol = self.capacity // CLUSTER + 2, nx * ny
-        self.cell_start = np.zeros((ncol, nz + 1), np.int32)
-        self.column_start = np.zeros(ncol + 1, np.int32)
+        self.bins, self.n = bins, n
+        self.nx, self.ny, self.nz = nx, ny, nz = grid or self._grid()
+        columns, slots = nx * ny, n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER
+        if len(self._cells) < columns * (nz + 1):
+            self._cells = np.zeros(columns * (nz + 1) * 9 // 8, np.int32)
+        if len(self.column_start) < columns + 1:
+            self.column_start = np.zeros((columns + 1) * 9 // 8, np.int32)
+        self.cell_start = self._cells[:columns * (nz + 1)].reshape(columns, nz + 1)
+        if self.capacity >= slots:
+            return False
+        self.capacity = slots + n // 32         # some atoms and columns more need no other arrays
+        ncl = self.capacity // CLUSTER + 2
         self.column_of = np.zeros(ncl, np.int32)
         self.key = np.zeros(self.capacity, np.int32)
         self.x2, self.v2 = np.zeros((3, self.capacity)), np.zeros((3, self.capacity))
@@ -196,12 +209,18 @@ class ClusterList:
         return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
                       self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach)
 
-    def build(self, k, state, ns: int, cell_vectors: np.ndarray, periodic: np.ndarray, partners, slot_of, parallel, reduced) -> None:
-        """Build the list and its exclusions in the sorted slots; `reduced`: the reduced cell vectors, 0 along open directions."""
+    def _see(self, cell: Cell, periodic: np.ndarray) -> None:
+        """Take the images of a cell, unless they are known."""
+        if cell is not self.cell:
+            self.cell, widths2 = cell, 1.0 / (np.linalg.inv(cell.vectors)[:, periodic] ** 2).sum(axis=0)
+            self.near = cell.reduced * periodic[:, None], bool((widths2 < 4.0 * self.reach**2).any())
+            self.shifts = IMAGES @ cell.vectors
+            self.shifts4 = np.column_stack([self.shifts, np.zeros(len(self.shifts))])
+
+    def build(self, k, state, ns: int, cell: Cell, periodic: np.ndarray, partners, slot_of, parallel) -> None:
+        """Build the list and its exclusions in the sorted slots."""
         ncl = ns // CLUSTER
-        self.near = reduced, bool((np.abs(np.linalg.inv(cell_vectors)[:, periodic] ** 2).sum(axis=0) > 0.25 / self.reach**2).any())
-        self.shifts = IMAGES @ cell_vectors
-        self.shifts4 = np.column_stack([self.shifts, np.zeros(len(self.shifts))])
+        self._see(cell, periodic)
         again = self.shares is None and self.threads > 1
         while True:
             if self.marked and self.hide.shape[1] < self.entries.shape[1]:

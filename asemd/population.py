@@ -1,7 +1,7 @@
 """Atoms that leave or join a running simulation: system, groups, exclusions, lists and the arrays of fixes follow."""
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +13,8 @@ from asemd.topology import CROSSTERM
 if TYPE_CHECKING:
     from asemd.loop import Loop
     from asemd.system import System
+
+IN_SLOTS = ("x", "v", "f")
 
 
 def remove(loop: Loop, rows, lost: bool = True, listed: bool = True) -> None:
@@ -61,11 +63,9 @@ def exchange(loop: Loop, rows, atoms: System, groups: Iterable[str] | Mapping[st
     _change(loop, rows, atoms, groups, False, False)
 
 
-def places(loop: Loop) -> tuple[np.ndarray, np.ndarray]:
-    """Where the atoms are in the midst of a run, in no order: positions (n, 3) and rows."""
-    s, n = loop.state, loop.nslots
-    there = np.flatnonzero(s.row[:n] >= 0)
-    return np.take(s.x, there, axis=1).T, s.row[there]
+def places(loop: Loop) -> np.ndarray:
+    """Where the atoms are in the midst of a run, (n, 3)."""
+    return np.take(loop.state.x, loop.engine.slot_of, axis=1, mode="clip").T
 
 
 def _change(loop: Loop, rows, atoms: System | None, groups, lost: bool, listed: bool) -> None:
@@ -77,10 +77,11 @@ def _change(loop: Loop, rows, atoms: System | None, groups, lost: bool, listed: 
         e.store()
     gone = np.zeros(n, bool)
     gone[rows] = True
+    slotted = IN_SLOTS if simple and e.mode == "cluster" else ()
     if len(rows):
-        _take_out(loop, rows, gone, lost)
+        _take_out(loop, rows, gone, lost, slotted)
     if atoms is not None:
-        _put_in(loop, atoms, groups)
+        _put_in(loop, atoms, groups, simple, slotted)
     e.groups = dict(loop.groups)
     if simple:
         turnover.follow(e, rows, loop.system.n - (n - len(rows)))
@@ -103,7 +104,7 @@ def _joined(gone: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     return joined
 
 
-def _take_out(loop: Loop, rows: np.ndarray, gone: np.ndarray, lost: bool) -> None:
+def _take_out(loop: Loop, rows: np.ndarray, gone: np.ndarray, lost: bool, slotted: Collection[str]) -> None:
     """The system, groups and exclusions without some atoms."""
     system, s = loop.system, loop.settings
     for kind, atoms, _ in system.topology.every():
@@ -116,36 +117,48 @@ def _take_out(loop: Loop, rows: np.ndarray, gone: np.ndarray, lost: bool) -> Non
                                   "to go on without them")
         if len(torn) and s.lost_bond == "warn":
             loop.warn(f"step {loop.step}: {len(torn)} {kind}{'s' * (len(torn) > 1)} lost with an atom")
-    _drop(system, rows, gone)
+    _drop(system, rows, gone, slotted)
     for name, mask in loop.groups.items():
         loop.gone[name] = loop.gone.get(name, 0) + int(np.count_nonzero(mask[rows]))
-        loop.groups[name] = mask[~gone]
-    s.exclude = [(kind, *(m if kind == "type" else m[~gone] for m in masks)) for kind, *masks in s.exclude]
+        loop.groups[name] = turnover.changed(mask, rows)
+    s.exclude = [(kind, *(m if kind == "type" else turnover.changed(m, rows) for m in masks)) for kind, *masks in s.exclude]
     if not lost:
         loop.natoms -= len(rows)
 
 
-def _drop(system: System, rows: np.ndarray, gone: np.ndarray) -> None:
-    """The system without some atoms, in place, so that whoever holds it sees it; bonded items that lose an atom go."""
+def _drop(system: System, rows: np.ndarray, gone: np.ndarray, slotted: Collection[str]) -> None:
+    """The system without some atoms, in place, so that whoever holds it sees it; bonded items that lose an atom go.
+
+    What is `slotted` comes from the slots anyway before anybody reads it.
+    """
     top = system.topology
     if not top.is_empty:
         if top.frozen is None and not any(gone[atoms].any() for _, atoms, _ in top.every()):
             top.rename(np.cumsum(~gone) - 1)
         else:
             system.topology = top.select(~gone, system.n)
-    left = np.flatnonzero(~gone)
-    _take(system, {name: a.take(left, axis=0) for name, a in system.per_atom().items()})
+    left = len(gone) - len(rows)
+    _take(system, {name: a[:left] if name in slotted else turnover.changed(a, rows) for name, a in system.per_atom().items()})
 
 
-def _join(system: System, atoms: System) -> None:
-    """`System.append`, with the ids that the atoms have, in place."""
-    if turnover.alike(system, atoms):
+def _join(system: System, atoms: System, alike: bool, slotted: Collection[str]) -> None:
+    """`System.append`, with the ids that the atoms have, in place; `alike`: surely of the same properties and types."""
+    if alike or turnover.alike(system, atoms):
         if atoms.id.min(initial=1) <= system.id.max(initial=0) and np.isin(atoms.id, system.id).any():
             raise InputError(f"atom ID {atoms.id[np.isin(atoms.id, system.id)][0]} exists in both systems")
         theirs = atoms.per_atom()
-        _take(system, {name: np.concatenate([a, theirs[name]]) for name, a in system.per_atom().items()})
+        _take(system, {name: _behind(a, theirs[name], name in slotted) for name, a in system.per_atom().items()})
     else:
         system.__dict__.update(system.append(atoms, keep_ids=True).__dict__)
+
+
+def _behind(array: np.ndarray, more: np.ndarray, slotted: bool) -> np.ndarray:
+    """An array with more rows behind it; if it is in slots, only these rows matter."""
+    if not slotted:
+        return np.concatenate([array, more])
+    out = np.zeros((len(array) + len(more), *array.shape[1:]))
+    out[len(array):] = more
+    return out
 
 
 def _take(system: System, arrays: Mapping[str, np.ndarray]) -> None:
@@ -157,12 +170,13 @@ def _take(system: System, arrays: Mapping[str, np.ndarray]) -> None:
             setattr(system, name, array)
 
 
-def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray]) -> None:
+def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.ndarray], alike: bool,
+            slotted: Collection[str]) -> None:
     """The system, groups and exclusions with more atoms."""
     system, s, n = loop.system, loop.settings, atoms.n
     chosen = groups if isinstance(groups, Mapping) else dict.fromkeys(groups, np.ones(n, bool))
     joins = {name: np.ones(n, bool) if name == "all" else np.asarray(chosen.get(name, np.zeros(n, bool)), bool) for name in loop.groups}
-    _join(system, atoms)
+    _join(system, atoms, alike, slotted)
 
     def longer(mask):       # exclusions hold masks, no names of groups: that of a group beside `all`, where one fits
         join = np.zeros(n, bool)

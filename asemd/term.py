@@ -127,11 +127,19 @@ class FactorTerm(Term):
     def _sums(self, engine, tid: int) -> tuple[np.ndarray, np.ndarray]:
         """Where the kernel adds its forces, energies and virial."""
         if self.owner.is_plain:
-            return engine.buffers[tid], engine.acc[tid, self.index]
+            return self._view("f", engine.buffers, tid), self._view("acc", engine.acc, tid, self.index)
         if self.factor is None or self.own.shape != engine.buffers.shape:
             self.own, self.own_acc = aligned(engine.buffers.shape), np.zeros((engine.threads, 8))
             self.factor = np.array([float(self.owner.use.factor)])
         return self.own[tid], self.own_acc[tid]
+
+    def _view(self, name: str, array: np.ndarray, *at: int) -> np.ndarray:
+        """``array[at]``, the same view as long as the array is the same: new ones take time to be packed."""
+        views = vars(self).setdefault("views", {})
+        known = views.get((name, at))
+        if known is None or known[0] is not array:
+            known = views[name, at] = array, array[at]
+        return known[1]
 
     def _with_factor(self, engine, tid: int, arguments: tuple) -> tuple:
         if self.owner.is_plain:

@@ -10,6 +10,9 @@ if TYPE_CHECKING:
     from asemd.system import System
 
 
+FEW = 8         # rows
+
+
 def simple(engine: Engine, gone: np.ndarray, atoms: System | None) -> bool:
     """Whether `follow` can do it, before the system changes.
 
@@ -58,9 +61,9 @@ def follow(engine: Engine, gone: np.ndarray, more: int) -> None:
     engine.exclusions.follow(engine.system, engine.settings.exclude, gone, more)
     if len(gone):
         new = np.arange(before + 1, dtype=np.int32)
-        for row in gone[::-1] if len(gone) < 8 else ():
+        for row in gone[::-1].tolist() if len(gone) <= FEW else ():
             new[row:] -= np.int32(1)
-        if len(gone) >= 8:
+        if len(gone) > FEW:
             new -= np.searchsorted(gone, new).astype(np.int32)
         new[gone] = new[-1] = -1        # the last one is that of an empty slot, whose row is -1
         for term in engine.terms:
@@ -79,7 +82,7 @@ def _put_in(engine: Engine, gone: np.ndarray, more: int) -> None:
         engine.slot_of = np.zeros(system.n, np.int32)
         return
     new = slice(slots, slots + more)
-    engine.slot_of = _changed(engine.slot_of, gone, np.arange(slots, slots + more, dtype=np.int32))
+    engine.slot_of = changed(engine.slot_of, gone, np.arange(slots, slots + more, dtype=np.int32))
     if more:
         s.row[new] = np.arange(system.n - more, system.n)
         s.x[:, new], s.v[:, new] = system.x[-more:].T, system.v[-more:].T
@@ -89,23 +92,29 @@ def _put_in(engine: Engine, gone: np.ndarray, more: int) -> None:
 
 def _constants(engine: Engine, gone: np.ndarray, more: int) -> None:
     """Types, masses, charges and masks by row."""
-    system = engine.system
-    last = slice(system.n - more, system.n)
+    names = "type_row", "mass_row", "inverse_row", "q_row", "mask_row"
+    if not more:
+        for name in names:
+            setattr(engine, name, changed(getattr(engine, name), gone))
+        return
+    system, last = engine.system, slice(-more, None)
     mass = system.rmass[last] if system.rmass is not None else system.mass[system.type[last]]
     mass = np.where(np.isnan(mass), 1.0, mass)
     mask = np.ones(more, np.int32)
     for name, members in engine.groups.items():
         mask[members[last]] |= np.int32(engine.bits[name])
     new = (system.type[last], mass, engine.units.ftm2v / mass, system.q[last] if system.q is not None else np.zeros(more), mask)
-    names = ("type_row", "mass_row", "inverse_row", "q_row", "mask_row")
     for name, values in zip(names, new):
-        array = _changed(getattr(engine, name), gone, values)
+        array = changed(getattr(engine, name), gone, values)
         setattr(engine, name, array)
-        if name != "inverse_row" and more:
+        if name != "inverse_row":
             engine.varies[("type_row", "mass_row", "q_row", "mask_row").index(name)] |= bool((values != array[0]).any())
 
 
-def _changed(array: np.ndarray, gone: np.ndarray, new: np.ndarray) -> np.ndarray:
-    """An array without some rows and with others behind."""
-    array = np.delete(array, gone) if len(gone) else array
-    return np.concatenate([array, new]) if len(new) else array
+def changed(array: np.ndarray, gone: np.ndarray, *joining: np.ndarray) -> np.ndarray:
+    """An array without some rows, which are in order, and with others behind; of the same type."""
+    if len(gone) > FEW:
+        array, gone = np.delete(array, gone, axis=0), gone[:0]
+    edges = gone.tolist()       # between them memory is copied in one piece
+    pieces = [array[a:b] for a, b in zip([0, *(k + 1 for k in edges)], [*edges, len(array)])]
+    return np.concatenate([*pieces, *joining], dtype=array.dtype)

@@ -13,6 +13,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.exclusions import Exclusions
 from asemd.kernels import surroundings as loops
+from asemd.kernels.rows import extent
 from asemd.kernels.state import cell_arrays
 from asemd.neighbor import BinCell, PlainList, kernels
 from asemd.pairing import complete
@@ -123,7 +124,8 @@ def _own(state, reach: float) -> SimpleNamespace:
     ortho = not np.count_nonzero(vectors - np.diag(np.diag(vectors))) and bool((np.diag(vectors) > 0).all())
     k, row = kernels(ortho), np.arange(n, dtype=np.int32)
     s = SimpleNamespace(x=np.ascontiguousarray(x.T), row=row)
-    bins, made = BinCell(vectors, np.asarray(box.origin, float), periodic, s.x, row, n), PlainList(reach)
+    origin, inverse = np.asarray(box.origin, float), np.ascontiguousarray(box.inverse)
+    bins, made = BinCell(vectors, origin, inverse, periodic, extent(s.x, row, n, origin, inverse)), PlainList(reach)
     i, j, code = made.build(k, s, n, bins, vectors, periodic)
     if engine is not None:
         rules = engine.exclusions if engine.has_pairs else Exclusions(system, engine.interactions, engine.settings.exclude, True)

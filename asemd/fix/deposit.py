@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from copy import copy
 
 import numpy as np
 
@@ -108,6 +109,7 @@ class Deposit(Fix):
         self.last_ids = [0, 0]      # of atoms and molecules, with `next_ids`
         self.words: list[str] = []
         self.holder, self.template, self.holds = holder, "", None
+        self.single = None      # a System of one atom to be copied
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -173,6 +175,7 @@ class Deposit(Fix):
         return self.words
 
     def setup(self, loop) -> None:
+        self.single = None
         if self.first is None:      # made in Python
             self.first = self.next_reneighbor = loop.step + 1
         self.holds = holders.find(loop, self.holder, self.template, "fix deposit") if self.holder else None
@@ -183,7 +186,7 @@ class Deposit(Fix):
         """On its steps: find a place and put a particle there."""
         if loop.step != self.next_reneighbor:
             return
-        there = population.places(loop)[0]
+        there = population.places(loop)
         for _ in range(self.attempts):
             found = self._try(loop, there)
             if found is not None:
@@ -246,8 +249,12 @@ class Deposit(Fix):
     def _atom(self, system, x: np.ndarray):
         from asemd.atom_style import fresh
         from asemd.system import System
-        return System(box=system.box, x=x[None], type=np.array([self.kind]), id=np.array([1]), units=system.units,
-                      dimension=system.dimension, counts=dict(system.counts), **fresh(system.atom_style, 1))
+        if self.single is None:
+            self.single = System(box=system.box, x=x[None], type=np.array([self.kind]), units=system.units, dimension=system.dimension,
+                                 counts=dict(system.counts), **fresh(system.atom_style, 1))
+        one = copy(self.single)
+        one.box, one.x, one.v, one.id = system.box, x[None], np.zeros((1, 3)), np.ones(1, np.int64)
+        return one
 
     def _turned(self, system):
         """A molecule and how it is turned."""

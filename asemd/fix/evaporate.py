@@ -103,11 +103,10 @@ class Evaporate(Fix):
     def _chosen(self, loop) -> np.ndarray:
         """Rows of those that go."""
         system = loop.system
-        x, rows = population.places(loop)
-        inside, gone = np.zeros(system.n, bool), np.zeros(system.n, bool)
-        inside[rows[self.region.inside(x)]] = True
+        gone = np.zeros(system.n, bool)
+        inside = self.region.inside(population.places(loop)) & loop.groups[self.group]
         stored = self.storage.rows(system)
-        candidates = stored[(inside & loop.groups[self.group])[stored]]
+        candidates = stored[inside[stored]]
         if not self.molecules:
             left = len(candidates)
             while left and len(candidates) - left < self.count:

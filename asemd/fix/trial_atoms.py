@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from types import SimpleNamespace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from asemd import population
 from asemd.errors import InputError
 from asemd.fix.atom_order import AtomOrder
 from asemd.kernels import trial
+from asemd.kernels.rows import of_rows
 
 NOBODY = -1
+_known: WeakKeyDictionary = WeakKeyDictionary()      # loop -> energies that were asked for
 
 
 class Energies:
@@ -55,6 +58,14 @@ class Energies:
         self.cutoff, self.overlap, self.exact = max(float(self.cut2.max()) ** 0.5, overlap), overlap, exact
         self.ghosts = float(self.cut2.max()) ** 0.5 + loop.settings.skin
         self.numbers = np.array([-1.0, -1.0, overlap**2, engine.qqr2e, float(not exact)])
+
+    @classmethod
+    def of_loop(cls, loop, exact: bool, overlap: float, what: str) -> Energies:
+        """Those of a loop, made anew only where its coefficients are others."""
+        known, terms = _known.setdefault(loop, {}), loop.engine.pair_terms
+        if known.get((exact, overlap), (None, None))[0] is not terms:
+            known[exact, overlap] = terms, cls(loop, exact, overlap, what)
+        return known[exact, overlap][1]
 
     def see(self, box, dimension: int) -> None:
         """Take the present box."""
@@ -107,7 +118,7 @@ class TrialAtoms:
                             mass=system.atom_masses(), gas=loop.groups[group], row=np.arange(n))
         for name, values in vars(s).items():
             array = np.zeros((cap, *values.shape[1:]), values.dtype, order="F")     # x, y and z each in one piece, for vector instructions
-            values.take(rows, axis=0, out=array[:n]) if values.ndim == 1 else np.copyto(array[:n], values[rows])
+            values.take(rows, out=array[:n], mode="clip") if values.ndim == 1 else of_rows(values, rows, array.T)
             setattr(self, name, array)
         self.moved = np.zeros(cap, bool)
         self.names = (*vars(s), "moved")

@@ -141,15 +141,15 @@ class Calls:
     def _follow(self, state, data) -> None:
         """Arguments anew where the state or the arrays of fixes are others; the state stays where it is in memory."""
         if state is not self._state:
-            block, self._state = packed.block(state), state
+            self._state = state
             if self._block is None or packed.WITHOUT_COMPILER:
-                self._block, self._data = block, None
+                self._block, self._data = packed.Block(state), None
             else:
-                self._block[:] = block
+                self._block.take(state)
         if data is not self._data:
             known, self._data = self._data, data
             if known is None or any(a is not b for new, old in zip(data, known, strict=True) for a, b in zip(new, old)):
-                self._arguments = [packed.arguments(self._block, numbers) for numbers in data]
+                self._arguments = [packed.arguments(self._block.memory, numbers) for numbers in data]
                 self._table = None
 
     def table(self, kinds: Sequence[str], state, data) -> tuple[np.ndarray, np.ndarray]:

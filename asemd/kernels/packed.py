@@ -75,6 +75,33 @@ def block(value):
     return np.array(into, np.int64)
 
 
+class Block:
+    """A tuple in memory that may take other values of the same types; its arrays live as long as it does.
+
+    Attributes
+    ----------
+    memory : (m,) int64, or the tuple itself where nothing is compiled
+    """
+
+    def __init__(self, values: tuple):
+        self.values, self.starts, self.memory = values, [], values
+        if not WITHOUT_COMPILER:
+            into: list[int] = []
+            for value in values:
+                self.starts.append(len(into))
+                pack((value,), into)
+            self.memory = np.array(into, np.int64)
+
+    def take(self, values: tuple) -> None:
+        """Other values: only those that are others are packed."""
+        for start, new, old in zip(self.starts, values, self.values):
+            if new is not old:
+                into: list[int] = []
+                pack((new,), into)
+                self.memory[start:start + len(into)] = into
+        self.values = values
+
+
 def arguments(state_block, numbers):
     """A hook's arguments in memory: the state's `block`, and a fix's (numbers, arrays); all must live as long as they are used."""
     if WITHOUT_COMPILER:

@@ -15,6 +15,14 @@ def of_slots(slot_of, values, out):
 
 
 @njit(cache=True, nogil=True)
+def of_rows(values, rows, out):
+    """Some rows of `values (n, 3)` as `out (3, at least as many)`."""
+    for i in range(len(rows)):
+        r, to = np.uint64(rows[i]), np.uint64(i)
+        out[0, to], out[1, to], out[2, to] = values[r, 0], values[r, 1], values[r, 2]
+
+
+@njit(cache=True, nogil=True)
 def of_items(x, atoms, out):
     """Positions ``x (n, 3)`` of the atoms of items ``atoms (m, k)``, one item after the other, as `out (3, m k)`."""
     k = atoms.shape[1]
@@ -35,6 +43,13 @@ def span(x, row, ns, origin, inverse, out):
                 s = (x[0, i] - origin[0]) * i0 + (x[1, i] - origin[1]) * i1 + (x[2, i] - origin[2]) * i2
                 low, high = min(low, s), max(high, s)
         out[0, a], out[1, a] = low, high
+
+
+def extent(x: np.ndarray, row: np.ndarray, ns: int, origin: np.ndarray, inverse: np.ndarray) -> np.ndarray:
+    """Smallest and largest fractional coordinates (2, 3) of atoms ``x (3, slots)``."""
+    out = np.empty((2, 3))
+    span(x, row, ns, origin, inverse, out)
+    return out
 
 
 @njit(cache=True, nogil=True)

@@ -66,20 +66,20 @@ class Terms:
     """
 
     def __init__(self, terms: Sequence, arguments: Sequence[tuple], virial: bool):
-        self.arguments, self.memory = arguments, [packed.block(a) for a in arguments]
+        self.arguments, self.blocks = arguments, [packed.Block(a) for a in arguments]
         self.kinds = [packed.text_of_arguments(a) for a in arguments]
         self.rows = np.empty((len(terms), 5), packed.HANDLE)
-        for row, t, kind, m in zip(self.rows, terms, self.kinds, self.memory, strict=True):
+        for row, t, kind, block in zip(self.rows, terms, self.kinds, self.blocks, strict=True):
             kernels = t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if virial else t.kernel(True, False)
             row[:3] = [kernel_address(k, kind) for k in kernels]
-            row[ARGUMENTS], row[TIME] = packed.handle(m), {"pair": PAIR_TIME, "kspace": KSPACE_TIME}.get(t.category, BOND_TIME)
+            row[ARGUMENTS], row[TIME] = packed.handle(block.memory), {"pair": PAIR_TIME, "kspace": KSPACE_TIME}.get(t.category, BOND_TIME)
 
     def take(self, arguments: Sequence[tuple]) -> bool:
         """Other arguments of the same terms; False if they are of other types, and kernels are to be looked up again."""
         if packed.WITHOUT_COMPILER or [packed.text_of_arguments(a) for a in arguments] != self.kinds:
             return False
-        for memory, values in zip(self.memory, arguments):
-            memory[:] = packed.block(values)
+        for block, values in zip(self.blocks, arguments):
+            block.take(values)
         self.arguments = arguments
         return True
 

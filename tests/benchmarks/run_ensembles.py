@@ -1,8 +1,6 @@
 """Runs under barostats and constraints against LAMMPS: the LJ melt and the bead-spring melt at constant pressure, polyethylene with its C-H
-bonds held by SHAKE at constant pressure; and what atoms that come and go cost."""
+bonds held by SHAKE at constant pressure."""
 from __future__ import annotations
-
-import time
 
 from tests.benchmarks import compare, polyethylene, scenes
 
@@ -48,42 +46,6 @@ def script(name: str) -> str:
 
 
 SCENES = ("LJ melt, npt", "bead-spring melt, npt", "polyethylene, shake and npt")
-SLAB = """units lj
-lattice fcc 0.8442
-region box block 0 10 0 10 0 20
-boundary p p f
-create_box 1 box
-region low block INF INF INF INF 0.2 10
-create_atoms 1 region low
-mass 1 1.0
-velocity all create 0.7 87287 loop geom
-pair_style lj/cut 2.5
-pair_coeff 1 1 1.0 1.0 2.5
-neighbor 0.3 bin
-neigh_modify delay 0 every 1 check yes
-fix 1 all nve
-fix walls all wall/reflect zlo EDGE zhi EDGE
-thermo 1000
-"""
-COMING_AND_GOING = """region gas block 0 10 0 10 13 18
-fix come all deposit 100000 1 {every} 7331 region gas near 1.0 vz -1.0 -1.0
-fix go all evaporate {every} 1 gas 4711
-"""
-FLUID = """units lj
-lattice fcc 0.5
-region box block 0 10 0 10 0 10
-create_box 1 box
-create_atoms 1 box
-mass 1 1.0
-velocity all create 2.0 87287 loop geom
-pair_style lj/cut 2.5
-pair_coeff 1 1 1.0 1.0 2.5
-neighbor 0.3 bin
-neigh_modify delay 0 every 1 check yes
-fix 1 all nve
-thermo 1000
-"""
-RESERVOIR = "fix gas all gcmc 10 {exchanges} {moves} 1 29494 2.0 -3.0 0.2\n"
 
 
 def measure(samples: int = 5, steps: int = 100, names=SCENES) -> dict:
@@ -91,35 +53,6 @@ def measure(samples: int = 5, steps: int = 100, names=SCENES) -> dict:
     return {name: compare.rates(compare.alternate(compare.contenders(), script(name), steps, samples), steps) for name in names}
 
 
-def coming_and_going(samples: int = 5, steps: int = 400) -> dict:
-    """Time of a step with an atom that leaves and one that comes every 10 or 100 steps, in terms of a step of 4000 atoms that stay."""
-    return _ratios(SLAB, {f"time with atoms that come and go every {every} steps / without": COMING_AND_GOING.format(every=every)
-                          for every in (10, 100)}, samples, steps)
-
-
-def exchanging(samples: int = 5, steps: int = 400) -> dict:
-    """Time of a step with a grand canonical exchange every 10 steps, in terms of a step of 4000 atoms that stay."""
-    return _ratios(FLUID, {f"time with fix gcmc 10 {exchanges} {moves} / without": RESERVOIR.format(exchanges=exchanges, moves=moves)
-                           for exchanges, moves in ((20, 0), (20, 20))}, samples, steps)
-
-
-def _ratios(scene: str, more: dict[str, str], samples: int, steps: int) -> dict:
-    """Time of a scene with more commands in terms of its time without."""
-    from asemd.lammps import Lammps
-    sessions = []
-    for commands in ("", *more.values()):
-        lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-        lmp.commands_string(f"{scene}{commands}run 50\n")
-        sessions.append(lmp)
-    seen: list[list[float]] = [[] for _ in sessions]
-    for _ in range(samples):
-        for lmp, times in zip(sessions, seen):
-            began = time.process_time()
-            lmp.commands_string(f"run {steps} pre no post no\n")
-            times.append(time.process_time() - began)
-    return {name: compare.spread([b / a for a, b in zip(seen[0], times)]) for name, times in zip(more, seen[1:])}
-
-
 if __name__ == "__main__":
     o = compare.arguments(__doc__, samples=5, steps=100).parse_args()
-    compare.show(__doc__, {**measure(o.samples, o.steps), **coming_and_going(o.samples), **exchanging(o.samples)}, o.json)
+    compare.show(__doc__, measure(o.samples, o.steps), o.json)
