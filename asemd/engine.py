@@ -157,7 +157,6 @@ class Engine:
         self.close_images, self.close_shifts = close_images(self.cell.reduced, self.vectors)
         self.close_periodic = (self.close_images[:, ~self.periodic] == 0).all(axis=1)
         self.k = kernels(self.ortho, self.settings.outdated or self.sparse)
-        self._bins = None
 
     def set_groups(self, groups, bits) -> None:
         """Masks of groups (n,) and their bits, for the masks of the slots from the next list on."""
@@ -225,9 +224,8 @@ class Engine:
             raise SimulationError(f"atom {self.system.id[s.row[bad]]}: position is not finite")
         shares = live_box.faces(self)
         if self.mode == "cluster":
-            if self._bins is None or not self.periodic.all():
-                self._bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
-            bins = self._bins
+            bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
+            bins.squeeze(s, self.ns, self.system.n, self.periodic, self.reach, self.ortho, self.list.marked)
             if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
                 self._allocate(self.list.capacity)
                 s = self.state

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import cluster, cluster_rows, pair_list, rebuild
+from asemd.kernels import cluster, cluster_rows, gaps, pair_list, rebuild
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.state import Cell
@@ -16,24 +16,46 @@ from asemd.kernels.state import Cell
 SMALL = 32             # below this many atoms a plain list: clusters would save some 15 microseconds a step and take 5 s more to compile
 MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
 MOST_PAIRS = 2e9
+WORTH = 0.5            # of the space: what may be left for empty stretches to be left out
+EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
+
+
+PIECES = cluster.reached, cluster.drop, cluster.arrange, gaps.squeeze
+ABOUT_CELLS = cluster.sort, cluster.near_columns, *PIECES, cluster.build
+
+
+def _builder(ortho: bool, mark: bool, squeezed: bool) -> Builder:
+    """With the functions that depend on cells."""
+    b = Builder("squeezed neighbour lists" if squeezed else "neighbour lists")
+    for name, value in (("CLUSTER", CLUSTER), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False), ("SQUEEZED", squeezed),
+                        ("SLOT_BITS", cluster.SLOT_BITS)):
+        b.constant(name, value)
+    _add(b, *PIECES, *(f for f in ABOUT_CELLS if f not in PIECES))
+    return b
+
+
+def _add(b: Builder, *functions) -> None:
+    for f in functions:
+        b.function(f, fast=f in (cluster.near_columns, *PIECES, cluster.build, cluster_rows.rows), inline=f in PIECES)
 
 
 @cache
 def kernels(ortho: bool, mark: bool = False):
     """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, see `cluster.build`."""
-    b = Builder("neighbour lists")
-    b.constant("CLUSTER", CLUSTER)
-    b.constant("ORTHO", ortho)
-    b.constant("MARK", mark)
-    b.constant("TRACK", False)
-    b.constant("SLOT_BITS", cluster.SLOT_BITS)
-    pieces = cluster.reached, cluster.drop, cluster.arrange
-    for f in (cluster.wrap, cluster.sort, cluster.near_columns, *pieces, cluster.build, cluster_rows.exclude, cluster_rows.count,
-              cluster_rows.expand, cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather,
-              rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear,
-              rebuild.closest, rebuild.mark_special, rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs):
-        b.function(f, fast=f in (cluster.near_columns, *pieces, cluster.build, cluster_rows.rows), inline=f in pieces)
+    b = _builder(ortho, mark, False)
+    _add(b, cluster.wrap, cluster_rows.exclude, cluster_rows.count, cluster_rows.expand, cluster_rows.rows, pair_list._cell,
+         pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved,
+         rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.closest, rebuild.mark_special, rebuild.forbidden,
+         rebuild.drop_excluded, rebuild.special_pairs)
+    return b.build()
+
+
+@cache
+def squeezed_kernels(ortho: bool, mark: bool):
+    """Those of them that depend on cells, for atoms with empty space between, see `asemd.kernels.gaps`."""
+    b = _builder(ortho, mark, True)
+    _add(b, gaps.find_gaps)
     return b.build()
 
 
@@ -78,6 +100,17 @@ class BinCell:
         self.volume = abs(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
         self.widths = 1.0 / np.sqrt((self.inverse * self.inverse).sum(axis=0))
         self.far = self.origin + (self.vectors + np.abs(self.vectors)).sum(axis=0)      # no atom is near
+        self.places, self.k = EVERYWHERE, None
+
+    def squeeze(self, state, ns: int, n: int, periodic: np.ndarray, reach: float, ortho: bool, mark: bool) -> None:
+        """Leave out empty stretches where few atoms (`n`) are in much space, so that cells are small where the atoms are."""
+        if CLUSTER * self.volume <= n * reach**3:
+            return
+        k, low, high, places = squeezed_kernels(ortho, mark), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
+        k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, periodic, reach / self.widths, low, high, places)
+        left = 1.0 / places[:, 1]
+        if left.prod() < WORTH:
+            self.places, self.k, self.widths, self.volume = places, k, self.widths * left, self.volume * float(left.prod())
 
 
 def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
@@ -164,8 +197,6 @@ class ClusterList:
 
     def shape(self, bins: BinCell, n: int, grid: tuple[int, int, int] | None = None) -> bool:
         """Choose the grid, unless it is given; True if arrays had to be made anew (their slots' arrays too)."""
-        if bins is self.bins and n == self.n:
-            return False
         self.bins, self.n = bins, n
         self.nx, self.ny, self.nz = nx, ny, nz = grid or self._grid()
         columns, slots = nx * ny, n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER
@@ -206,8 +237,9 @@ class ClusterList:
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
         """Sort the slots; returns their number."""
+        k = bins.k or k
         return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
-                      self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach)
+                      self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach, bins.places)
 
     def _see(self, cell: Cell, periodic: np.ndarray) -> None:
         """Take the images of a cell, unless they are known."""
@@ -221,7 +253,7 @@ class ClusterList:
         """Build the list and its exclusions in the sorted slots."""
         ncl = ns // CLUSTER
         self._see(cell, periodic)
-        again = self.shares is None and self.threads > 1
+        again, cells = self.shares is None and self.threads > 1, self.bins.k or k
         while True:
             if self.marked and self.hide.shape[1] < self.entries.shape[1]:
                 self.hide = np.zeros(self.entries.shape, np.uint8)
@@ -230,10 +262,10 @@ class ClusterList:
 
             def work(t, results=results):
                 c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-                results[t] = k.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
+                results[t] = cells.build(state.x, state.row, self.cell_start, self.column_start, self.column_of, self.bins.origin,
                                      self.bins.inverse, self.bins.widths, periodic, self.shifts, self.nx, self.ny, self.nz, self.reach,
                                      c0, c1, self.first[t], self.entries[t], self.own, self.span, self.unshifted, self.work[t],
-                                     self.work_codes[t], self.width, ns, self.row_length[t], COUNTERS, self.hide[t])
+                                     self.work_codes[t], self.width, ns, self.row_length[t], COUNTERS, self.hide[t], self.bins.places)
                 if results[t] >= 0 and partners is not None:
                     done = k.exclude(slot_of, state.row, partners[0], partners[1], c0, c1, self.first[t], self.entries[t], self.own,
                                      self.excluded_first[t], self.excluded[t], self.where[t], self.earlier[t], state.x, self.shifts,

@@ -6,7 +6,7 @@ cluster the images on the positive side. An entry is slot number + (shift code <
 no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
-generated module, and so are MARK (which atoms are beyond reach is wanted) and TRACK, see `arrange`. What follows from a list (exclusions,
+generated module, and so are MARK (which atoms are beyond reach is wanted), TRACK, see `arrange`. What follows from a list (exclusions,
 plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in `asemd.kernels.prune`.
 """
 from __future__ import annotations
@@ -14,6 +14,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+
+from asemd.kernels.gaps import squeeze
 
 CLUSTER = 8
 ORTHO = MARK = TRACK = True
@@ -53,8 +55,11 @@ def wrap(x, image, row, ns, origin, vectors, inverse, periodic):
     return -1
 
 
-def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step):
-    """Counting sort into columns and cells, in place; returns the new number of slots. Empty slots stand at `far` plus steps, at rest."""
+def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step, places):
+    """Counting sort into columns and cells, in place; returns the new number of slots. Empty slots stand at `far` plus steps, at rest.
+
+    `places`: see `asemd.kernels.gaps`.
+    """
     ncol = nx * ny
     for c in range(ncol):
         for z in range(nz + 1):
@@ -66,9 +71,9 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
         dx = x[0, i] - origin[0]
         dy = x[1, i] - origin[1]
         dz = x[2, i] - origin[2]
-        a = min(max(int((dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]) * nx), 0), nx - 1)
-        b = min(max(int((dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]) * ny), 0), ny - 1)
-        c = min(max(int((dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]) * nz), 0), nz - 1)
+        a = min(max(int(squeeze(dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0], places, 0) * nx), 0), nx - 1)
+        b = min(max(int(squeeze(dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1], places, 1) * ny), 0), ny - 1)
+        c = min(max(int(squeeze(dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2], places, 2) * nz), 0), nz - 1)
         for d in range(3):
             x2[d, n] = x[d, i]
             v2[d, n] = v[d, i]
@@ -238,7 +243,7 @@ def arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, e
 
 
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
-          first, entries, own, span, unshifted, work, codes, width, empty, longest, sorting, hide):
+          first, entries, own, span, unshifted, work, codes, width, empty, longest, sorting, hide, places):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are,
     -4 if a cluster has more neighbours than can be counted.
 
@@ -248,7 +253,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     says for the bits of the atoms that reach it; pair p then needs the sums p to p + 3. The cluster itself stands in the middle, at
     ``own[c]``. Rows end with copies of the slot `empty`, so that they fill vectors of `width`.
     `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row. With MARK each entry gets
-    in `hide` the bits of the atoms of the cluster that are beyond reach.
+    in `hide` the bits of the atoms of the cluster that are beyond reach. With `places` (see `asemd.kernels.gaps`) `widths` are what is
+    left of them.
     """
     n = 0
     r2 = reach * reach
@@ -277,9 +283,9 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                 dx = x[0, k] - origin[0]
                 dy = x[1, k] - origin[1]
                 dz = x[2, k] - origin[2]
-                s0 = dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]
-                s1 = dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]
-                s2 = dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]
+                s0 = squeeze(dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0], places, 0)
+                s1 = squeeze(dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1], places, 1)
+                s2 = squeeze(dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2], places, 2)
                 lo0 = min(lo0, s0)
                 hi0 = max(hi0, s0)
                 lo1 = min(lo1, s1)
