@@ -23,6 +23,7 @@ def scenes() -> dict[str, tuple]:
     """Positions, cell, which directions are periodic, cutoff."""
     rng = np.random.default_rng(17)
     box = np.diag([9.0, 10.0, 11.0])
+    drops = np.concatenate([np.random.default_rng(k).normal(0, 1, (200 - 50 * k, 3)) + k * WIDE.sum(0) * 4 for k in (0, 1)])
     out = {
         "single atom": (np.array([[0.3, 0.2, 0.1]]), np.diag([2.0, 3.0, 2.5]), ALL, 4.1),
         "single atom, nothing periodic": (np.array([[0.3, 0.2, 7.1]]), box, (False,) * 3, 4.1),
@@ -48,6 +49,8 @@ def scenes() -> dict[str, tuple]:
         "a point on a corner": (rng.normal(0.0, 1e-3, (400, 3)), box, ALL, 1.0),
         "a point on a corner, mixed": (rng.normal(0.0, 1e-3, (400, 3)), box, (True, False, False), 1.0),
         "two drops in a large box": (np.concatenate([rng.normal(0, 1, (200, 3)), rng.normal(70, 1, (150, 3))]), np.eye(3) * 100, ALL, 2.0),
+        "two drops across faces of a tilted cell": (drops, WIDE * 8, ALL, 2.0),
+        "two drops across faces, mixed": (drops, WIDE * 8, (True, False, True), 2.0),
         "drop and outlier": (np.concatenate([rng.normal(0, 1, (300, 3)), [[1e7, -1e7, 1e7]]]), box, (False,) * 3, 1.0),
         "density from nothing to a crowd": (np.column_stack([11.0 * rng.random(400) ** 6, *rng.random((2, 400)) * 9]), box * 1.1, ALL,
                                                 1.7),

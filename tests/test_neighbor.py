@@ -64,6 +64,19 @@ def test_sparse_gas(mode):
     assert errors(make(np.concatenate([x, x[:5] + 0.9]), np.eye(3) * 200.0, (True, True, True), rng), mode)[1] < 1e-12
 
 
+@pytest.mark.parametrize("periodic", [(True, True, True), (False, False, False)])
+def test_empty_space_makes_no_cell_larger(periodic):
+    """Columns of a drop are as narrow with an atom far away in a box of 10^9 times its volume as without."""
+    rng = np.random.default_rng(8)
+    drop = scattered(300, np.eye(3) * 9.0, 0, rng)
+    widths = []
+    for x, length in ((drop, 12.0), (np.concatenate([drop, [[9e3, 8e3, 7e3]]]), 1e4)):
+        engine, error = errors(make(x, np.eye(3) * length, periodic, rng), "cluster")
+        assert engine.mode == "cluster" and error < 1e-12
+        widths.append(engine.list.bins.widths[:2] / (engine.list.nx, engine.list.ny))
+    assert (widths[1] < 2.0 * widths[0]).all()
+
+
 @pytest.mark.parametrize("mode", ["cluster", "plain"])
 def test_slab_in_vacuum(mode):
     rng = np.random.default_rng(4)

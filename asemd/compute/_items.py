@@ -8,10 +8,11 @@ from asemd.kernels import bonded
 from asemd.kernels import rows as by_row
 from asemd.kernels.state import cell_arrays
 
-PIECE = 2048        # items at once: their arrays stay in the cache
+PIECE = 4096        # items at once: their arrays stay in the cache
 
 
-def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, units, compat: str) -> tuple[np.ndarray, np.ndarray]:
+def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, units, compat: str,
+             with_forces: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """Energies and forces of items of one style.
 
     Parameters
@@ -25,6 +26,8 @@ def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, u
     units : asemd.units.Units
     compat : str
         As `asemd.forcefield.Interactions.compat`.
+    with_forces : bool
+        False: there are no forces in the result, (0, k, 3).
 
     Returns
     -------
@@ -34,7 +37,7 @@ def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, u
     """
     m, k = atoms.shape
     if use.style.function is None or not m:
-        return np.zeros(m), np.zeros((m, k, 3))
+        return np.zeros(m), np.zeros((m * with_forces, k, 3))
     style = use.style.bind(use.settings, use.coeff, compat)
     packed = style.pack(use.settings, use.coeff, system.counts[f"n{category}types"], units)
     box = system.box
@@ -45,34 +48,41 @@ def evaluate(system, use, category: str, atoms: np.ndarray, types: np.ndarray, u
     loop = bonded.kernel(style, energy=True, per_atom=True, periodic=bool(periodic.any()), orthogonal=orthogonal)
     arrays = (*packed.arrays, *present(use, system, atoms)) if style.remembers else packed.arrays
     types, piece = np.ascontiguousarray(types, np.int32), m if style.remembers else PIECE
-    energies, by_axis, geometry = np.empty(m), np.empty((3, m * k)), cell_arrays(cell, periodic)
+    energies, by_axis, geometry = np.empty(m), np.empty((3, m * k * with_forces)), cell_arrays(cell, periodic)
     places = system.x
-    forces = by_axis.T.reshape(m, k, 3)
+    forces = by_axis.T.reshape(-1, k, 3)
     for lo in range(0, m, piece):
         hi = min(lo + piece, m)
         n = (hi - lo) * k         # every item has atoms of its own
-        x, f, shares, bad = np.empty((3, n)), np.zeros((3, n)), np.zeros(n), np.zeros(4)
+        if lo == 0 or hi == m:      # the others are as long as the first
+            x, f, shares, virials = np.empty((3, n)), np.empty((3, n)), np.empty(n), np.zeros((6, n))
+            items = np.arange(n, dtype=np.int32).reshape(-1, k)
+        f[:], shares[:], bad = 0.0, 0.0, np.zeros(4)
         by_row.of_items(places, atoms[lo:hi], x)
-        items = np.arange(n, dtype=np.int32).reshape(-1, k)
         more = (items, types[lo:hi], geometry, packed.coeff, arrays)
-        loop(x, f, *more, 0, hi - lo, np.zeros(8), shares, np.zeros((6, n)), bad)
-        energies[lo:hi], by_axis[:, lo * k:hi * k] = sum(shares[j::k] for j in range(k)), f
+        loop(x, f, *more, 0, hi - lo, np.zeros(8), shares, virials, bad)
+        energies[lo:hi] = sum(shares[j::k] for j in range(k))
+        if with_forces:
+            by_axis[:, lo * k:hi * k] = f
         for item in range(int(bad[1]), hi - lo) if bad[0] else ():        # the loop names only the first one
             alone = np.zeros(4)
             loop(x, np.zeros((3, n)), *more, item, item + 1, np.zeros(8), np.zeros(n), np.zeros((6, n)), alone)
             if alone[0]:
-                energies[lo + item] = forces[lo + item] = np.nan
+                energies[lo + item] = forces[lo + item:lo + item + 1] = np.nan
     return energies, forces
 
 
-def evaluate_all(system, interactions, category: str, atoms: np.ndarray, types: np.ndarray, units) -> tuple[np.ndarray, np.ndarray]:
+def evaluate_all(system, interactions, category: str, atoms: np.ndarray, types: np.ndarray, units,
+                 with_forces: bool = True) -> tuple[np.ndarray, np.ndarray]:
     """As `evaluate`, for items of all styles of a category; what is turned off or has no coefficients counts as zero."""
-    energies, forces = np.zeros(len(atoms)), np.zeros((*atoms.shape, 3))
+    energies, forces = np.zeros(len(atoms)), np.zeros((len(atoms) * with_forces, atoms.shape[1], 3))
     for use in interactions.uses[category]:
         known = np.zeros(max(int(types.max(initial=0)), *use.coeff, 0) + 1, bool)
         known[list(use.coeff)] = True
         mine = known[np.maximum(types, 0)]      # below 0: turned off
         if mine.all():
-            return evaluate(system, use, category, atoms, types, units, interactions.compat)
-        energies[mine], forces[mine] = evaluate(system, use, category, atoms[mine], types[mine], units, interactions.compat)
+            return evaluate(system, use, category, atoms, types, units, interactions.compat, with_forces)
+        energies[mine], found = evaluate(system, use, category, atoms[mine], types[mine], units, interactions.compat, with_forces)
+        if with_forces:
+            forces[mine] = found
     return energies, forces

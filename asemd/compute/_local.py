@@ -31,6 +31,9 @@ def local_items(state, kind: str, group: str) -> tuple[np.ndarray, np.ndarray]:
     return atoms[order], types[order]
 
 
+FORCES = {"force", "fx", "fy", "fz"}        # columns that need them
+
+
 class Geometry:
     """Separations of the atoms of some items and what follows from them, each made when it is first asked for.
 
@@ -40,10 +43,12 @@ class Geometry:
     kind : str
     group : str
     interactions : asemd.forcefield.Interactions or None
+    with_forces : bool
+        Whether forces are wanted, too.
     """
 
-    def __init__(self, state, kind: str, group: str, interactions):
-        self.state, self.kind, self.interactions = state, kind, interactions
+    def __init__(self, state, kind: str, group: str, interactions, with_forces: bool = True):
+        self.state, self.kind, self.interactions, self.with_forces = state, kind, interactions, with_forces
         self.atoms, self.types = local_items(state, kind, group)
         self._evaluated: tuple[np.ndarray, np.ndarray] | None = None
         self.known: dict[str, Any] = {}      # what several columns follow from
@@ -61,7 +66,8 @@ class Geometry:
     def evaluated(self) -> tuple[np.ndarray, np.ndarray]:
         """Energies (m,) and forces (m, k, 3)."""
         if self._evaluated is None:
-            self._evaluated = evaluate_all(self.state.system, self.interactions, self.kind, self.atoms, self.types, self.state.units)
+            self._evaluated = evaluate_all(self.state.system, self.interactions, self.kind, self.atoms, self.types, self.state.units,
+                                           self.with_forces)
         return self._evaluated
 
     def energy(self) -> np.ndarray:
@@ -137,7 +143,7 @@ class Local(Compute):
 
     def local(self, state) -> np.ndarray:
         """(m,) for one keyword, (m, k) for several."""
-        geometry = Geometry(state, self.kind, self.group, self.interactions)
+        geometry = Geometry(state, self.kind, self.group, self.interactions, not FORCES.isdisjoint(self.keywords))
         out = [self._formula(geometry, k[2:]) if k.startswith("v_") else self.columns[k](geometry) for k in self.keywords]
         return np.asarray(out[0], float) if len(out) == 1 else np.column_stack(out).astype(float, copy=False)
 

@@ -51,6 +51,7 @@ def _geometry(style: Style) -> ModuleType:
     return {"ax": vectors, "gamma": dipole}.get(first) or {"bond": bond, "angle": angle}.get(style.category, dihedral)
 
 
+@functools.cache
 def layout(style: Style) -> dict[str, int]:
     """The rows of a block for the coordinates of a style, 0 for what it has not, and how many there are (`asemd.kernels.block`)."""
     module, names = _geometry(style), chart(style) + PAST * style.history

@@ -1,6 +1,7 @@
 """What atoms that come and go cost: time of a step with them in terms of one of as many atoms that stay, both in one process and in turns.
 
-``python -m tests.benchmarks.run_population [--samples 5] [--steps 400] [--profile WORD]``: with a word of a case's name, where its time goes.
+``python -m tests.benchmarks.run_population [--samples 5] [--steps 400] [--profile WORD]``: with a word of a case's name, where its time
+goes.
 """
 from __future__ import annotations
 
