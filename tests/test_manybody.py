@@ -161,10 +161,10 @@ print(json.dumps(answer))
 """
 
 
-def uncompiled(script: str, jobs: dict, folder: str = "") -> dict:
+def uncompiled(script: str, jobs: dict, folder: str = "", timeout: float = 300.0) -> dict:
     environment = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1]), "NUMBA_DISABLE_JIT": "1", "LAMMPS_POTENTIALS": folder}
     done = subprocess.run([sys.executable, "-c", script], input=json.dumps(jobs), env=environment, capture_output=True, text=True,
-                          timeout=300)
+                          timeout=timeout)
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)
 

@@ -131,7 +131,7 @@ def jobs(potentials: Path) -> dict[str, list[str]]:
 def test_like_lammps():
     given = jobs(folder())
     theirs = ask(THEIRS, jobs=given, folder=str(folder()))
-    ours = uncompiled(OURS, given, str(folder()))
+    ours = uncompiled(OURS, given, str(folder()), timeout=3600.0)
     wrong = []
     for name in given:
         if "error" in theirs[name] or "error" in ours[name]:
