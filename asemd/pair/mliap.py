@@ -3,7 +3,8 @@ r"""Machine-learned potentials of components of the bispectrum: linear, quadrati
 $$E=\sum_iE_{model}(\mathbf B_i)$$
 
 ``pair_style mliap model KIND FILE descriptor sna FILE`` with the models linear, quadratic and nn; the components are those of `pair snap`,
-the descriptor file has their parameters and the elements. ``pair_coeff * *`` and an element for each type.
+the descriptor file has their parameters and the elements. ``pair_coeff * *`` and an element for each type. The descriptors so3 and ace and
+models in Python are not supported.
 
 Source: LAMMPS manual, pair_style mliap; A. Rohskopf et al., J. Mater. Res. 38, 5136 (2023).
 """
