@@ -16,6 +16,7 @@ POSITION = ("x", "y", "z")
 DIPOLE, SPIN = ("mux", "muy", "muz"), ("wx", "wy", "wz")
 MOMENTUM = ("lx", "ly", "lz")
 SPHERE = ("diameter", "density")
+SURFACE = ("area", "ed", "em", "epsilon", "curvature")     # of style dielectric: patches of interfaces, and what is around an atom
 ELLIPSOID = ("ellipsoid", "density")
 SPINS = {"omega": SPIN, "angmom": MOMENTUM}
 SHAPE, TURN = ("shapex", "shapey", "shapez"), ("quatw", "quati", "quatj", "quatk")      # of section Ellipsoids
@@ -27,17 +28,19 @@ COLUMNS = {
     "molecular": ("id", "molecule", "type", *POSITION),
     "full": ("id", "molecule", "type", "q", *POSITION),
     "dipole": ("id", "type", "q", *POSITION, *DIPOLE),
+    "dielectric": ("id", "molecule", "type", "q", *POSITION, *DIPOLE, *SURFACE),
     "sphere": ("id", "type", *SPHERE, *POSITION),
     "ellipsoid": ("id", "type", *ELLIPSOID, *POSITION),
 }
 # what an atom style can be bonded by
 BONDED = {"bond": ("bond",), "angle": ("bond", "angle"), "molecular": ("bond", "angle", "dihedral", "improper"),
-          "full": ("bond", "angle", "dihedral", "improper"), "template": ("bond", "angle", "dihedral", "improper")}
+          "full": ("bond", "angle", "dihedral", "improper"), "dielectric": ("bond", "angle", "dihedral", "improper"),
+          "template": ("bond", "angle", "dihedral", "improper")}
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)      # the orientation of a body whose axes are x, y and z
 NAMES = (*COLUMNS, "hybrid")
 # per-atom arrays beside those every system has -> their unit
 UNITS = {"mu": "dipole", "torque": "energy", "radius": "distance", "omega": "1/time", "shape": "distance", "quaternions": "",
-         "angmom": "mass*distance*velocity"}
+         "angmom": "mass*distance*velocity", "area": "distance^2", "ed": "", "em": "", "epsilon": "", "curvature": "1/distance"}
 
 
 def parts(style: str) -> tuple[str, ...]:
@@ -90,9 +93,12 @@ def ellipsoid_volume(shape: np.ndarray) -> np.ndarray:
 
 def fresh(style: str, n: int) -> dict:
     """Charges, masses and further arrays of `n` new atoms, as arguments of `asemd.system.System`: spheres have diameter and density 1,
-    those of style ellipsoid are points of mass 1."""
+    those of style ellipsoid are points of mass 1, those of style dielectric are in vacuum."""
     out: dict = {"atom_style": style, "q": np.zeros(n) if has(style, "q") else None, "extra": {}}
-    if has(style, "mux"):
+    if has(style, "area"):
+        out["extra"] |= {"mu": np.zeros((n, 3)), "area": np.ones(n), "ed": np.zeros(n), "em": np.ones(n), "epsilon": np.ones(n),
+                         "curvature": np.zeros(n)}
+    if "dipole" in parts(style):
         out["extra"] |= {"mu": np.zeros((n, 3)), "torque": np.zeros((n, 3))}
     if has(style, "diameter"):
         radius = np.full(n, 0.5)
@@ -122,7 +128,7 @@ def rotated(extra: Mapping[str, np.ndarray], rotation: np.ndarray) -> dict[str, 
 
 
 def properties(columns: Mapping[str, np.ndarray], spin: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Dipoles, radii, shapes and masses from the columns of a data file, as arrays (n, ...) by name.
+    """Dipoles, radii, shapes, masses and what is around the atoms from the columns of a data file, as arrays (n, ...) by name.
 
     Parameters
     ----------
@@ -134,12 +140,13 @@ def properties(columns: Mapping[str, np.ndarray], spin: Mapping[str, np.ndarray]
     Raises
     ------
     InputError
-        A diameter or density that cannot be; its attribute ``row`` says where.
+        A diameter, density, area or dielectric constant that cannot be; its attribute ``row`` says where.
     """
     out: dict[str, np.ndarray] = {}
     if "mux" in columns:
         out["mu"] = np.column_stack([columns[c] for c in DIPOLE])
-    for name, least in (("diameter", 0.0), ("density", np.nextafter(0.0, 1.0))):
+    positive = np.nextafter(0.0, 1.0)
+    for name, least in (("diameter", 0.0), ("density", positive), ("area", 0.0), ("epsilon", positive)):
         if name in columns and not (columns[name] >= least).all():
             row = int(np.argmin(columns[name] >= least))
             error = InputError(f"invalid {name} {columns[name][row]:g} of atom {int(columns['id'][row])}")
@@ -155,4 +162,6 @@ def properties(columns: Mapping[str, np.ndarray], spin: Mapping[str, np.ndarray]
         out["shape"] = np.column_stack([columns[c] for c in SHAPE])
         out["quaternions"] = np.column_stack([columns[c] for c in TURN])
         out["rmass"] *= ellipsoid_volume(out["shape"])
-    return out | ({"torque": np.zeros((len(columns["id"]), 3))} if out else {})
+    turns = bool(out) and "area" not in columns
+    return (out | {name: columns[name] for name in SURFACE if name in columns}
+            | ({"torque": np.zeros((len(columns["id"]), 3))} if turns else {}))

@@ -237,9 +237,10 @@ def bond_terms(system, interactions, pair_terms, units) -> list:
         style, at = use.style, np.flatnonzero(np.isin(types, list(use.coeff)))
         if not len(at):
             continue
-        turning = next((t for t in pair_terms if t.style.oriented), None)
+        turning = next((t for t in pair_terms if t.style.oriented or t.style.dielectric), None)
         if turning is not None and (style.pair_weights or style.breaks):
-            raise InputError(f"bond style {style.name} cannot be used with pair style {turning.style.name}, whose atoms feel torques")
+            raise InputError(f"bond style {style.name} cannot be used with pair style {turning.style.name}: its forces are not "
+                             "those of distances alone")
         if style.pair_weights:
             weights = {t: tuple(use.coeff[t][name] for name in style.pair_weights) for t in use.coeff}
             for lj, coul in sorted(set(weights.values())):

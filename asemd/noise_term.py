@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from asemd.dielectric_term import DielectricPairTerm
 from asemd.errors import InputError
 from asemd.kernels import marsaglia, pair_noise, pair_sums
 from asemd.kernels.generate import Builder
@@ -68,4 +69,6 @@ def list_term(term) -> PairListTerm:
     """The term of a pair style over all pairs of a plain list."""
     if term.style.oriented:
         return TERMS[term.style.oriented](term)
+    if term.style.dielectric:
+        return DielectricPairTerm(term)
     return NoiseTerm(term) if term.style.stirred else PairListTerm(term.style, term.tables, term.style.parts, "all", owner=term)

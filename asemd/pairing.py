@@ -194,6 +194,9 @@ def check_complete(interactions: Interactions, system) -> None:
     for use in interactions.uses["pair"]:
         if use.style.charged and system.q is None:
             raise InputError(f"pair style {use.style.name} needs atom attribute q: use atom_style charge or full")
+        if use.style.charged and not use.style.dielectric and "epsilon" in system.extra:
+            raise InputError(f"pair style {use.style.name} knows nothing of the dielectric constants that atoms of style "
+                             f"{system.atom_style} have: use one for them, such as coul/cut/dielectric")
         if interactions.modified(use, "tail"):
             if interactions.modified(use, "shift"):
                 raise InputError("pair_modify shift and tail cannot both be yes")

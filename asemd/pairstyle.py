@@ -117,6 +117,7 @@ class PairStyle(Style):
     many = False                     # energies of single pairs; True: `asemd.manybody`
     twin: PairStyle | None = None    # gives LAMMPS's numbers where LAMMPS's force is not minus the gradient of its energy
     stirred = False                  # forces depend on velocities and random numbers, see `asemd.noise_term`
+    dielectric = False               # each charge stands in a medium of its own, see `asemd.dielectric_term`
     oriented = ""                    # what the atoms have that torques turn, see `asemd.oriented_term`
     all_or_nothing = False           # special pairs whose weight is not 0 count in full
     unweighted = False               # the energy of special pairs is added up without their weights, which only forces have

@@ -241,6 +241,8 @@ def check_pairwise(terms) -> None:
                              "atoms")
         if term.style.oriented:
             raise InputError(f"pair style {term.style.name} depends on the orientation of atoms: single pairs are not available")
+        if term.style.dielectric:
+            raise InputError(f"pair style {term.style.name} depends on dielectric constants of atoms: single pairs are not available")
 
 
 def _kernel(term):

@@ -3,7 +3,8 @@
 Attributes: id mol proc type mass, x y z (as they are), xs ys zs (scaled), xu yu zu (unwrapped), ix iy iz (images), vx vy vz, fx fy fz, q,
 nbonds (bonds that belong to the atom: those of which it is the first one, or with ``newton off`` all), and where the atom style has them
 mux muy muz mu, radius diameter, omegax omegay omegaz, tqx tqy tqz, angmomx angmomy angmomz, shapex shapey shapez, quatw quati quatj quatk
-(points of style ellipsoid count as upright ones of diameter 1, as in LAMMPS); i_name, d_name, i2_name[k], d2_name[k] of fix
+(points of style ellipsoid count as upright ones of diameter 1, as in LAMMPS), area ed em epsilon curvature and q_scaled, the charge
+divided by epsilon; i_name, d_name, i2_name[k], d2_name[k] of fix
 property/atom.
 
 Source: LAMMPS manual, compute property/atom.
@@ -14,14 +15,14 @@ import re
 
 import numpy as np
 
-from asemd.atom_style import SHAPE, TURN, UPRIGHT
+from asemd.atom_style import SHAPE, SURFACE, TURN, UPRIGHT
 from asemd.compute import Compute
 from asemd.dump._columns import COLUMNS, LABELS, View
 from asemd.errors import InputError, nearest
 
 LEFT_OUT = {"element", "procp1", *LABELS, *(f"{a}su" for a in "xyz")}
 SOLID = {name: (array, k) for array, own in (("shape", SHAPE), ("quaternions", TURN)) for k, name in enumerate(own)}
-ATTRIBUTES = (*(c for c in COLUMNS if c not in LEFT_OUT), "nbonds", *SOLID)
+ATTRIBUTES = (*(c for c in COLUMNS if c not in LEFT_OUT), "nbonds", *SOLID, *SURFACE, "q_scaled")
 CUSTOM = re.compile(r"[id](_\w+|2_\w+\[\d+\])")
 
 
@@ -72,6 +73,11 @@ class PropertyAtom(Compute):
             topology, n = view.system.topology, view.system.n
             bonds = topology.bonds[topology.bond_types != 0]
             return np.bincount((bonds[:, 0] if self.newton else bonds.ravel()), minlength=n).astype(float)[view.rows]
+        if name in SURFACE or name == "q_scaled":
+            extra, rows = view.system.extra, view.rows
+            if name not in extra and "epsilon" not in extra:
+                raise InputError(f"compute property/atom {name}: atom style {view.system.atom_style} has no dielectric constants")
+            return extra[name][rows] if name in extra else view.system.q[rows] / extra["epsilon"][rows]
         if name in SOLID:
             extra, (array, k) = view.system.extra, SOLID[name]
             if array not in extra:

@@ -86,7 +86,7 @@ class EField(Forcing):
 
     def numbers(self, loop) -> list[float]:
         system = loop.system
-        charged, dipoles = system.q is not None, "mu" in system.extra
+        charged, dipoles = system.q is not None, has_dipoles(system)
         if not charged and not dipoles:
             raise InputError("Fix efield requires atom attribute q or mu: use an atom style with charges or dipoles")
         return [loop.units.qe2f, dipoles, self.constant, bool(self.energy) + 2.0 * bool(self.potential)]
@@ -103,7 +103,7 @@ class EField(Forcing):
 
     def follow(self, loop) -> None:
         super().follow(loop)
-        if "mu" in loop.system.extra and any(np.ptp(self.a[:, 1 + k]) > 0.0 for k, v in enumerate(self.values) if callable(v)):
+        if has_dipoles(loop.system) and any(np.ptp(self.a[:, 1 + k]) > 0.0 for k, v in enumerate(self.values) if callable(v)):
             raise InputError(f"fix {self.id} (style efield): variables of style atom are not for dipoles")
         if self.energy is not None or self.potential is not None:
             self.a[:, 4] = (self.energy or self.potential)(loop)
@@ -159,3 +159,8 @@ class EField(Forcing):
         force = state.units.qe2f * np.where(acts, system.q, 0.0)[:, None] * np.array(self.values)
         r = system.box.unwrap(self.places(system), system.image)
         return np.stack([force[:, i] * r[:, j] for i, j in COMPONENTS], axis=1)
+
+
+def has_dipoles(system) -> bool:
+    """Whether a field turns the atoms: what those of style dielectric have are normals of surfaces."""
+    return "mu" in system.extra and "epsilon" not in system.extra

@@ -44,6 +44,8 @@ class Energies:
         for t in terms:
             if t.style.oriented:
                 raise InputError(f"{what}: pair style {t.style.name} depends on the orientation of atoms: use full_energy")
+            if t.style.dielectric:
+                raise InputError(f"{what}: pair style {t.style.name} depends on dielectric constants of atoms: use full_energy")
         if engine.many_terms:
             raise InputError(f"{what}: pair style {engine.many_terms[0].style.name} is a many-body potential, in which "
                              "an atom has no energy of pairs")

@@ -228,6 +228,63 @@ def _core(parts) -> str:
     return ""
 
 
+def paste_one(b: Builder, style, parts, piece: str = "", apart: bool = False) -> None:
+    """``pair_energy_one`` of the parts: force/r and both energies of one pair; `apart`: forces without and with charges by themselves."""
+    names = _paste_style(b, parts, False, False)
+    radii = ["radius_i", "radius_j"] * any(p.sized for p in parts)
+    taken = ", ".join(["r2", "qq", "lj", "coul", "whole", "rows", "constants", "arrays", "ti", "tj", *radii])
+    lines = [f"def pair_energy_one({taken}):", "    fp, fc, ev, ec = 0.0, 0.0, 0.0, 0.0" if apart else "    fp, ev, ec = 0.0, 0.0, 0.0"]
+    if any(p.coordinate == "r" for p in parts):
+        lines.append("    r = math.sqrt(r2)")
+    row = constant = array = 0
+    core = _core(parts)
+    if piece:
+        limits = sum(len(p.constants) for p in parts) + 4
+        lines += [f"    if r2 <= constants[{limits}] or r2 >= constants[{limits + 1}]:", "        return fp, ev, ec"]
+    for k, (part, name) in enumerate(zip(parts, names)):
+        args = [part.coordinate] + ["qq"] * part.charged + radii * part.sized
+        args += [f"rows[{row + 2 + i}, ti, tj]" for i in range(len(part.rows))]
+        args += [f"constants[{constant + i}]" for i in range(len(part.constants))]
+        args += [f"arrays[{array + i}]" for i in range(len(part.arrays))]
+        w, force = "coul" if part.charged else "lj", "fc" if apart and part.charged else "fp"
+        slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
+        if part.long:
+            factor = f" * rows[{row + 1 + len(part.rows)}, ti, tj]" if SCALE in part.rows else ""
+            bare, power = ((f"qq{factor} / math.sqrt(r2)", "bare") if part.charged
+                           else (f"-rows[{row + 2}, ti, tj] / (r2 * r2 * r2)", "6.0 * bare"))
+            near = getattr(part.function, "special", None)
+            if near is not None:
+                b.function(near, f"special_{name}")
+                lines += [f"    if coul != whole and r2 < rows[{row}, ti, tj]:",
+                          f"        e{k}, d{k} = special_{name}({', '.join(args)}, 1.0 - coul / whole)",
+                          f"        {force} += whole * {slope}",
+                          f"        ec += whole * e{k}"]
+            lines += [f"    {'if' if near is None else 'elif'} r2 < rows[{row}, ti, tj]:",
+                      f"        e{k}, d{k} = {name}({', '.join(args)})",
+                      f"        bare = (whole - {w}) * {bare} if {w} != whole else 0.0",
+                      f"        {force} += whole * {slope} - ({power} / r2 if bare != 0.0 else 0.0)",
+                      f"        {'ec' if part.charged else 'ev'} += whole * e{k} - bare"]
+        else:
+            if core:
+                twin = getattr(part.function, "near", None)       # powers of the greater distance, other functions of r
+                args[0] = core if part.coordinate == "r2" else "r"
+                slope = slope if part.coordinate == "r2" else f"{slope} * (r2 / ({core}))"
+                if twin is not None:
+                    args.insert(1, core)
+                    name = b.function(twin, f"near_{name}")
+            lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
+                      f"        e{k}, d{k} = {name}({', '.join(args)})",
+                      f"        {force} += {w} * {slope}",
+                      f"        {'ec' if part.charged else 'ev'} += {1.0 if style.unweighted else w} * (e{k} - rows[{row + 1}, ti, tj])"]
+        row += 2 + len(part.rows)
+        constant += len(part.constants)
+        array += len(part.arrays)
+    if piece:
+        lines += [*_share(piece, "constants", constant), "    fp *= share"]
+    lines.append("    return fp, fc, ev, ec" if apart else "    return fp, ev, ec")
+    b.text("\n".join(lines))
+
+
 @cache
 def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, factor: bool = False,
                 piece: str = ""):
@@ -242,59 +299,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
     for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, WANTED=energy or per_atom, CHARGED=charged, FACTOR=factor,
                             SIZED=sized).items():
         b.constant(name, value)
-    names = _paste_style(b, parts, False, False)
-    radii = ["radius_i", "radius_j"] * sized
-    taken = ", ".join(["r2", "qq", "lj", "coul", "whole", "rows", "constants", "arrays", "ti", "tj", *radii])
-    lines = [f"def pair_energy_one({taken}):", "    fp, ev, ec = 0.0, 0.0, 0.0"]
-    if any(p.coordinate == "r" for p in parts):
-        lines.append("    r = math.sqrt(r2)")
-    row = constant = array = 0
-    core = _core(parts)
-    if piece:
-        limits = sum(len(p.constants) for p in parts) + 4
-        lines += [f"    if r2 <= constants[{limits}] or r2 >= constants[{limits + 1}]:", "        return fp, ev, ec"]
-    for k, (part, name) in enumerate(zip(parts, names)):
-        args = [part.coordinate] + ["qq"] * part.charged + radii * part.sized
-        args += [f"rows[{row + 2 + i}, ti, tj]" for i in range(len(part.rows))]
-        args += [f"constants[{constant + i}]" for i in range(len(part.constants))]
-        args += [f"arrays[{array + i}]" for i in range(len(part.arrays))]
-        w = "coul" if part.charged else "lj"
-        slope = f"-2.0 * d{k}" if part.coordinate == "r2" else f"(-d{k} / r if r > 0.0 else (0.0 if abs(d{k}) < np.inf else np.inf))"
-        if part.long:
-            factor = f" * rows[{row + 1 + len(part.rows)}, ti, tj]" if SCALE in part.rows else ""
-            bare, power = ((f"qq{factor} / math.sqrt(r2)", "bare") if part.charged
-                           else (f"-rows[{row + 2}, ti, tj] / (r2 * r2 * r2)", "6.0 * bare"))
-            near = getattr(part.function, "special", None)
-            if near is not None:
-                b.function(near, f"special_{name}")
-                lines += [f"    if coul != whole and r2 < rows[{row}, ti, tj]:",
-                          f"        e{k}, d{k} = special_{name}({', '.join(args)}, 1.0 - coul / whole)",
-                          f"        fp += whole * {slope}",
-                          f"        ec += whole * e{k}"]
-            lines += [f"    {'if' if near is None else 'elif'} r2 < rows[{row}, ti, tj]:",
-                      f"        e{k}, d{k} = {name}({', '.join(args)})",
-                      f"        bare = (whole - {w}) * {bare} if {w} != whole else 0.0",
-                      f"        fp += whole * {slope} - ({power} / r2 if bare != 0.0 else 0.0)",
-                      f"        {'ec' if part.charged else 'ev'} += whole * e{k} - bare"]
-        else:
-            if core:
-                twin = getattr(part.function, "near", None)       # powers of the greater distance, other functions of r
-                args[0] = core if part.coordinate == "r2" else "r"
-                slope = slope if part.coordinate == "r2" else f"{slope} * (r2 / ({core}))"
-                if twin is not None:
-                    args.insert(1, core)
-                    name = b.function(twin, f"near_{name}")
-            lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
-                      f"        e{k}, d{k} = {name}({', '.join(args)})",
-                      f"        fp += {w} * {slope}",
-                      f"        {'ec' if part.charged else 'ev'} += {1.0 if style.unweighted else w} * (e{k} - rows[{row + 1}, ti, tj])"]
-        row += 2 + len(part.rows)
-        constant += len(part.constants)
-        array += len(part.arrays)
-    if piece:
-        lines += [*_share(piece, "constants", constant), "    fp *= share"]
-    lines.append("    return fp, ev, ec")
-    b.text("\n".join(lines))
+    paste_one(b, style, parts, piece)
     for f in (pair_sums.eight, pair_sums.add):
         b.function(f)
     b.function(pair_list.list_forces)

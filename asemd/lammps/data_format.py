@@ -1,14 +1,14 @@
 """What stands in a LAMMPS data file: header lines, sections and kinds of columns. Those of an atom style: `asemd.atom_style`."""
 from __future__ import annotations
 
-from asemd.atom_style import DIPOLE, MOMENTUM, SHAPE, SPHERE, SPIN, TURN
+from asemd.atom_style import DIPOLE, MOMENTUM, SHAPE, SPHERE, SPIN, SURFACE, TURN
 
 IMAGE = ("nx", "ny", "nz")
 
 # column -> "id", "whole", "type" or "real"
 KIND_OF = {"id": "id", "molecule": "whole", "type": "type", "q": "real", "x": "real", "y": "real", "z": "real", "nx": "whole",
            "ny": "whole", "nz": "whole", "vx": "real", "vy": "real", "vz": "real", "number": "whole", "atom1": "id",
-           "atom2": "id", "atom3": "id", "atom4": "id", **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE, *MOMENTUM, *SHAPE, *TURN), "real"),
+           "atom2": "id", "atom3": "id", "atom4": "id", **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE, *MOMENTUM, *SHAPE, *TURN, *SURFACE), "real"),
            "ellipsoid": "whole"}
 
 # header line -> number of values

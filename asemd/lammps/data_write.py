@@ -238,6 +238,7 @@ def _atoms(s: System) -> dict[str, np.ndarray]:
     known = {"id": s.id, "molecule": s.molecule, "type": s.type, "q": s.q if s.q is not None else np.zeros(s.n), **dict(zip("xyz", s.x.T))}
     if "mu" in s.extra:
         known |= dict(zip(atom_styles.DIPOLE, s.extra["mu"].T))
+    known |= {c: s.extra[c] for c in atom_styles.SURFACE if c in s.extra}
     if s.rmass is not None:
         known["density"] = s.rmass
     if "radius" in s.extra:

@@ -1,0 +1,14 @@
+r"""The sum of lj/cut up to cut_lj and charges screened as in coul/debye, each in a medium of its own as in coul/cut/dielectric.
+
+One cutoff given means both.
+"""
+from __future__ import annotations
+
+from asemd.dielectric_pairs import DielectricPair
+from asemd.pair.coul_debye import coul_debye
+from asemd.pair.lj_cut import lj_cut, tail
+from asemd.pairstyle import pair_sum
+
+pair_sum("lj/cut/coul/debye/dielectric", (lj_cut, "cut_lj"), (coul_debye, "cut_coul"), cls=DielectricPair,
+         settings="kappa cut_lj [cut_coul]", coeff="epsilon sigma [cut_lj] [cut_coul]", defaults={"cut_coul": "cut_lj"},
+         mix={"epsilon": "sigma", "sigma": "distance"}, tail=tail, settings_example="0.3 8.0 10.0", example="0.1 3.0 7.0 9.0")
