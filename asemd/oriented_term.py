@@ -8,6 +8,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.kernels import pair_dipole, pair_ellipsoid, pair_sums
 from asemd.kernels.generate import Builder
+from asemd.kernels.pair import paste_one
 from asemd.kernels.rigid import turn_axes
 from asemd.term import PairListTerm
 
@@ -16,11 +17,10 @@ from asemd.term import PairListTerm
 def dipole_kernel(style, energy: bool, per_atom: bool):
     """The kernel of `asemd.kernels.pair_dipole` for a style."""
     b = Builder(f"pair {style.name}: charges with dipoles")
-    first, second = style.parts
-    last, scale = 2 + len(first.rows), second.rows.index("scale") if "scale" in second.rows else -1
-    name = b.function(first.function)
-    arguments = ", ".join(["r2", *(f"rows[{2 + k}, ti, tj]" for k in range(len(first.rows)))])
-    b.text(f"def plain(r2, rows, ti, tj):\n    e, d = {name}({arguments})\n    return e - rows[1, ti, tj], -2.0 * d")
+    *others, second = style.parts
+    last, scale = sum(2 + len(part.rows) for part in others), second.rows.index("scale") if "scale" in second.rows else -1
+    b.line("real = np.float64")
+    paste_one(b, style, others)
     for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FIRST=last, SCALE=last + 2 + scale, SCALED=scale >= 0).items():
         b.constant(key, value)
     b.function(style.radial, "radial")
@@ -54,7 +54,7 @@ class DipolePairTerm(OrientedTerm):
         s, m, nth = engine.state, len(self.i), engine.threads
         return (s.x, engine.buffers[tid], s.q, engine.system.extra["mu"], s.row, engine.buffers[tid, 3:], s.type, self.i, self.j, self.code,
                 self.shifts, self.lj, self.coul, m * tid // nth, m * (tid + 1) // nth, self.tables.rows, self.tables.constants,
-                engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+                self.tables.arrays, engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
 
 
 @cache

@@ -20,7 +20,7 @@ read_data {data}
 bond_coeff *
 special_bonds lj 0.3 0.5 0.5 coul 0.4 0.4 0.5
 {pair}
-pair_modify table 0
+pair_modify table 0 table/disp 0
 {more}
 compute ea all pe/atom pair
 fix keep all ave/atom 1 1 1 c_ea
@@ -103,7 +103,7 @@ def test_like_lammps(theirs, data, name):
 SOLVED = {
     "lj/cut/coul/cut": "",
     "lj/cut/coul/long": "\nkspace_style pppm{} 1e-4" + MESH,
-    "lj/cut/coul/msm": "\nkspace_style msm{} 1e-3\nkspace_modify pressure/scalar no",
+    "lj/cut/coul/msm": "\nkspace_style msm{} 1e-3\nkspace_modify pressure/scalar no cutoff/adjust no mesh 8 8 8",
     "lj/long/coul/long long long": "\nkspace_style pppm/disp{} 1e-4" + DISP,
 }
 

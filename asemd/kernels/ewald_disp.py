@@ -13,23 +13,25 @@ from asemd.kernels.threads import barrier
 ENERGY = PER_ATOM = False
 
 
-def error(waves, length, g, q2, b2, natoms):
-    """Estimated error of forces of both sums by so many waves along an edge."""
+def error(waves, length, g, q2, b2, density, natoms):
+    """Estimated error of forces of all sums by so many waves along an edge; `density`: of squared dipoles, see `choose`."""
     u = math.pi * waves / (g * length)
     bell = math.exp(-u * u)
     return (2.0 * q2 * g / length * math.sqrt(1.0 / (math.pi * waves * natoms)) * bell
-            + 4.0 * b2 * g**7 / 3.0 * math.sqrt(1.0 / (math.pi * natoms)) * bell * (u + 1.0))
+            + 4.0 * b2 * g**7 / 3.0 * math.sqrt(1.0 / (math.pi * natoms)) * bell * (u + 1.0)
+            + 8.0 * math.pi * density * g * math.sqrt(2.0 * math.pi * waves**3 / (15.0 * natoms)) * bell)
 
 
-def choose(vectors, g, q2, b2, natoms, accuracy, numbers):
+def choose(vectors, g, q2, b2, m2, natoms, accuracy, numbers):
     """The waves that LAMMPS takes for that box: how many there are, and the largest number; they go to `numbers (m, 3)` as far as there
-    is room."""
+    is room. `q2`, `b2`, `m2`: squared charges, C6 of atoms with themselves, squared dipoles, all as energies."""
     length = np.empty(3)
     edges(vectors, length)
+    density = m2 / (length[0] * length[1] * length[2])
     reach, top = 0.0, 1
     for d in range(3):
         n = 1
-        while error(n, length[d], g, q2, b2, natoms) > accuracy:
+        while error(n, length[d], g, q2, b2, density, natoms) > accuracy:
             n += 1
         top = max(top, n)
         reach = max(reach, 1.00001 * (2.0 * math.pi * n / length[d]) ** 2)
@@ -73,13 +75,13 @@ def sums_over_waves(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, 
     their products.
 
     `constants` as in `asemd.kernels.ewald.ewald`, then the sums of C6 of all pairs and of atoms with themselves, and those of each of the
-    numbers; `choice (4,)`: what `choose` takes after the splitting parameter; `held (4, 3)` as in `asemd.kernels.ewald.ewald`.
+    numbers; `choice (5,)`: what `choose` takes after the splitting parameter; `held (4, 3)` as in `asemd.kernels.ewald.ewald`.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     attraction = factors.shape[0] > 0
     if tid == 0 and not is_same(box, stretch, held):
         stretched(box, stretch, held[:3], inverse)
-        found, top = choose(held[:3], g, choice[0], choice[1], choice[2], choice[3], room)
+        found, top = choose(held[:3], g, choice[0], choice[1], choice[2], choice[3], choice[4], room)
         held[3, 2] = found > room.shape[0]
         found = min(found, room.shape[0])
         held[3, 1] = found

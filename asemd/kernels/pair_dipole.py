@@ -6,7 +6,7 @@ The energy of two of them at d = x_i - x_j is that of the style's function of th
 
 Constants of the generated module: ENERGY, PER_ATOM, FIRST (the row of the coefficients where those of the charges begin),
 SCALED (there is a factor for the charges and dipoles of each pair of types, in row SCALE).
-From the style: `plain(r2, rows, ti, tj)` -> energy, force/r; `radial(r2, whole, weight, cut2, constants)` -> f0 f1 f2 f3, and -f'/r of
+From the style: `pair_energy_one` of what has neither charges nor dipoles, see `asemd.kernels.pair_list`; `radial(r2, whole, weight, cut2, constants)` -> f0 f1 f2 f3, and -f'/r of
 each.
 """
 from __future__ import annotations
@@ -17,11 +17,11 @@ from asemd.kernels.pair_sums import add, eight
 
 ENERGY = PER_ATOM = SCALED = False
 FIRST = SCALE = 0
-plain = radial = None
+pair_energy_one = radial = None
 
 
-def dipole_forces(x, f, q, mu, row, torque, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, qqr2e,
-                  acc, atom_energy, atom_virial, bad):
+def dipole_forces(x, f, q, mu, row, torque, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays,
+                  qqr2e, acc, atom_energy, atom_virial, bad):
     """Pairs lo..hi-1: forces added to `f`, torques to `torque`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and
     `atom_virial (6, cap)`. `mu (n, 3)`: dipoles by row, `row (cap,)` the rows of the slots.
 
@@ -38,12 +38,9 @@ def dipole_forces(x, f, q, mu, row, torque, type_of, pair_i, pair_j, code, shift
         r2 = dx * dx + dy * dy + dz * dz
         ti = type_of[i]
         tj = type_of[j]
-        ev, ec, fp, gx, gy, gz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        ec, gx, gy, gz = 0.0, 0.0, 0.0, 0.0
         a0, a1, a2, b0, b1, b2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0      # the electric fields at both
-        if r2 < rows[0, ti, tj]:
-            ev, fp = plain(r2, rows, ti, tj)
-            ev = weight_lj[kind] * ev
-            fp = weight_lj[kind] * fp
+        fp, ev, _ = pair_energy_one(r2, 0.0, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays, ti, tj)
         p0, p1, p2 = mu[row[i], 0], mu[row[i], 1], mu[row[i], 2]
         s0, s1, s2 = mu[row[j], 0], mu[row[j], 1], mu[row[j], 2]
         if r2 < rows[FIRST, ti, tj]:

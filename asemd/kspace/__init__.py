@@ -134,7 +134,7 @@ class KSpace(ABC):
         self.n, self.cutoff = max(system.n, 1), float(cutoff)
         self.qsum, self.qsqsum = float(q.sum()), float(q @ q)
         self.scale = interactions.coulomb_constant(units) / interactions.dielectric
-        self.q2 = self.squares(system, q) * self.scale
+        self.q2 = self.charge_squares(system, q) * self.scale
         self.factor = interactions.kspace_factor
         a, b, c = system.box.cell
         lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
@@ -148,7 +148,7 @@ class KSpace(ABC):
         self.g_ewald = self.modify["gewald"] or self.first_guess()
         self.choose(system)
 
-    def squares(self, system, q: np.ndarray) -> float:
+    def charge_squares(self, system, q: np.ndarray) -> float:
         """The sum of squared charges that estimates of errors take."""
         return self.qsqsum
 

@@ -45,10 +45,7 @@ class EwaldDipole(Ewald):
 
     def pair_error(self, g: float) -> float:
         """Estimated error of forces that the pair part makes."""
-        a = (g * self.cutoff) ** 2
-        c, d = 4.0 * a * a + 6.0 * a + 3.0, 8.0 * a**3 + 20.0 * a * a + 30.0 * a + 15.0
-        return (self.mu2 / math.sqrt(self.inner.prod() * g**4 * self.cutoff**9 * self.n)
-                * math.sqrt(13.0 / 6.0 * c * c + 2.0 / 15.0 * d * d - 13.0 / 15.0 * c * d) * math.exp(-a))
+        return pair_error(self, self.mu2, g)
 
     def first_guess(self):
         if self.accuracy <= 0.0:
@@ -90,6 +87,14 @@ class EwaldDipole(Ewald):
 
     def terms(self, engine):
         return [EwaldDipoleTerm(self)]
+
+
+def pair_error(solver, mu2: float, g: float) -> float:
+    """Estimated error of forces that the pair part of dipoles makes; `mu2`: the sum of their squares, in energy times volume."""
+    a = (g * solver.cutoff) ** 2
+    c, d = 4.0 * a * a + 6.0 * a + 3.0, 8.0 * a**3 + 20.0 * a * a + 30.0 * a + 15.0
+    return (mu2 / math.sqrt(solver.inner.prod() * g**4 * solver.cutoff**9 * solver.n)
+            * math.sqrt(13.0 / 6.0 * c * c + 2.0 / 15.0 * d * d - 13.0 / 15.0 * c * d) * math.exp(-a))
 
 
 class EwaldDipoleTerm(EwaldTerm):

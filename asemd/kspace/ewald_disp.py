@@ -1,4 +1,4 @@
-r"""Ewald summation of 1/r and of the attraction -C_6/r^6, for interfaces and small systems.
+r"""Ewald summation of 1/r and of the attraction -C_6/r^6, for interfaces and small systems; with lj/long/dipole/long of dipoles too.
 
 $$ E_6 = -\frac{\pi^{3/2}}{24 V} \sum_{k \neq 0} k^3 \Big[ \sqrt{\pi} \, \mathrm{erfc}(b) + \Big( \frac{1}{2 b^3} - \frac{1}{b} \Big)
    e^{-b^2} \Big] \sum_m s_m |S_m(k)|^2 + \frac{g^6}{12} \sum_i C_{ii} - \frac{\pi^{3/2} g^3}{6 V} \sum_{ij} C_{ij},
@@ -16,9 +16,10 @@ import warnings
 import numpy as np
 
 from asemd.errors import InputError, InputWarning
-from asemd.kernels import ewald_disp
+from asemd.kernels import ewald_disp, ewald_disp_dipole
 from asemd.kspace.dispersion import dispersion_of
 from asemd.kspace.ewald import Ewald, Waves
+from asemd.kspace.ewald_dipole import pair_error
 
 
 class EwaldDisp(Ewald):
@@ -28,8 +29,10 @@ class EwaldDisp(Ewald):
     groups = False
     partner = "lj/long/coul/long"
     dispersion = None
+    dipoles = False             # the pair style leaves it dipoles
 
     def take(self, uses, interactions, system):
+        self.dipoles = any(use.style.variant(use.settings).oriented == "dipole" for use in uses)
         self.dispersion, parts = dispersion_of(uses, interactions, system, self.style)
         charged = [(use, part) for use in uses for part in use.style.variant(use.settings).parts if part.long and part.charged]
         self.coulomb = bool(charged)
@@ -37,6 +40,7 @@ class EwaldDisp(Ewald):
 
     def prepare(self, system, interactions, units, cutoff):
         self.b2 = 0.0
+        self.squares_mu = float((np.asarray(system.extra["mu"]) ** 2).sum()) if self.dipoles else 0.0
         if self.dispersion is not None:
             self.b2 = self.dispersion.sums(system.type)[1]
             if self.dispersion.rule == "arithmetic":      # LAMMPS's estimates count one sixteenth of it then
@@ -46,7 +50,7 @@ class EwaldDisp(Ewald):
     def first_guess(self):
         if self.coulomb and self.q2 != 0.0:
             return super().first_guess()
-        if self.b2 == 0.0:
+        if self.b2 == self.m2 == 0.0:
             raise InputError(f"kspace_style {self.style}: there are neither charges nor dispersion; use no kspace_style")
         guess = (1.35 - 0.15 * math.log(self.accuracy)) / self.cutoff
         g = guess
@@ -62,9 +66,16 @@ class EwaldDisp(Ewald):
                       InputWarning, stacklevel=2)
         return guess
 
+    @property
+    def m2(self) -> float:
+        """Sum of squared dipoles, in energy times volume."""
+        return self.squares_mu * self.scale
+
     def excess(self, g: float) -> float:
-        """By how much the error of the pair part of dispersion is larger than the accuracy."""
+        """By how much the error of the pair part, of dipoles or else of dispersion, is larger than the accuracy."""
         a = self.cutoff * g
+        if self.m2:
+            return pair_error(self, self.m2, g) - self.accuracy
         return (4.0 * math.pi * self.b2 * g**4 / self.inner.prod() / math.sqrt(self.n) * math.erfc(a)
                 * (6.0 / a**5 + 6.0 / a**3 + 3.0 / a + a) - self.accuracy)
 
@@ -74,7 +85,7 @@ class EwaldDisp(Ewald):
         if self.modify["gewald/disp"] not in (0.0, self.g_ewald):
             raise InputError(f"kspace_style {self.style} has one splitting parameter: use kspace_modify gewald, not gewald/disp")
         vectors = system.box.cell * np.array([1.0, 1.0, self.stretch])[:, None]
-        self.choice = np.array([self.q2, self.b2, self.n, self.accuracy])
+        self.choice = np.array([self.q2, self.b2, self.m2, self.n, self.accuracy])
         self.waves, self.top = ewald_disp.chooser()(vectors, self.g_ewald, *self.choice, np.zeros((0, 3), np.int64))
 
     def follow(self, waves, most):
@@ -88,7 +99,7 @@ class EwaldDisp(Ewald):
         return ["EwaldDisp initialization ...", f"  G vector = {self.g_ewald:.8g},   accuracy = {self.accuracy:.8g}"]
 
     def terms(self, engine):
-        out = [WavesTerm(self, None)] if self.coulomb else []
+        out: list = [(DipoleWavesTerm(self) if self.dipoles else WavesTerm(self, None))] if self.coulomb else []
         return out + ([WavesTerm(self, self.dispersion)] if self.dispersion is not None else [])
 
 
@@ -126,3 +137,24 @@ class WavesTerm(Waves):
     def of_solver(self, engine, tid):
         return (engine.state.type, self.factors, self.signs, self.numbers, self.most, self.waves, self.held, self.inverse,
                 self.table, self.values, self.all_sums, self.sums, self.constants, self.solver.choice)
+
+
+class DipoleWavesTerm(Waves):
+    """The sum over waves of charges with dipoles; kernels read dipoles where they are, by row, for fixes may turn them."""
+
+    make_kernel = staticmethod(ewald_disp_dipole.kernel)
+
+    def prepare(self, engine):
+        s, nth = self.solver, engine.threads
+        self.constants = np.append(self.constants[:7], s.squares_mu)
+        m, top = self.make_waves(engine, s.waves, s.top)
+        self.all_sums, self.sums, self.most = np.zeros((nth, m, 2)), np.zeros((nth, 8)), np.zeros(3, np.int64)
+        self.table = np.zeros((3, 1 + top, 2, 0))
+
+    def make_room(self, slots):
+        if self.table.shape[3] < slots:
+            self.table = np.zeros((*self.table.shape[:3], slots))
+
+    def of_solver(self, engine, tid):
+        return (engine.system.extra["mu"], engine.state.row, engine.buffers[tid, 3:], self.numbers, self.most, self.waves, self.held,
+                self.inverse, self.table, self.all_sums, self.sums, self.constants, self.solver.choice)

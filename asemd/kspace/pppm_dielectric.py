@@ -19,7 +19,7 @@ class PPPMDielectric(Dielectric, PPPM):
 
     style = flag = "pppm/dielectric"
 
-    def squares(self, system, q):
+    def charge_squares(self, system, q):
         return float(np.sum(q * q / system.extra["epsilon"]))
 
     def terms(self, engine):

@@ -13,7 +13,7 @@ class PPPMDispDielectric(Dielectric, PPPMDisp):
     style = flag = "pppm/disp/dielectric"
     partner = "lj/long/coul/long/dielectric long long"
 
-    def squares(self, system, q):
+    def charge_squares(self, system, q):
         return float(np.sum(q * q / system.extra["epsilon"]))
 
     def terms(self, engine):

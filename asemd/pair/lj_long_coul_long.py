@@ -61,7 +61,9 @@ class DispersionPair(PairStyle):
     `first` is the name of their cutoff.
     """
 
-    form = PairStyle        # what its forms are
+    def form(self, coulomb: str) -> type[PairStyle]:
+        """What it is with that second word."""
+        return PairStyle
 
     def __init__(self, name: str, near, far, first: str, **options):
         options["settings"] = f"dispersion coulomb {first} [cut_coul]"
@@ -92,7 +94,7 @@ class DispersionPair(PairStyle):
         if key not in self.forms:
             long = key[0] == "long"
             parts = [(f, self.first) for f in (self.far if long else self.near)] + [(coul_long, "cut_coul")] * (key[1] == "long")
-            self.forms[key] = self.form(self.name, parts, **{**self.made, "shifts": not long})
+            self.forms[key] = self.form(key[1])(self.name, parts, **{**self.made, "shifts": not long})
         return self.forms[key]
 
     def needs(self, settings):

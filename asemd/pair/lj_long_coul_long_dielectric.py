@@ -13,7 +13,8 @@ from asemd.style import register
 
 
 class DielectricDispersionPair(DispersionPair, DielectricPair):
-    form = DielectricPair
+    def form(self, coulomb):
+        return DielectricPair
 
     def needs(self, settings):
         if settings["coulomb"] == "off":
