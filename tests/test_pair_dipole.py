@@ -52,6 +52,14 @@ CASES = {
     "lj/cut/dipole/long slab": "pair_style lj/cut/dipole/long 4 5\n" + LJ + SOLVER
                                + "\nkspace_modify slab 3.0 gewald 0.35 kmax/ewald 5 6 14",
 }
+LONG = "pair_style lj/long/dipole/long {}\npair_coeff 1 1 0.1 2.0\npair_coeff 2 2 0.2 1.7\nkspace_style ewald/disp{} 1e-4"
+CASES |= {
+    "lj/long/dipole/long": LONG.format("long long 5", "/dipole"),
+    "lj/long/dipole/long cut": LONG.format("cut long 4 5", "") + "\npair_modify shift yes\nkspace_modify gewald 0.4",
+    "lj/long/dipole/long off": LONG.format("long off 4 5", ""),
+    "lj/long/dipole/long uncharged": LONG.format("long long 5", "/dipole") + "\npair_modify mix arithmetic\nset group all charge 0",
+    "lj/long/dipole/long slab": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab 3.0 gewald 0.35 force 0.3",
+}
 THEIRS = """
 answer = {}
 for name, lines in given["cases"].items():
@@ -68,7 +76,7 @@ for name, lines in given["cases"].items():
 
 
 def script(name: str) -> str:
-    long = "long" in name
+    long = "cut/dipole/long" in name
     return ATOMS.format(pair=CASES[name], q=0.0 if long else 0.7, z="f" if "slab" in name else "p", columns=" ".join(COLUMNS))
 
 
@@ -87,7 +95,7 @@ def test_like_lammps(theirs, name):
     for got, want in ((system.f, "f"), (system.extra["torque"], "torque")):
         other = np.reshape(expected[want], (-1, 3))
         np.testing.assert_allclose(got[order], other, rtol=0, atol=1e-12 * np.abs(other).max(), err_msg=want)
-    if "slab" in name:      # LAMMPS adds a twelfth of this
+    if name == "lj/cut/dipole/long slab":      # LAMMPS adds a twelfth of this
         moment = system.extra["mu"][:, 2].sum()
         expected["thermo"][2] += 11 / 12 * 2 * np.pi * session.loop.engine.qqr2e * moment**2 / (3 * 11 * 12 * 11.5)
     row = [session.variables.evaluate(c) for c in COLUMNS]
@@ -105,7 +113,8 @@ def exact_erfc(monkeypatch):
     dipole_kernel.cache_clear()
 
 
-@pytest.mark.parametrize("name", ["lj/cut/dipole/cut", "lj/sf/dipole/sf", "lj/cut/dipole/long g", "lj/cut/dipole/long slab"])
+@pytest.mark.parametrize("name", ["lj/cut/dipole/cut", "lj/sf/dipole/sf", "lj/cut/dipole/long g", "lj/cut/dipole/long slab",
+                                  "lj/long/dipole/long", "lj/long/dipole/long slab"])
 def test_forces_and_torques_are_the_gradient(name, exact_erfc):
     session = ours(script(name))
     engine, h = session.loop.engine, 1e-4
@@ -144,6 +153,9 @@ def test_forces_and_torques_are_the_gradient(name, exact_erfc):
      "without charges"),
     ("pair_style lj/cut/dipole/long 5\npair_coeff * * 1 1\nrun 0", "needs a kspace_style"),
     ("pair_style lj/cut/dipole/long 5\npair_coeff * * 1 1 3 3", "got 4 values"),
+    ("pair_style lj/long/dipole/long cut cut 5", "coulomb must be long or off"),
+    ("pair_style lj/long/dipole/long long long 5 6", "only one cutoff"),
+    ("pair_style lj/long/dipole/long long long 5\npair_coeff * * 1 1\nrun 0", "needs a kspace_style, such as ewald/disp"),
     ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\nspecial_bonds lj/coul 0 1 1\nbond_style special\n"
      "bond_coeff * 0.5 0.5\nrun 0", "cannot be used with pair"),
     ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\nfix 1 all widom 1 1 1 4711 300\nrun 1", "depends on the orientation"),

@@ -18,8 +18,8 @@ if config.DISABLE_JIT:
         table[at:at + 8, 3] = q[at:at + 8]
 
     def give8(table, at, x):
-        """Add rows ``at ... at + 7`` of `table (n, 4)` to `x (3, n)` and set them to zero."""
-        x[:, at:at + 8] += table[at:at + 8, :3].T
+        """Add rows ``at ... at + 7`` of `table (n, 4)` to the first rows of `x (3 or more, n)` and set them to zero."""
+        x[:3, at:at + 8] += table[at:at + 8, :3].T
         table[at:at + 8] = 0.0
 
     def gather8(b, at, row, table, entries, first, ox, oy, oz, shifts, mask, shifted, charge):
@@ -120,7 +120,7 @@ else:
 
     @intrinsic(prefer_literal=True)
     def give8(typing, table, at, x):
-        """Add rows ``at ... at + 7`` of `table (n, 4)` to `x (3, n)` and set them to zero."""
+        """Add rows ``at ... at + 7`` of `table (n, 4)` to the first rows of `x (3 or more, n)` and set them to zero."""
         def generate(ctx, builder, signature, arguments):
             m = _Memory(ctx, builder, signature, arguments)
             at_, cap = m.place(1), m.length(2)

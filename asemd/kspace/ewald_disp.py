@@ -36,7 +36,9 @@ class EwaldDisp(Ewald):
         self.dispersion, parts = dispersion_of(uses, interactions, system, self.style)
         charged = [(use, part) for use in uses for part in use.style.variant(use.settings).parts if part.long and part.charged]
         self.coulomb = bool(charged)
-        return self.cutoff_of(charged or parts)
+        if charged:
+            return self.cutoff_of(charged)
+        return float(parts[0][0].settings.get("cut_coul", self.cutoff_of(parts)))       # LAMMPS takes it although nothing ends there
 
     def prepare(self, system, interactions, units, cutoff):
         self.b2 = 0.0
