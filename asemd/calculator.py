@@ -265,7 +265,7 @@ class ForceField(Calculator):
         a = atoms.arrays
         return {"positions": a["positions"], "numbers": a["numbers"], "cell": atoms.cell.array, "pbc": atoms.pbc,
                 "initial_charges": a.get("initial_charges"), "type": a.get("type"), "origin": atoms.get_celldisp(), "image": a.get("image"),
-                "mu": a.get("mu"), "shape": a.get("shape"), "quaternions": a.get("quaternions"), "epsilon": a.get("epsilon"), GROUPS: a.get(GROUPS)}
+                **{name: a.get(name) for name in ("mu", "shape", "quaternions", "epsilon", GROUPS)}}
 
     def check_state(self, atoms, tol: float = 0.0) -> list[str]:
         """Names of what is not as it was at the last evaluation; besides ASE's: type, origin, image, groups, topology."""

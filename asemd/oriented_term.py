@@ -54,7 +54,8 @@ class DipolePairTerm(OrientedTerm):
         s, m, nth = engine.state, len(self.i), engine.threads
         return (s.x, engine.buffers[tid], s.q, engine.system.extra["mu"], s.row, engine.buffers[tid, 3:], s.type, self.i, self.j, self.code,
                 self.shifts, self.lj, self.coul, m * tid // nth, m * (tid + 1) // nth, self.tables.rows, self.tables.constants,
-                self.tables.arrays, engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid], engine.bad[tid, self.index])
+                self.tables.arrays, engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid],
+                engine.bad[tid, self.index])
 
 
 @cache

@@ -104,7 +104,8 @@ def act(f, q, mu, row, torque, scale, g, qsum, all_energy, numbers, waves, total
                 acc[7] -= p[1, i] * field[2, i]
             if PER_ATOM:
                 share = all_energy * qsum * q[b + i]
-                energy[b + i] -= scale * g / root * (q[b + i] ** 2 + 2.0 * g * g / 3.0 * (p[0, i] ** 2 + p[1, i] ** 2 + p[2, i] ** 2)) - share
+                square = p[0, i] ** 2 + p[1, i] ** 2 + p[2, i] ** 2
+                energy[b + i] -= scale * g / root * (q[b + i] ** 2 + 2.0 * g * g / 3.0 * square) - share
                 for d in range(3):
                     virial[d, b + i] -= p[d, i] * field[d, i] + share
                 virial[3, b + i] -= p[0, i] * field[1, i]

@@ -6,8 +6,8 @@ The energy of two of them at d = x_i - x_j is that of the style's function of th
 
 Constants of the generated module: ENERGY, PER_ATOM, FIRST (the row of the coefficients where those of the charges begin),
 SCALED (there is a factor for the charges and dipoles of each pair of types, in row SCALE).
-From the style: `pair_energy_one` of what has neither charges nor dipoles, see `asemd.kernels.pair_list`; `radial(r2, whole, weight, cut2, constants)` -> f0 f1 f2 f3, and -f'/r of
-each.
+From the style: `pair_energy_one` of what has neither charges nor dipoles, see `asemd.kernels.pair_list`;
+`radial(r2, whole, weight, cut2, constants)` -> f0 f1 f2 f3, and -f'/r of each.
 """
 from __future__ import annotations
 

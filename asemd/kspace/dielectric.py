@@ -1,4 +1,4 @@
-"""What the solvers of charges in different media have in common: a solver whose kernel is called with charges divided by their constants."""
+"""What the solvers of charges in different media have in common: the kernel of another one, called with several sets of charges."""
 from __future__ import annotations
 
 import numpy as np
@@ -51,8 +51,9 @@ class DielectricTerm(KSpaceTerm):
 
     def arguments(self, engine, tid):
         f, q, lo, hi, *_, acc, energy, virial = super().arguments(engine, tid)[3:]
-        return (f, q, self.epsilon, lo, hi, float(engine.system.extra["epsilon"].mean()), self.charges, self.own_forces[tid], self.own_acc[tid],
-                self.own_energy[tid], self.own_virial[tid], *(self._of(engine, tid, k) for k in range(3)), acc, energy, virial)
+        mean = float(engine.system.extra["epsilon"].mean())
+        return (f, q, self.epsilon, lo, hi, mean, self.charges, self.own_forces[tid], self.own_acc[tid], self.own_energy[tid],
+                self.own_virial[tid], *(self._of(engine, tid, k) for k in range(3)), acc, energy, virial)
 
     def _of(self, engine, tid: int, k: int) -> tuple:
         """The solver's arguments for one of the three sets of charges."""

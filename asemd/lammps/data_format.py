@@ -8,8 +8,8 @@ IMAGE = ("nx", "ny", "nz")
 # column -> "id", "whole", "type" or "real"
 KIND_OF = {"id": "id", "molecule": "whole", "type": "type", "q": "real", "x": "real", "y": "real", "z": "real", "nx": "whole",
            "ny": "whole", "nz": "whole", "vx": "real", "vy": "real", "vz": "real", "number": "whole", "atom1": "id",
-           "atom2": "id", "atom3": "id", "atom4": "id", **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE, *MOMENTUM, *SHAPE, *TURN, *SURFACE), "real"),
-           "ellipsoid": "whole"}
+           "atom2": "id", "atom3": "id", "atom4": "id", "ellipsoid": "whole",
+           **dict.fromkeys((*DIPOLE, *SPIN, *SPHERE, *MOMENTUM, *SHAPE, *TURN, *SURFACE), "real")}
 
 # header line -> number of values
 HEADER = {

@@ -1,4 +1,4 @@
-r"""The sum of lj/cut up to cut_lj and coul/long/dielectric up to cut_coul, for kspace_style pppm/dielectric; one cutoff given means both."""
+r"""The sum of lj/cut up to cut_lj and coul/long/dielectric up to cut_coul, for kspace_style pppm/dielectric; one cutoff means both."""
 from __future__ import annotations
 
 from asemd.dielectric_pairs import DielectricPair

@@ -1,4 +1,4 @@
-r"""lj/cut up to cut_lj, and the part of coul/cut/dielectric that kspace_style msm/dielectric leaves, up to cut_coul; one cutoff given means both."""
+r"""lj/cut up to cut_lj, and what kspace_style msm/dielectric leaves of coul/cut/dielectric up to cut_coul; one cutoff means both."""
 from __future__ import annotations
 
 from asemd.dielectric_pairs import DielectricPair

@@ -16,7 +16,8 @@ LARGEST = 2**62     # no id is above
 CUSTOM = re.compile(r"([id])(2?)_(\w+)(?:\[(\d+)\])?")      # properties of fix property/atom
 KEYWORDS = {"type": 1, "type/fraction": 3, "type/ratio": 3, "type/subset": 3, "mol": 1, "x": 1, "y": 1, "z": 1, "vx": 1, "vy": 1, "vz": 1,
             "charge": 1, "mass": 1, "image": 3, "dipole": 3, "dipole/random": 2, "diameter": 1, "density": 1, "density/disc": 1,
-            "omega": 3, "angmom": 3, "epsilon": 1, "shape": 3, "quat": 4, "quat/random": 1, "bond": 1, "angle": 1, "dihedral": 1, "improper": 1}
+            "omega": 3, "angmom": 3, "epsilon": 1, "shape": 3, "quat": 4, "quat/random": 1,
+            **dict.fromkeys(("bond", "angle", "dihedral", "improper"), 1)}
 
 
 def run(session, args):
