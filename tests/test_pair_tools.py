@@ -69,7 +69,7 @@ start = lambda: Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "l
 
 def two_body(s) -> bool:
     """Whether the style's example stands by itself: numbers only, atoms with charges."""
-    special = s.many or s.oriented or "tip4p" in s.name or s.stirred or s.sized or not s.parts
+    special = s.many or s.oriented or s.dielectric or "tip4p" in s.name or s.stirred or s.sized or not s.parts
     return not special and not any(p.unit in ("word", "file") for p in (*s.settings, *s.coeff))
 
 
