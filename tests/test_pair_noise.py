@@ -31,6 +31,7 @@ run {steps} post no
 CASES = {
     "dpd": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5\npair_coeff 1 2 20 3 1.2", "", 5),
     "cold": ("dpd 0.0 1.5 34387", "pair_coeff * * 25 4.5", "", 5),
+    "noise": ("dpd/fdt 1.3 1.5 34387", "pair_coeff * * 25 3.1\npair_coeff 1 2 20 2.5 1.2", "", 5),
     "thermostat": ("hybrid/overlay soft 1.1 dpd/tstat 1.0 2.0 1.5 34387", "pair_coeff * * soft 8\npair_coeff * * dpd/tstat 4.5", "", 5),
     "across": ("dpd/ext 1.0 1.5 34387", "pair_coeff * * 25 4.5 3.0 0.5 0.7", "", 5),
     "across thermostat": ("dpd/ext/tstat 1.0 1.5 1.5 34387", "pair_coeff * * 4.5 3.0 0.5 0.7", "run 5 post no", 5),
@@ -65,3 +66,5 @@ def test_words():
     for words, message in (("1 2.5 0", "seed must be"), ("-1 2.5 7", "temperature must not be negative"), ("1 0 7", "cutoff must be more")):
         with pytest.raises(InputError, match=f"pair_style dpd: .*{message}"):
             s.parse_settings(words.split())
+    with pytest.raises(InputError, match="pair_style dpd/fdt: temperature must not be 0"):
+        style.find("pair", "dpd/fdt").parse_settings("0 2.5 7".split())
