@@ -113,8 +113,6 @@ class StreitzMintmire(ManyBody):
 
     def check_scene(self, interactions, system):
         super().check_scene(interactions, system)
-        if system.q is None:
-            raise InputError(f"pair style {self.name} needs atom attribute q: use atom_style charge or full")
         use = next(use for use in interactions.uses["pair"] if use.style is self)
         if use.settings["kind"] == "ewald" and set(interactions.special_coul) != {1.0} and len(system.topology.items("bond")[0]):
             raise InputError(f"pair style {self.name} with ewald knows no weights of bonded atoms: use special_bonds coul 1 1 1")
@@ -162,6 +160,7 @@ def check(p) -> str:
     return "eta and Z must not be negative, zeta must be positive" if min(p["eta"], p["Z"]) < 0.0 or not p["zeta"] > 0.0 else ""
 
 
-register(StreitzMintmire("coul/streitz", forces=ionic_forces, helpers=(cloud_and_point, two_clouds), settings="cut kind [alpha]",
-                         units={"kind": "word", "alpha": "1/distance"}, settings_example="12.0 wolf 0.3", example="AlO.streitz Al O",
-                         converts=False, see="LAMMPS manual, pair_style coul/streitz"))
+style = register(StreitzMintmire("coul/streitz", forces=ionic_forces, helpers=(cloud_and_point, two_clouds), settings="cut kind [alpha]",
+                                 units={"kind": "word", "alpha": "1/distance"}, settings_example="12.0 wolf 0.3",
+                                 example="AlO.streitz Al O", converts=False, see="LAMMPS manual, pair_style coul/streitz"))
+style.charged = True
