@@ -98,7 +98,7 @@ DENSITY = "a\n\n1 3\n\n1.0 2.0\n1\n1\n0 4 2\n0.1\n0.2\n0.4\n"
 
 
 @pytest.mark.parametrize(("old", "new", "says"), [
-    ("1.0 2.0", "2.0 2.0", r"R1 must be less than R2 and not negative, got 2 and 2 \(a.file:5"), ("1.0 2.0", "nan 2.0", "a number, got .nan"),
+    ("1.0 2.0", "2.0 2.0", r"R1 must be less than R2 and not negative, got 2 and 2 \(a.file:5"), ("1.0 2.0", "nan 2.0", "got .nan"),
     ("1.0 2.0", "1.0", r"R2 is missing \(a.file:5"), ("\n1\n0 4", "\n2\n0 4", "a.file names type 2, but there are 1"),
     ("\n1\n0 4", "\n0\n0 4", r"a type of neighbours must be at least 1, got 0 \(a.file:7"),
     ("\n1\n0 4", "\nB\n0 4", "a type of neighbours must be a whole number, got 'B'"),
