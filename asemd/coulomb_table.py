@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import copy
 import math
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
 from asemd.errors import InputError
 from asemd.pairstyle import PairStyle, make_part
+from asemd.style import text_of
 
 TABINNER = math.sqrt(2.0)
 
@@ -67,28 +69,13 @@ def nodes(bits: Bits, settings: dict, cut: float) -> np.ndarray:
     return np.ascontiguousarray(np.stack([at[0], rise[0], at[1], rise[1], at[2], rise[2], r2, inverse], axis=1))
 
 
-def coul_long_table(r2, qq, g_ewald, start2, per_octave, first, nodes: "array"):
+def special_long(r2, qq, g_ewald, start2, per_octave, first, nodes, off):
     single = np.float64(np.float32(r2))
     mantissa, exponent = math.frexp(single)
     k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
     b = (single - nodes[k, 6]) * nodes[k, 7]
     if r2 > start2:
-        return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
-    r = math.sqrt(r2)
-    x = g_ewald * r
-    gauss = math.exp(-x * x)
-    t = 1.0 / (1.0 + 0.3275911 * x)
-    tail = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429)))) * gauss
-    return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / r2
-
-
-def special(r2, qq, g_ewald, start2, per_octave, first, nodes, off):
-    single = np.float64(np.float32(r2))
-    mantissa, exponent = math.frexp(single)
-    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
-    b = (single - nodes[k, 6]) * nodes[k, 7]
-    if r2 > start2:
-        bare = off * (nodes[k, 4] + b * nodes[k, 5])
+        bare = off * (nodes[k, 4] + b * nodes[k, 5]) if off != 0.0 else 0.0
         return qq * (nodes[k, 0] + b * nodes[k, 1] - bare), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3] - bare) / r2
     r = math.sqrt(r2)
     x = g_ewald * r
@@ -133,26 +120,13 @@ def special_cs(r2, qq, g_ewald, start2, per_octave, first, nodes, off):
     return qq / r * tail, -0.5 * qq / r * (tail + 1.12837917 * x * gauss) / (r2 + 1e-12)
 
 
-def coul_msm_table(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5, start2, per_octave, first, nodes: "array"):
-    single = np.float64(np.float32(r2))
-    mantissa, exponent = math.frexp(single)
-    k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
-    b = (single - nodes[k, 6]) * nodes[k, 7]
-    if r2 > start2:
-        return qq * (nodes[k, 0] + b * nodes[k, 1]), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3]) / r2
-    bare = qq / math.sqrt(r2)
-    smooth = smooth0 + r2 * (smooth1 + r2 * (smooth2 + r2 * (smooth3 + r2 * (smooth4 + r2 * smooth5))))
-    slope = smooth1 + r2 * (2.0 * smooth2 + r2 * (3.0 * smooth3 + r2 * (4.0 * smooth4 + r2 * 5.0 * smooth5)))
-    return bare - qq * smooth, -0.5 * bare / r2 - qq * slope
-
-
 def special_msm(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5, start2, per_octave, first, nodes, off):
     single = np.float64(np.float32(r2))
     mantissa, exponent = math.frexp(single)
     k = min(max(int((2.0 * mantissa - 1.0 + exponent) * per_octave - first), 0), nodes.shape[0] - 1)
     b = (single - nodes[k, 6]) * nodes[k, 7]
     if r2 > start2:
-        bare = off * (nodes[k, 4] + b * nodes[k, 5])
+        bare = off * (nodes[k, 4] + b * nodes[k, 5]) if off != 0.0 else 0.0
         return qq * (nodes[k, 0] + b * nodes[k, 1] - bare), -0.5 * qq * (nodes[k, 2] + b * nodes[k, 3] - bare) / r2
     bare = (1.0 - off) * qq / math.sqrt(r2)
     smooth = smooth0 + r2 * (smooth1 + r2 * (smooth2 + r2 * (smooth3 + r2 * (smooth4 + r2 * smooth5))))
@@ -160,7 +134,21 @@ def special_msm(r2, qq, smooth0, smooth1, smooth2, smooth3, smooth4, smooth5, st
     return bare - qq * smooth, -0.5 * bare / r2 - qq * slope
 
 
-for function, near, solvers in ((coul_long_table, special, ("pppm", "ewald")), (coul_long_cs_table, special_cs, ("pppm", "ewald")),
+def ordinary(special: Callable, name: str) -> Callable:
+    """The formula of ordinary pairs: that of special ones, which lose the part `off` of their bare energy, for `off` 0.
+
+    A function of text, as the generated kernels take it."""
+    head, body = text_of(special).split("):\n", 1)
+    arguments = head[head.index("(") + 1:].removesuffix(", nodes, off")
+    source = f"def {name}({arguments}, nodes: 'array'):\n    off = 0.0\n{body}"
+    scope = {"__name__": __name__, "math": math, "np": np}
+    exec(source, scope)
+    scope[name].source = source
+    return scope[name]
+
+
+coul_long_table, coul_msm_table = ordinary(special_long, "coul_long_table"), ordinary(special_msm, "coul_msm_table")
+for function, near, solvers in ((coul_long_table, special_long, ("pppm", "ewald")), (coul_long_cs_table, special_cs, ("pppm", "ewald")),
                                 (coul_msm_table, special_msm, ("msm",))):
     function.long, function.special, function.solvers = True, near, solvers
 coul_long_cs_table.core, coul_long_cs_table.core_until = 1e-12, "start2"

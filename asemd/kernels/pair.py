@@ -300,7 +300,7 @@ def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = Fa
                             SIZED=sized).items():
         b.constant(name, value)
     paste_one(b, style, parts, piece)
-    for f in (pair_sums.eight, pair_sums.add):
+    for f in (pair_sums.eight, pair_sums.add, pair_sums.halve):
         b.function(f)
     b.function(pair_list.list_forces)
     if broken:

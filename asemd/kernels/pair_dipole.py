@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.kernels.pair_sums import add, eight
+from asemd.kernels.pair_sums import add, eight, halve
 
 ENERGY = PER_ATOM = SCALED = False
 FIRST = SCALE = 0
@@ -89,12 +89,4 @@ def dipole_forces(x, f, q, mu, row, torque, type_of, pair_i, pair_j, code, shift
         if ENERGY:
             add(acc, eight(ev, ec, dx, dy, dz, gx, gy, gz))
         if PER_ATOM:
-            atom_energy[i] += 0.5 * (ev + ec)
-            atom_energy[j] += 0.5 * (ev + ec)
-            for s in (i, j):
-                atom_virial[0, s] += 0.5 * dx * gx
-                atom_virial[1, s] += 0.5 * dy * gy
-                atom_virial[2, s] += 0.5 * dz * gz
-                atom_virial[3, s] += 0.5 * dx * gy
-                atom_virial[4, s] += 0.5 * dx * gz
-                atom_virial[5, s] += 0.5 * dy * gz
+            halve(atom_energy, atom_virial, i, j, ev + ec, dx, dy, dz, gx, gy, gz)

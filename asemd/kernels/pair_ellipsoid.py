@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.kernels.pair_sums import add, eight
+from asemd.kernels.pair_sums import add, eight, halve
 from asemd.kernels.rigid import turn_axes
 
 ENERGY = PER_ATOM = False
@@ -115,12 +115,4 @@ def ellipsoid_forces(x, f, quaternions, row, torque, type_of, pair_i, pair_j, co
         if ENERGY:
             add(acc, eight(ev, 0.0, dx, dy, dz, gx, gy, gz))
         if PER_ATOM:
-            atom_energy[i] += 0.5 * ev
-            atom_energy[j] += 0.5 * ev
-            for s in (i, j):
-                atom_virial[0, s] += 0.5 * dx * gx
-                atom_virial[1, s] += 0.5 * dy * gy
-                atom_virial[2, s] += 0.5 * dz * gz
-                atom_virial[3, s] += 0.5 * dx * gy
-                atom_virial[4, s] += 0.5 * dx * gz
-                atom_virial[5, s] += 0.5 * dy * gz
+            halve(atom_energy, atom_virial, i, j, ev, dx, dy, dz, gx, gy, gz)

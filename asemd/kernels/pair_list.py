@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.kernels.pair_sums import add, eight
+from asemd.kernels.pair_sums import add, eight, halve
 
 ENERGY = PER_ATOM = WANTED = CHARGED = CHECK = FACTOR = SIZED = False
 pair_energy_one = furthest = pair_of = None
@@ -67,16 +67,7 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
             mean = 0.5 * (a + b)
             add(acc, eight(ev, ec, dx, dy, dz, mean * gx, mean * gy, mean * gz))
         if PER_ATOM and not FACTOR:
-            h = 0.5 * (ev + ec)
-            atom_energy[i] += h
-            atom_energy[j] += h
-            for s in (i, j):
-                atom_virial[0, s] += 0.5 * dx * gx
-                atom_virial[1, s] += 0.5 * dy * gy
-                atom_virial[2, s] += 0.5 * dz * gz
-                atom_virial[3, s] += 0.5 * dx * gy
-                atom_virial[4, s] += 0.5 * dx * gz
-                atom_virial[5, s] += 0.5 * dy * gz
+            halve(atom_energy, atom_virial, i, j, ev + ec, dx, dy, dz, gx, gy, gz)
 
 
 def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, arrays, qqr2e, acc, bad):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from asemd.kernels.marsaglia import gaussian
-from asemd.kernels.pair_sums import add, eight
+from asemd.kernels.pair_sums import add, eight, halve
 
 ENERGY = PER_ATOM = ACROSS = False
 
@@ -78,12 +78,4 @@ def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi,
         if ENERGY:
             add(acc, eight(e, 0.0, dx, dy, dz, gx, gy, gz))
         if PER_ATOM:
-            atom_energy[i] += 0.5 * e
-            atom_energy[j] += 0.5 * e
-            for s in (i, j):
-                atom_virial[0, s] += 0.5 * dx * gx
-                atom_virial[1, s] += 0.5 * dy * gy
-                atom_virial[2, s] += 0.5 * dz * gz
-                atom_virial[3, s] += 0.5 * dx * gy
-                atom_virial[4, s] += 0.5 * dx * gz
-                atom_virial[5, s] += 0.5 * dy * gz
+            halve(atom_energy, atom_virial, i, j, e, dx, dy, dz, gx, gy, gz)

@@ -1,4 +1,4 @@
-"""Energy and virial of pairs as eight numbers, in the order of a term's accumulators: vdwl coul xx yy zz xy xz yz.
+"""Energy and virial of pairs as eight numbers, in the order of a term's accumulators: vdwl coul xx yy zz xy xz yz; shares of both atoms.
 
 Pasted into the pair kernels, where the compiler puts these small functions in place.
 """
@@ -24,3 +24,15 @@ def add(acc, a):
     acc[5] += a[5]
     acc[6] += a[6]
     acc[7] += a[7]
+
+
+def halve(atom_energy, atom_virial, i, j, e, dx, dy, dz, fx, fy, fz):
+    """Half of a pair's energy and virial to each of its slots i and j: the vector d from j to i and the force f on i."""
+    for s in (i, j):
+        atom_energy[s] += 0.5 * e
+        atom_virial[0, s] += 0.5 * dx * fx
+        atom_virial[1, s] += 0.5 * dy * fy
+        atom_virial[2, s] += 0.5 * dz * fz
+        atom_virial[3, s] += 0.5 * dx * fy
+        atom_virial[4, s] += 0.5 * dx * fz
+        atom_virial[5, s] += 0.5 * dy * fz
