@@ -56,7 +56,7 @@ def validate(context: typer.Context, script: Script = None,
 
 def plan(context: typer.Context, script: Script = None, compat: Compat = None, precision: Precision = "double", threads: Threads = 1,
          import_: Import = None,
-         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine (less than a minute; it is kept), "
+         calibrate: Annotated[bool, typer.Option("--calibrate", help="Measure the speed of this machine (up to a minute; it is kept), "
                                                  "for the expected steps per second.")] = False,
          as_json: Json = False) -> int:
     """Print what a script's scene needs, what it will cost, what is left out, and why; no step of it is run."""

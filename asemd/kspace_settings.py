@@ -16,7 +16,8 @@ DEFAULTS: dict[str, Any] = {
     "mesh": (0, 0, 0), "mesh/disp": (0, 0, 0), "order": None, "order/disp": 5, "minorder": 2, "overlap": True, "force": -1.0,
     "gewald": 0.0, "gewald/disp": 0.0, "slab": 1.0, "wire": 1.0, "compute": True, "cutoff/adjust": True, "fftbench": False,
     "collective": False, "diff": "ik", "kmax/ewald": (0, 0, 0), "mix/disp": "pair", "force/disp/real": -1.0,
-    "force/disp/kspace": -1.0, "splittol": 1e-6, "eigtol": 1e-6, "pressure/scalar": True, "disp/auto": False}
+    "force/disp/kspace": -1.0, "splittol": 1e-6, "pressure/scalar": True, "disp/auto": False}
+SAME = {"eigtol": "splittol"}       # another name of a keyword
 THREE = ("mesh", "mesh/disp", "kmax/ewald")
 SLAB = ("nozforce", "ew2d")
 
@@ -83,9 +84,9 @@ def parse(words: Sequence[str]) -> dict[str, Any]:
     out, words = {}, list(words)
     while words:
         keyword, *words = words
+        what, keyword = f"kspace_modify {keyword}", SAME.get(keyword, keyword)
         if keyword not in READERS:
             raise InputError(f"unknown kspace_modify keyword {keyword!r}{nearest(keyword, READERS)}")
-        what = f"kspace_modify {keyword}"
         values = read.take(words, 3 if keyword in THREE else 1, what)
         out[keyword] = READERS[keyword](values, what)
         words = words[len(values):]

@@ -6,6 +6,7 @@ from solvers import CHARGES, LJ, NVE, SCENE, TILT, compare, lammps_of, refused
 from solvers import case as scene
 
 BUCK = [f"pair_coeff {i} {j} {2000 + 300 * i * j} 0.25 {20 + 5 * i * j}" for i in (1, 2, 3) for j in range(i, 4)]
+UNLIKE = ["pair_coeff 1 2 0.08 2.5", "pair_coeff 1 3 0.2 2.7"]       # C6 with eigenvalues of 1, -0.21 and 0.0006
 TABLES = "pair_modify table 0 table/disp 0"
 SPECIAL = "special_bonds lj 0 0.3 1 coul 0.2 0.5 0.9"
 # splitting parameters are given below: the ones that a search finds are the same to 9 digits
@@ -41,6 +42,10 @@ CASES = {
                                  "kspace_modify gewald 0.35 gewald/disp 0.4 mesh/disp 8 6 10", mix="arithmetic"),
     "pppm/disp, C6 as given": case("lj/long/coul/long long off 5.0", "kspace_style pppm/disp 1e-4",
                                    f"kspace_modify {FORCES} mix/disp none", coeff=[*LJ, "pair_coeff 1 2 0.2 2.5"]),
+    **{f"pppm/disp, {kept} of the C6": case(
+        "lj/long/coul/long long long 5.0", "kspace_style pppm/disp 1e-4",
+        f"kspace_modify gewald 0.35 gewald/disp 0.4 mesh/disp 8 6 10 mix/disp none {words}", coeff=[*LJ, *UNLIKE])
+       for kept, words in (("all", "splittol 1e-4"), ("two", "splittol 1e-6 eigtol 0.05"), ("one", "eigtol 1e-6 splittol 0.6"))},
     "pppm/cg": case("lj/cut/coul/long 5.0", "set type 3 charge 0.01", "kspace_style pppm/cg 1e-4 0.1", modify="pair_modify table 0"),
     "tables beside a switch": case("lj/charmm/coul/long 4.0 5.0", "kspace_style ewald 1e-4", modify="pair_modify table 12"),
     "tables of cores and shells": case("lj/cut/coul/long/cs 5.0", "kspace_style ewald 1e-4", modify="pair_modify table 12 tabinner 2"),
@@ -71,6 +76,7 @@ LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
     ([*LONG, "kspace_style pppm/disp 1e-4", "run 0"], "needs its accuracy for dispersion"),
     ([*LONG, "pair_modify mix sixthpower", "kspace_style ewald/disp 1e-4", "run 0"], "mix must be geometric or arithmetic"),
     ([*LONG, "kspace_style ewald/disp 0.1", "run 0"], "too low"),
+    ([*LONG, "kspace_style pppm/disp 1e-4", "kspace_modify eigtol 1.5"], "eigtol: must be smaller than 1"),
     (["kspace_style pppm/cg 1e-4 0.1 3"], "smallest charge, got 3 words")])
 def test_what_is_refused(lines, message):
     refused([*SCENE, *lines], message)

@@ -85,7 +85,7 @@ def test_only_on_request_is_the_machine_measured(folder, capsys, monkeypatch):
     """It takes some seconds, and more where kernels have to be compiled for it."""
     monkeypatch.setenv("ASEMD_CACHE_DIR", str(folder / "cache"))
     (folder / "in.x").write_text(BASE + "run 10\n")
-    costs = calibration.Costs(1e8, 1e-6, 1e-8, 1e-9, 1e-10, 1e-9, 1e-8, 1e-9, 1e-4, {"bond": 1e-8})
+    costs = calibration.Costs(1e8, 1e-6, 1e-8, 1e-9, 1e-10, 1e-9, 1e-8, 1e-9, 1e-4, 1e-9, 1e-9, 1e-8, {"bond": 1e-8})
     monkeypatch.setattr(calibration, "calibrate", lambda *a, **k: pytest.fail("measured without being asked"))
     assert cli.main(["plan", "in.x"]) == 0
     shown = capsys.readouterr()

@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -75,6 +76,9 @@ SCENES = {"liquid": (liquid(10), ""), "outdated lists": (liquid(8, "neigh_modify
           "exclusions by group": (liquid(8, "group g id 1:100\nneigh_modify exclude group g g"), ""),
           "gas": (liquid(8, density=0.01), ""), "chains": chains(PAIRS), "chains without pairs": chains(), "few atoms": (liquid(3), ""),
           "wide cutoff": (liquid(4, style="lj/cut 4"), "")}
+SOLVERS = {name: (liquid(cells, f"set atom 1*{2 * cells**3} charge 0.3\nset atom {2 * cells**3 + 1}*{4 * cells**3} charge -0.3\n{solver}",
+                         style="lj/cut/coul/long 2.5"), "")
+           for name, cells, solver in (("mesh", 8, "kspace_style pppm 1e-4"), ("waves", 4, "kspace_style ewald 1e-3"))}
 
 
 @pytest.fixture
@@ -84,7 +88,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def loaded(folder, name: str, threads: int = 1) -> Lammps:
-    script, data = SCENES[name]
+    script, data = {**SCENES, **SOLVERS}[name]
     (folder / "data.chains").write_text(data)
     lammps = Lammps(cmdargs=["-screen", "none", "-log", "none"])
     lammps.scene.threads = threads
@@ -170,7 +174,7 @@ def test_speed_of_the_liquid(folder, costs):
     assert min(before, after) / 3 < found < 3 * max(before, after)
 
 
-@pytest.mark.parametrize("name", ["chains", "chains without pairs", "few atoms", "gas"])
+@pytest.mark.parametrize("name", ["chains", "chains without pairs", "few atoms", "gas", *SOLVERS])
 def test_speed_beside_the_liquid(folder, costs, name):
     """The ratio of two scenes that run in turns: what slows the machine slows both."""
     one, liquid = scenes = [loaded(folder, name), loaded(folder, "liquid")]
@@ -182,7 +186,7 @@ def test_speed_beside_the_liquid(folder, costs, name):
 
 
 COSTS = calibration.Costs(program=1e8, step=1e-6, atom=2e-8, pair=1e-9, operation=1e-10, call=1e-9, single=8e-9, build=4e-9, row=1e-4,
-                          items={"bond": 4e-8, "angle": 6e-8, "dihedral": 9e-8, "improper": 9e-8})
+                          wave=2e-9, spread=3e-9, mesh=2e-8, items={"bond": 4e-8, "angle": 6e-8, "dihedral": 9e-8, "improper": 9e-8})
 
 
 @pytest.mark.parametrize("name", ["liquid", "chains", "chains without pairs", "few atoms", "gas"])
@@ -202,14 +206,28 @@ def test_speed_is_counts_times_costs(folder, monkeypatch, name):
     assert expected == pytest.approx(COSTS.step + e.system.n * COSTS.atom + count * pair + items + lists, rel=0.25)
 
 
+@pytest.mark.parametrize("name", SOLVERS)
+def test_solvers_are_counts_times_costs(folder, monkeypatch, name):
+    monkeypatch.setattr(calibration, "known", lambda *machine: COSTS)
+    lammps = loaded(folder, name)
+    expected, n = 1.0 / asemd.plan(lammps.scene).steps_per_second, lammps.get_natoms()
+    monkeypatch.setattr(calibration, "known", lambda *machine: replace(COSTS, wave=0.0, spread=0.0, mesh=0.0))
+    without = 1.0 / asemd.plan(lammps.scene).steps_per_second
+    lammps.command("run 0")
+    solver = lammps.session.loop.engine.solver
+    counted = COSTS.wave * n * solver.waves if name == "waves" else COSTS.spread * n * 125 + COSTS.mesh * np.prod(solver.mesh)
+    assert expected - without == pytest.approx(counted)
+
+
 def test_costs_are_numbers(costs):
-    assert 5e7 < costs.program < 1e9 and min(costs.atom, costs.pair, costs.single, costs.build, *costs.items.values()) > 0.0
+    assert 5e7 < costs.program < 1e9 and min(costs.atom, costs.pair, costs.single, costs.build, costs.wave, costs.spread, costs.mesh,
+                                             *costs.items.values()) > 0.0
 
 
 def test_calibration_is_done_once(tmp_path, monkeypatch):
     monkeypatch.setenv("ASEMD_CACHE_DIR", str(tmp_path / "new"))
     values = {"step": 1e-6, "atom": 1e-8, "pair": 1e-9, "operation": 1e-10, "call": 1e-9, "single": 1e-8, "build": 1e-9, "row": 1e-4,
-              "items": {"bond": 1e-8}}
+              "wave": 1e-9, "spread": 1e-9, "mesh": 1e-8, "items": {"bond": 1e-8}}
     monkeypatch.setattr(calibration, "_process", lambda threads, precision, *what: {"program": 1e8} if what else values)
     first = calibration.calibrate(2, "mixed")
     monkeypatch.setattr(calibration, "_process", lambda threads, precision, *what: {"program": 1e8} if what else {**values, "step": 2e-6})

@@ -2,11 +2,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.pairing import complete
+
+DROPPED = 1e-6      # eigenvalues, as parts of the largest, whose loss is told
 
 
 class Dispersion:
@@ -16,11 +19,14 @@ class Dispersion:
     ----------
     rule : str
         ``geometric`` takes one number, the root of C6 of i-i; ``arithmetic`` mixes epsilon and sigma of i-i and j-j; ``none`` takes C6
-        of all pairs of types as they are.
+        of all pairs of types as they are, less what `tolerance` drops.
     filled : mapping
         (i, j) -> complete coefficients of the pairs that have the attraction.
     derived : callable
         ``derived(coefficients, settings)["C6"]``.
+    tolerance : float
+        For ``none``: eigenvalues of the matrix of C6 that are smaller than this part of the largest are left out. If one is left, mixing is
+        geometric, as in LAMMPS.
 
     Attributes
     ----------
@@ -28,7 +34,7 @@ class Dispersion:
         `own`: C6 of a type with itself.
     """
 
-    def __init__(self, rule: str, filled, derived, settings, ntypes: int):
+    def __init__(self, rule: str, filled, derived, settings, ntypes: int, tolerance: float = 1e-15):
         self.rule, c6 = rule, np.zeros((ntypes + 1, ntypes + 1))
         for i, j in filled:
             a, b = filled.get((i, i)), filled.get((j, j))
@@ -43,12 +49,15 @@ class Dispersion:
                 raise InputError("arithmetic mixing of dispersion needs a pair style with epsilon and sigma: use mix geometric")
             c6[i, j] = c6[j, i] = value
         self.own = np.diag(c6).copy()
-        if rule == "geometric":
+        values, vectors = np.linalg.eigh(c6)
+        part = abs(values) / (abs(values).max(initial=0.0) or 1.0)
+        kept = part > (tolerance if rule == "none" else 1e-15)
+        if rule == "geometric" or rule == "none" and kept.sum() == 1:
             self.factors, self.signs = np.sqrt(self.own)[:, None], np.ones(1)
         else:
-            values, vectors = np.linalg.eigh(c6)
-            kept = abs(values) > 1e-15 * abs(values).max(initial=0.0)
             self.factors, self.signs = np.ascontiguousarray(vectors[:, kept] * np.sqrt(abs(values[kept]))), np.sign(values[kept])
+        if rule == "none" and part[~kept].max(initial=0.0) > DROPPED:
+            warnings.warn(f"Estimated error in splitting of dispersion coeffs is {part[~kept].max():.8g}", InputWarning, stacklevel=2)
 
     def sums(self, types) -> tuple[float, float, np.ndarray]:
         """Sum of C6 over all pairs of atoms, ordered and with themselves; over atoms with themselves; of each factor over atoms."""
@@ -56,9 +65,9 @@ class Dispersion:
         return float(self.signs @ (total * total)), float(self.own[types].sum()), total
 
 
-def dispersion_of(uses, interactions, system, style: str, mix: str = "pair") -> tuple[Dispersion | None, list]:
-    """The dispersion that pair styles leave to a solver, and its parts (`Use`, part); None if there is none; `mix`
-    as in ``kspace_modify mix/disp``.
+def dispersion_of(uses, interactions, system, style: str, mix: str = "pair", tolerance: float = 0.0) -> tuple[Dispersion | None, list]:
+    """The dispersion that pair styles leave to a solver, and its parts (`Use`, part); None if there is none; `mix` and `tolerance`
+    as in ``kspace_modify mix/disp`` and ``splittol``.
 
     Raises
     ------
@@ -75,4 +84,4 @@ def dispersion_of(uses, interactions, system, style: str, mix: str = "pair") -> 
     if rule not in ("geometric", "arithmetic", "none"):
         raise InputError(f"kspace_style {style}: pair_modify mix must be geometric or arithmetic, not {rule}")
     filled = next(filled for other, filled in complete(interactions, system.counts["ntypes"]) if other is use)
-    return Dispersion(rule, filled, use.style.derived, use.settings, system.counts["ntypes"]), parts
+    return Dispersion(rule, filled, use.style.derived, use.settings, system.counts["ntypes"], tolerance), parts

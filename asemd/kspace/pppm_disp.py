@@ -27,7 +27,8 @@ class PPPMDisp(PPPM):
     g6 = 0.0
 
     def take(self, uses, interactions, system):
-        self.dispersion, parts = dispersion_of(uses, interactions, system, self.style, self.modify["mix/disp"])
+        self.dispersion, parts = dispersion_of(uses, interactions, system, self.style, self.modify["mix/disp"],
+                                               self.modify["splittol"])
         charged = [(use, part) for use in uses for part in use.style.variant(use.settings).parts if part.long and part.charged]
         self.coulomb, self.cutoff6 = bool(charged), self.cutoff_of(parts)
         return self.cutoff_of(charged or parts)

@@ -2,7 +2,8 @@
 
 The costs are those of a model in which a step takes a fixed time, a time for each atom (integration and loop), for each pair of the list
 (fixed, and for each operation and each call of a function such as ``exp`` in the formula of the style), for each bonded item, and for each
-pair of a list that is built. ``python -m asemd.lammps.calibration THREADS PRECISION`` measures and prints them.
+pair of a list that is built; and of long-range solvers for each atom in each wave, for each mesh point that a charge goes to, and for each
+point of the mesh. ``python -m asemd.lammps.calibration THREADS PRECISION`` measures and prints them.
 """
 from __future__ import annotations
 
@@ -45,6 +46,13 @@ fix 1 all nve
 timestep 0.002
 thermo 1000000
 """
+SOLVED = """set group all type 1
+set group all type/ratio 2 0.5 7
+set type 1 charge 0.1
+set type 2 charge -0.1
+kspace_style {solver} 1e-4
+kspace_modify gewald 0.8 {modify}
+"""
 CHAINS = """units lj
 atom_style molecular
 {category}_style {style}
@@ -56,6 +64,8 @@ timestep 0.0005
 thermo 1000000
 """
 PAIRS = {"lj/cut": ("lj/cut 2.5", "1 1"), "coul": ("lj/cut/coul/cut 2.5", "1 1"), "morse": ("morse 2.5", "1 5 1.1")}
+MESHES = (12, 36)           # points along an edge: few, so that charges cost more than transforms, and many
+ORDER, WAVES = 5, 8         # LAMMPS's default order; waves along an edge
 BONDED = {"bond": ("harmonic", "50 1"), "dihedral": ("harmonic", "1 1 2")}
 
 
@@ -72,6 +82,9 @@ class Costs:
     single: float               # a pair of a plain list and step
     build: float                # a pair of a list that is built
     row: float                  # a thermo row
+    wave: float                 # an atom in a wave of an Ewald sum, and step
+    spread: float               # a mesh point that an atom's charge goes to and its force comes from, and step
+    mesh: float                 # a point of a mesh in its transforms, and step
     items: dict[str, float]     # a bonded item and step, by category
 
     def formula(self, functions) -> float:
@@ -116,8 +129,8 @@ def known(threads: int, precision: str) -> Costs | None:
 
 
 def calibrate(threads: int = 1, precision: str = "double", again: bool = False) -> Costs:
-    """The costs of this machine, measured now if they are not known, or `again` (in a process of its own: about three
-    seconds, up to a minute where its kernels have to be compiled first).
+    """The costs of this machine, measured now if they are not known, or `again` (in a process of its own: about seven
+    seconds, about a minute where its kernels have to be compiled first).
 
     Raises
     ------
@@ -185,6 +198,7 @@ def measure(threads: int, precision: str) -> dict:
     atom = max((lj["rest"]) / n, 1e-10)
     single = max((small["Pair"] - tiny["Pair"]) / (small["pairs"] - tiny["pairs"]), 1e-10)
     step = max(small["rest"] - atom * small["atoms"] + max(small["Pair"] - single * small["pairs"], 0.0), 1e-8)
+    solvers = _solvers(threads, precision)
     items = {}
     with tempfile.TemporaryDirectory() as folder:
         before = os.getcwd()
@@ -200,7 +214,23 @@ def measure(threads: int, precision: str) -> dict:
     items["angle"] = (items["bond"] * items["dihedral"]) ** 0.5
     items["improper"] = items["dihedral"]
     return {"step": step, "atom": atom, "pair": float(pair), "operation": float(operation), "call": float(call), "single": single,
-            "build": lj["build"] / pairs, "row": lj["row"], "items": items}
+            "build": lj["build"] / pairs, "row": lj["row"], **solvers, "items": items}
+
+
+def _solvers(threads: int, precision: str) -> dict:
+    """Costs of long-range solvers: two meshes that the same charges are spread on, and a sum over waves."""
+    style, coeff = "lj/cut/coul/long 2.5", PAIRS["coul"][1]
+
+    def run(size: int, solver: str, modify: str) -> dict:
+        script = LIQUID.format(size=size, style=style, coeff=coeff) + SOLVED.format(solver=solver, modify=modify)
+        return _run(script, threads, precision, samples=4)
+
+    at = [run(10, "pppm", f"mesh {m} {m} {m} order {ORDER}") for m in MESHES]
+    points = [m**3 for m in MESHES]
+    mesh = max((at[1]["Kspace"] - at[0]["Kspace"]) / (points[1] - points[0]), 1e-12)
+    spread = max((at[0]["Kspace"] - mesh * points[0]) / (at[0]["atoms"] * ORDER**3), 1e-12)
+    sums = run(5, "ewald", f"kmax/ewald {WAVES} {WAVES} {WAVES}")
+    return {"wave": sums["Kspace"] / (sums["atoms"] * sums["engine"].solver.waves), "spread": spread, "mesh": mesh}
 
 
 def _run(script: str, threads: int, precision: str, steps: int = STEPS, samples: int = SAMPLES) -> dict:
@@ -218,13 +248,13 @@ def _run(script: str, threads: int, precision: str, steps: int = STEPS, samples:
         builds = engine.builds
         seconds, spent = timed(lammps, steps)
         count = max(engine.builds - builds, 1)
-        rest = seconds - sum(spent.get(k, 0.0) for k in ("Pair", "Bond", "Neigh", "Output"))
+        rest = seconds - sum(spent.get(k, 0.0) for k in ("Pair", "Bond", "Kspace", "Neigh", "Output"))
         if spent["Neigh"] == 0.0:
             began = time.perf_counter()
             engine.load()
             spent["Neigh"] = time.perf_counter() - began
-        taken.append({"Pair": spent["Pair"] / steps, "Bond": spent["Bond"] / steps, "build": spent["Neigh"] / count,
-                      "rest": max(rest, 0.0) / steps, "row": spent["Output"] / 2.0})
+        parts = {k: spent[k] / steps for k in ("Pair", "Bond", "Kspace")}
+        taken.append({**parts, "build": spent["Neigh"] / count, "rest": max(rest, 0.0) / steps, "row": spent["Output"] / 2.0})
     out = {k: float(np.quantile([s[k] for s in taken], 0.25)) for k in taken[0]}
     functions = tuple(p.function for t in engine.pair_terms for p in t.style.parts)
     return {**out, "atoms": lammps.scene.system.n, "pairs": engine.pairs, "functions": functions, "engine": engine}

@@ -83,7 +83,7 @@ def plan(source, calibrate: bool = False) -> Plan:
     source : path, asemd.scene.Scene or ase.Atoms
         A script is executed up to its first run; atoms need `asemd.ForceField` as calculator.
     calibrate : bool
-        Measure the speed of this machine if that was not done before (in a process of its own: about three seconds, up to a minute
+        Measure the speed of this machine if that was not done before (in a process of its own: about seven seconds, about a minute
         where kernels have to be compiled first). Without it, or for atoms, the expected speed is told only where it is known.
 
     Raises
@@ -346,7 +346,7 @@ def _costs(out: Plan, e: Engine, scene, calibrate: bool) -> None:
     per_atom = any(x.needs & {"energies", "virials"} for x in (*scene.computes.values(), *scene.dumps.values()))
     _memory(out, e, per_atom, costs)
     if costs is None:
-        why = "this machine has not been measured: asemd plan --calibrate does it, once, in less than a minute"
+        why = "this machine has not been measured: asemd plan --calibrate does it, once, in about a minute"
         out.sections["Speed"] = [Item("steps per second", "not known", why)]
         return
     every = scene.thermo.every if isinstance(scene.thermo.every, int) else 0

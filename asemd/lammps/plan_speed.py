@@ -16,9 +16,6 @@ from asemd.term import BondedTerm, PairListTerm, PairRowsTerm
 
 EMBEDDED = 4        # an embedded-atom potential over clusters costs about so many times the pairs of a simple one
 MANY = 4            # a many-body style costs about so many times the pairs, one by one
-WAVES = 1.5         # an atom in a wave of an Ewald sum, in terms of pairs
-SPREAD = 2.5        # a mesh point that an atom's charge goes to, and the forces come from
-MESH = 20           # a point of the mesh in transforms
 PYTHON = 2e-4       # seconds of a step with a hook in Python
 
 
@@ -45,13 +42,13 @@ def between_builds(e: Engine, dt: float) -> float:
     return max(1.0, settings.every, settings.delay, 1.0 + 0.5 * settings.skin / (fastest * dt))
 
 
-def of_solver(t, n: int) -> float:
-    """What a step of a long-range solver costs with n atoms, in terms of pairs."""
+def of_solver(t, n: int, costs: Costs) -> float:
+    """Seconds that a step of a long-range solver takes with n atoms."""
     order, mesh = (getattr(t, name, getattr(t.solver, name, None)) for name in ("order", "mesh"))
     if mesh is not None:
-        return SPREAD * n * order**3 + MESH * math.prod(mesh)
+        return costs.spread * n * order**3 + costs.mesh * math.prod(mesh)
     waves = getattr(t.solver, "waves", None)
-    return WAVES * n * (waves if waves is not None else len(t.solver.numbers))
+    return costs.wave * n * (waves if waves is not None else len(t.solver.numbers))
 
 
 def expected(e: Engine, costs: Costs, dt: float, moving: bool = True, rows: float = 0.0, python: int = 0) -> Speed:
@@ -85,7 +82,7 @@ def expected(e: Engine, costs: Costs, dt: float, moving: bool = True, rows: floa
             parts["Pair"] += pairs * MANY * costs.single
             continue
         if t.category == "kspace":
-            parts["Kspace"] = parts.get("Kspace", 0.0) + costs.pair * of_solver(t, n)
+            parts["Kspace"] = parts.get("Kspace", 0.0) + of_solver(t, n, costs)
             continue
         each = costs.formula(p.function for p in t.style.parts)
         if isinstance(t, PairTerm):
