@@ -5,9 +5,8 @@ import inspect
 
 import numpy as np
 import pytest
-from both import lines_of
 from test_pair_coulomb import ours
-from wheel import ask
+from turning_atoms import assert_same, lammps
 
 from asemd.errors import InputError
 from asemd.oriented_term import dipole_kernel
@@ -60,19 +59,6 @@ CASES |= {
     "lj/long/dipole/long uncharged": LONG.format("long long 5", "/dipole") + "\npair_modify mix arithmetic\nset group all charge 0",
     "lj/long/dipole/long slab": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab 3.0 gewald 0.35 force 0.3",
 }
-THEIRS = """
-answer = {}
-for name, lines in given["cases"].items():
-    lmp = start()
-    try:
-        for line in lines:
-            lmp.command(line)
-        answer[name] = {"thermo": [lmp.get_thermo(c) for c in given["columns"]],
-                        **{a: list(lmp.gather_atoms(a, 1, 3)) for a in ("f", "torque")}}
-    except Exception as e:
-        answer[name] = {"error": str(e)}
-    lmp.close()
-"""
 
 
 def script(name: str) -> str:
@@ -82,7 +68,7 @@ def script(name: str) -> str:
 
 @pytest.fixture(scope="module")
 def theirs():
-    return ask(THEIRS, cases={name: lines_of(script(name)) for name in CASES}, columns=COLUMNS)
+    return lammps({name: script(name) for name in CASES}, COLUMNS)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -90,16 +76,10 @@ def test_like_lammps(theirs, name):
     expected = theirs[name]
     assert "error" not in expected, expected
     session = ours(script(name))
-    system = session.scene.system
-    order = np.argsort(system.id)
-    for got, want in ((system.f, "f"), (system.extra["torque"], "torque")):
-        other = np.reshape(expected[want], (-1, 3))
-        np.testing.assert_allclose(got[order], other, rtol=0, atol=1e-12 * np.abs(other).max(), err_msg=want)
     if name == "lj/cut/dipole/long slab":      # LAMMPS adds a twelfth of this
-        moment = system.extra["mu"][:, 2].sum()
+        moment = session.scene.system.extra["mu"][:, 2].sum()
         expected["thermo"][2] += 11 / 12 * 2 * np.pi * session.loop.engine.qqr2e * moment**2 / (3 * 11 * 12 * 11.5)
-    row = [session.variables.evaluate(c) for c in COLUMNS]
-    np.testing.assert_allclose(row, expected["thermo"], rtol=1e-11, atol=1e-11)
+    assert_same(session, expected, COLUMNS, 1e-11)
 
 
 @pytest.fixture

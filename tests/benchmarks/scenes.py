@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 from tests.benchmarks.peptide import write as write_peptide
+from tests.water_molecule import water
 
 ROOT = Path(__file__).resolve().parents[2]
 MELT = ROOT / "workflows" / "polymer-melt"
@@ -113,51 +114,7 @@ thermo 50
 """
 
 
-MOLECULE = """SPC/E water
-
-3 atoms
-2 bonds
-1 angles
-
-Coords
-
-1 0.0 0.0 0.0
-2 0.81649 0.57736 0.0
-3 -0.81649 0.57736 0.0
-
-Types
-
-1 1
-2 2
-3 2
-
-Charges
-
-1 -0.8476
-2 0.4238
-3 0.4238
-
-Bonds
-
-1 1 1 2
-2 1 1 3
-
-Angles
-
-1 1 2 1 3
-
-Special Bond Counts
-
-1 2 0 0
-2 1 1 0
-3 1 1 0
-
-Special Bonds
-
-1 2 3
-2 1 3
-3 1 2
-"""
+MOLECULE = water([[0.0, 0.0, 0.0], [0.81649, 0.57736, 0.0], [-0.81649, 0.57736, 0.0]], charge=0.4238)       # SPC/E
 WATER_STYLES = """pair_style lj/cut/coul/long 10.0
 bond_style harmonic
 angle_style harmonic
