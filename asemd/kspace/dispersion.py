@@ -56,6 +56,7 @@ class Dispersion:
             self.factors, self.signs = np.sqrt(self.own)[:, None], np.ones(1)
         else:
             self.factors, self.signs = np.ascontiguousarray(vectors[:, kept] * np.sqrt(abs(values[kept]))), np.sign(values[kept])
+            self.own = self.factors**2 @ self.signs
         if rule == "none" and part[~kept].max(initial=0.0) > DROPPED:
             warnings.warn(f"Estimated error in splitting of dispersion coeffs is {part[~kept].max():.8g}", InputWarning, stacklevel=2)
 
