@@ -72,6 +72,9 @@ class PairTerm(FactorTerm):
         if self.pruned is not None:
             self.pruned.rebuild(clusters, engine.state.x, self.row, engine.ns)
 
+    def relisted(self, engine):
+        return None if self.pruned is not None else [("look_at_rows", (engine.list.row_length, pair_kernels.most_neighbours(self.row)))]
+
     def scalars(self) -> tuple:
         """Coefficients that are the same for all pairs of types, and constants, as the kernel takes them."""
         return pair_kernels.cluster_tuple(self.tables.rows, with_series(self.style, self.tables, self.single)[1], self.uniform, self.single)
@@ -85,8 +88,8 @@ class PairTerm(FactorTerm):
             self.types, self.saved)
         whole = () if self.pruned is None else self.pruned.whole(c, tid, self._mine)
         return self._with_factor(engine, tid, (
-            s.x, f, s.q, s.type, first, entries, near.own, near.span, c.unshifted, c.shifts4, excluded_first, excluded, int(c.bounds[tid]),
-            int(c.bounds[tid + 1]), self.p, self.rows, 1e3 * c.reach, engine.qqr2e, *room, *self._tables_of[tid], acc, hide,
+            s.x, f, s.q, s.type, first, entries, near.own, near.span, c.unshifted, c.shifts4, excluded_first, excluded, c.ranges[tid],
+            self.p, self.rows, 1e3 * c.reach, engine.qqr2e, *room, *self._tables_of[tid], acc, hide,
             engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], whole))
 
     def _mine(self, tid: int, *arrays: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -85,7 +85,7 @@ class Engine:
         self.reach = self.cutoff + s.skin
         self.exclusions = Exclusions(system, inter, s.exclude, self.has_pairs)
         self.mode, self.expanded, self.sparse, self.packed, self.why = self.list_for(system.n)
-        self.k = kernels(self.ortho, s.outdated or self.sparse)
+        self.k = kernels(self.ortho, s.outdated or self.sparse, not self.sparse)
         self.terms = self._make_terms()
         self.bonds = Bonds(self)
         self.changed = True      # loops look whether their kernels are still the right ones
@@ -156,7 +156,7 @@ class Engine:
         self.cell = cell_arrays(self.vectors, self.periodic)
         self.close_images, self.close_shifts = close_images(self.cell.reduced, self.vectors)
         self.close_periodic = (self.close_images[:, ~self.periodic] == 0).all(axis=1)
-        self.k = kernels(self.ortho, self.settings.outdated or self.sparse)
+        self.k = kernels(self.ortho, self.settings.outdated or self.sparse, not self.sparse)
 
     def set_groups(self, groups, bits) -> None:
         """Masks of groups (n,) and their bits, for the masks of the slots from the next list on."""
@@ -209,6 +209,8 @@ class Engine:
         s.v[:, :n] = self.system.v.T
         self._offset = None
         self.slot_of[:], self.held[:, :n] = np.arange(n), s.x[:, :n]
+        if self.mode == "cluster":
+            self.list.gaps = True
         if listed:
             self.rebuild()
 
@@ -225,7 +227,9 @@ class Engine:
         shares = live_box.faces(self)
         if self.mode == "cluster":
             bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
-            bins.squeeze(s, self.ns, self.system.n, self.periodic, self.reach, self.ortho, self.list.marked)
+            if self.list.gaps:      # where atoms fill a box that stays, once in a run
+                bins.squeeze(s, self.ns, self.system.n, self.periodic, self.reach, self.ortho, self.list.marked, not self.sparse)
+                self.list.gaps = bins.k is not None or bool(self.box_moves) or not self.periodic.all()
             if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
                 self._allocate(self.list.capacity)
                 s = self.state
@@ -239,7 +243,8 @@ class Engine:
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             for molecules, rows in self.rows.items():
-                self.list.fill(rows, k, s, self.ns, self._partners(), self.exclusions.rules_within(molecules), self.parallel)
+                self.list.fill(rows, k, s, self.ns, self.slot_of, self.exclusions.left_out, self.exclusions.rules_within(molecules),
+                               self.parallel)
             weighted, kinds = self.exclusions.weighted, self.exclusions.weighted_kinds
             self.special = [np.empty(len(weighted), np.int32) for _ in range(3)]
             if len(weighted) and not self.expanded:
@@ -259,12 +264,6 @@ class Engine:
         self.builds += 1
         self.timings["Neigh"] += time.perf_counter() - began
 
-    def _partners(self) -> tuple[np.ndarray, np.ndarray]:
-        """Special pairs that do not interact: first partner of each atom (n+1,), partners."""
-        if self.exclusions.partners is None:
-            return np.zeros(self.system.n + 1, np.int32), np.zeros(0, np.int32)
-        return self.exclusions.partners[:2]
-
     def mark(self, i, j, code, shifts) -> None:
         """Keep a plain list, special pairs and exclusions marked."""
         s = self.state
@@ -280,7 +279,7 @@ class Engine:
             i, j, code = self.special
             d = self.held[:, i] - self.held[:, j] - self.close_shifts[code >> 2].T
             others = (sum(rows.entries for rows in self.rows.values()) if self.sparse else
-                      self.list.count(self.k, self.state, self.held, self._partners()))
+                      self.list.count(self.k, self.state, self.held, self.exclusions.left_out))
             return others + int(((d * d).sum(axis=0) <= self.reach**2).sum())
         return len(self.plain[0]) if self.mode != "none" else 0
 

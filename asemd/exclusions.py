@@ -83,6 +83,7 @@ class Exclusions:
     def _set_rules(self, system, rules: list) -> None:
         self.rules = np.zeros((len(rules), 3), np.int64)
         self.rule_mask = np.zeros(system.n, np.int64)
+        self._nobody = np.zeros(system.n + 1, np.int32), np.zeros(0, np.int32)
         bit = 1
         for k, (kind, *masks) in enumerate(rules):
             self.rules[k, 0] = RULES[kind]
@@ -91,6 +92,11 @@ class Exclusions:
                 self.rules[k, 1 + m] = bit
                 bit <<= 1
         self.molecule = np.asarray(system.molecule, np.int64) if system.molecule is not None else np.zeros(system.n, np.int64)
+
+    @property
+    def left_out(self) -> tuple[np.ndarray, np.ndarray]:
+        """`start` and `partner` of the partners, where there are none, too."""
+        return self._nobody if self.partners is None else self.partners[:2]
 
     @property
     def rule_arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -12,9 +12,11 @@ from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import Fix
 from asemd.interrupt import Interrupt
+from asemd.kernels import relist
 from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
 from asemd.kernels.state import Thread
+from asemd.relist import NO_CALLS, Relist
 from asemd.watchdog import Watchdog
 
 IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
@@ -60,9 +62,9 @@ class Loop:
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         nth = self.engine.threads
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
-        self._control, self._numbers = np.zeros(16, np.int64), np.zeros(16)
+        self._control, self._numbers = np.zeros(tl.CONTROLS, np.int64), np.zeros(tl.NUMBERS)
         self._chunk, self.halted, self._in_sync = 100, False, None       # whether the system has what the slots have; None: not known
-        self.watchdog = Watchdog(self)
+        self._relist, self.watchdog = Relist(), Watchdog(self)
 
     def group_bit(self, name: str) -> int:
         """The bit value of a group: 1 for ``all``, 2, 4, ...
@@ -194,7 +196,7 @@ class Loop:
         if interrupt.asked:
             self.engine.store()
             raise KeyboardInterrupt
-        self._take_timings()
+        tl.take_timings(self._numbers, self.engine.timings)
         if not want or self.step < last:
             self.engine.store()
             return None
@@ -271,21 +273,26 @@ class Loop:
         if last == 0:
             last = self.step
         forced = min((f.next_reneighbor for f in self.fixes if f.next_reneighbor > self.step), default=NEVER)
-        c[:15] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
-                  s.outdated, bool(e.box_moves), forced]
+        c[:] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
+                  s.outdated, bool(e.box_moves), forced, 0, 0]
         x[tl.DT], x[tl.TRIGGER] = self.dt, (0.5 * s.skin) ** 2
+        x[tl.FARTHEST], x[tl.UNTIL] = self.watchdog.patience()
         self._sync[:] = 0
         status = [0] * e.threads
         run, (calls, starts) = tl.module().run, self._calls.table(tl.KINDS, e.state, self.fix_data)
+        terms = [self._terms(t) for t in range(e.threads)]
+        lists, live = NO_CALLS if self._about_lists else self._relist.table(e), self._relist.live
+        live[relist.NS] = e.ns
 
         def work(tid):
-            status[tid] = run(tid, e.threads, e.ns, e.state.x, e.state.virial, e.state.box, e.held, e.moved, e.farthest, e.buffers, e.bad,
-                              self._sync, self._scratch, c, x, e.acc, terms[tid], calls, starts)
-        terms = [self._terms(t) for t in range(e.threads)]
+            status[tid] = run(tid, e.threads, e.state.x, e.state.virial, e.state.box, e.held, e.moved, e.farthest, e.buffers, e.bad,
+                              self._sync, self._scratch, c, x, e.acc, terms[tid], calls, starts, live, lists)
         e.parallel(work)
         self.step = int(c[tl.STEP])
         self._ago = int(c[tl.AGO])
         e.dangerous += int(c[tl.DANGEROUS])
+        self._relist.take(e, int(c[tl.BUILDS]))
+        self.watchdog.built(int(c[tl.BUILT]))
         return status[0]
 
     def _terms(self, tid: int) -> np.ndarray:
@@ -296,13 +303,6 @@ class Loop:
             alone = bool(self._virial_every) and not any(f.with_energies for f in self.fixes)
             known = self._packed[tid] = tl.Terms(self.engine.terms, arguments, alone)
         return known.rows
-
-    def _take_timings(self) -> None:
-        t, x = self.engine.timings, self._numbers
-        for name, at in (("Pair", tl.PAIR_TIME), ("Bond", tl.BOND_TIME), ("Kspace", tl.KSPACE_TIME),
-                         ("Modify", tl.MODIFY_TIME), ("Comm", tl.COMM_TIME)):
-            t[name] += float(x[at])
-            x[at] = 0.0
 
     # ---- steps with Python hooks --------------------------------------------------------------------------------------------------------
     def _thread(self) -> Thread:

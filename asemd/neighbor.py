@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import cluster, cluster_rows, gaps, pair_list, rebuild
+from asemd.kernels import cluster, cluster_rows, gaps, pair_list, rebuild, relist
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.state import Cell
@@ -21,17 +21,17 @@ EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
 
 
-PIECES = cluster.reached, cluster.drop, cluster.arrange, gaps.squeeze
+PIECES = cluster.reached, cluster.drop, cluster.arrange, cluster.append, gaps.squeeze
 ABOUT_CELLS = cluster.sort, cluster.near_columns, *PIECES, cluster.build
 
 
-def _builder(ortho: bool, mark: bool, squeezed: bool) -> Builder:
+def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
     """With the functions that depend on cells."""
     b = Builder("squeezed neighbour lists" if squeezed else "neighbour lists")
-    for name, value in (("CLUSTER", CLUSTER), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False), ("SQUEEZED", squeezed),
+    for name, value in (("CLUSTER", CLUSTER), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False), ("SORTED", order), ("SQUEEZED", squeezed),
                         ("SLOT_BITS", cluster.SLOT_BITS)):
         b.constant(name, value)
-    _add(b, *PIECES, *(f for f in ABOUT_CELLS if f not in PIECES))
+    _add(b, *(f for f in PIECES if f is not (cluster.append if order else cluster.arrange)), *(f for f in ABOUT_CELLS if f not in PIECES))
     return b
 
 
@@ -41,20 +41,21 @@ def _add(b: Builder, *functions) -> None:
 
 
 @cache
-def kernels(ortho: bool, mark: bool = False):
-    """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, see `cluster.build`."""
-    b = _builder(ortho, mark, False)
+def kernels(ortho: bool, mark: bool = False, order: bool = True):
+    """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, `order`: sorted rows, see
+    `cluster.build`."""
+    b = _builder(ortho, mark, order, False)
     _add(b, cluster.wrap, cluster_rows.exclude, cluster_rows.count, cluster_rows.expand, cluster_rows.rows, pair_list._cell,
          pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved,
          rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.closest, rebuild.mark_special, rebuild.forbidden,
-         rebuild.drop_excluded, rebuild.special_pairs)
+         rebuild.drop_excluded, rebuild.special_pairs, relist.split, relist.balance)
     return b.build()
 
 
 @cache
-def squeezed_kernels(ortho: bool, mark: bool):
+def squeezed_kernels(ortho: bool, mark: bool, order: bool):
     """Those of them that depend on cells, for atoms with empty space between, see `asemd.kernels.gaps`."""
-    b = _builder(ortho, mark, True)
+    b = _builder(ortho, mark, order, True)
     _add(b, gaps.find_gaps)
     return b.build()
 
@@ -102,11 +103,12 @@ class BinCell:
         self.far = self.origin + (self.vectors + np.abs(self.vectors)).sum(axis=0)      # no atom is near
         self.places, self.k = EVERYWHERE, None
 
-    def squeeze(self, state, ns: int, n: int, periodic: np.ndarray, reach: float, ortho: bool, mark: bool) -> None:
+    def squeeze(self, state, ns: int, n: int, periodic: np.ndarray, reach: float, ortho: bool, mark: bool,
+                order: bool) -> None:
         """Leave out empty stretches where few atoms (`n`) are in much space, so that cells are small where the atoms are."""
         if CLUSTER * self.volume <= n * reach**3:
             return
-        k, low, high, places = squeezed_kernels(ortho, mark), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
+        k, low, high, places = squeezed_kernels(ortho, mark, order), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
         k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, periodic, reach / self.widths, low, high, places)
         left = 1.0 / places[:, 1]
         if left.prod() < WORTH:
@@ -142,15 +144,16 @@ class Rows:
 
     Attributes
     ----------
-    start (nth, nslots+1), neighbors (nth, m)
+    start (nth, nslots+1), owners (nth, m), neighbors (nth, m)
         See `asemd.kernels.cluster_rows.rows`.
-    edges (nth+1,)
-        Slots of each thread.
+    edges (nth+1,), ranges
+        Slots of each thread; of the first thread, of the second and so on, where they begin and end.
     """
 
     def __init__(self, threads: int):
-        self.start, self.neighbors = np.zeros((threads, 0), np.int32), np.zeros((threads, 0), np.int32)
+        self.start, self.owners, self.neighbors = (np.zeros((threads, 0), np.int32) for _ in range(3))
         self.edges = np.zeros(threads + 1, np.int64)
+        self.ranges = [self.edges[t:t + 2] for t in range(threads)]
 
     @property
     def entries(self) -> int:
@@ -172,7 +175,9 @@ class ClusterList:
     def __init__(self, threads: int, reach: float, width: int = 8, marked: bool = False):
         self.threads, self.reach, self.width, self.marked = threads, reach, width, marked
         self.hide = np.zeros((threads, 1), np.uint8)
-        self.capacity = 0
+        self.capacity, self.gaps = 0, True      # whether to look for empty stretches before the next list
+        self.bounds, self.lengths = np.zeros(threads + 1, np.int64), np.zeros(threads, np.int64)
+        self.ranges = [self.bounds[t:t + 2] for t in range(threads)]      # where the clusters of each thread begin and end
         self.nx = self.ny = self.nz = 0
         self.entries = np.zeros((threads, 0), np.int32)
         self.excluded = np.zeros((threads, 64), np.int32)
@@ -219,7 +224,6 @@ class ClusterList:
         self.own, self.span = np.zeros(ncl, np.int32), np.zeros((ncl, CLUSTER), np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
         self._room()
-        self.bounds = np.zeros(self.threads + 1, np.int64)
         self.shares = None
         if not self.entries.shape[1]:
             # in reach of an atom: a ball, in flat cells a disc, in thin ones a rod
@@ -234,12 +238,13 @@ class ClusterList:
         self.work = np.zeros((self.threads, 3, self.candidates))
         self.work_codes = np.zeros((self.threads, self.candidates), np.int64)
         self.earlier = np.zeros((self.threads, self.candidates + 64), np.int32)
+        self.bits = np.zeros((self.threads, self.candidates + 64), np.uint8)
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
         """Sort the slots; returns their number."""
-        k = bins.k or k
+        k, self.far = bins.k or k, bins.far + 10 * self.reach
         return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
-                      self.cell_start, self.column_start, self.column_of, self.key, bins.far + 10 * self.reach, 4 * self.reach, bins.places)
+                      self.cell_start, self.column_start, self.column_of, self.key, self.far, 4 * self.reach, bins.places)
 
     def _see(self, cell: Cell, periodic: np.ndarray) -> None:
         """Take the images of a cell, unless they are known."""
@@ -257,7 +262,8 @@ class ClusterList:
         while True:
             if self.marked and self.hide.shape[1] < self.entries.shape[1]:
                 self.hide = np.zeros(self.entries.shape, np.uint8)
-            self._split(ncl)
+            shares = self.shares if self.shares is not None else np.arange(self.threads + 1) / self.threads
+            k.split(shares, self.bounds, ncl)
             results = [0] * self.threads
 
             def work(t, results=results):
@@ -283,46 +289,31 @@ class ClusterList:
             elif -3 in results:
                 self.excluded = np.zeros((self.threads, 2 * self.excluded.shape[1]), np.int32)
             else:
-                self._balance(results)
+                self.lengths[:], self.shares = results, shares
+                k.balance(shares, self.bounds, self.lengths)
                 if not again:
                     return
                 again = False
 
-    def fill(self, rows: Rows, k, state, ns: int, partners, rules, parallel) -> None:
+    def fill(self, rows: Rows, k, state, ns: int, slot_of, partners, rules, parallel) -> None:
         """The list as rows of single atoms without the special pairs.
 
         `partners` and `rules` are what `asemd.exclusions.Exclusions` says, as arrays.
         """
-        rows.edges = CLUSTER * self.bounds
+        rows.edges[:] = CLUSTER * self.bounds
         if rows.start.shape[1] < ns + 1:
             rows.start = np.zeros((self.threads, ns + 1 + ns // 8), np.int32)
         results = [0] * self.threads
 
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-            results[t] = k.rows(state.row, self.first[t], self.entries[t], self.hide[t], self.own, self.span, c0, c1, *partners, *rules,
-                                rows.start[t], rows.neighbors[t])
+            results[t] = k.rows(state.row, slot_of, self.first[t], self.entries[t], self.hide[t], self.own, c0, c1, *partners, *rules,
+                                self.where[t], self.earlier[t], self.bits[t], rows.start[t], rows.owners[t], rows.neighbors[t])
         while True:
             parallel(work)
             if -1 not in results:
                 return
-            rows.neighbors = np.zeros((self.threads, 2 * rows.neighbors.shape[1] + 16 * ns), np.int32)
-
-    def _split(self, ncl: int) -> None:
-        shares = self.shares if self.shares is not None else np.arange(self.threads + 1) / self.threads
-        self.bounds[:] = np.rint(shares * ncl)
-
-    def _balance(self, lengths: list[int]) -> None:
-        """Thread bounds for the next build, so that each gets the same number of entries."""
-        if self.threads == 1:
-            self.shares = np.array([0.0, 1.0])
-            return
-        ncl = self.bounds[-1]
-        edges = self.bounds / max(ncl, 1)
-        # an entry costs about as much as the own-cluster work of a sixteenth of a cluster
-        weights = np.array(lengths, float) + 16.0 * np.diff(self.bounds)
-        total = np.concatenate([[0.0], np.cumsum(weights)])
-        self.shares = np.interp(np.linspace(0, total[-1], self.threads + 1), total, edges)
+            rows.owners, rows.neighbors = np.zeros((2, self.threads, 2 * rows.neighbors.shape[1] + 16 * ns), np.int32)
 
     def longest(self) -> int:
         """Most neighbours of one cluster."""

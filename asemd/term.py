@@ -7,7 +7,7 @@ import numpy as np
 
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import pair as pair_kernels
-from asemd.kernels.cluster import CLUSTER
+from asemd.kernels.pair_list import ROOM
 from asemd.kernels.pair_scaled import scaled
 from asemd.kernels.state import aligned
 from asemd.pairing import NO_REPULSION
@@ -31,6 +31,9 @@ class Term(Protocol):
         return self.kernel(True, False)
 
     def rebuild(self, engine) -> None: ...
+
+    # def relisted(self, engine) -> list[tuple[str, tuple]] | None: for a class whose `rebuild` compiled code can do, too, at least now:
+    # functions of `asemd.kernels.relist` and their arguments; those of the term's kernels do not change
 
     def rename(self, new: np.ndarray) -> None:
         """Atoms that no item names left: the `new` number of each row."""
@@ -64,6 +67,10 @@ class BondedTerm(Term):
             self.start = np.searchsorted(self.items[:, 0], np.arange(engine.system.n + 1)).astype(np.int32)
         engine.k.to_slots(engine.state.row, engine.ns, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types,
                           self.order)
+
+    def relisted(self, engine):
+        return [("place_items", (engine.state.row, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types,
+                                 self.order))]
 
     def arguments(self, engine, tid):
         from asemd.kernels import bonded
@@ -162,7 +169,7 @@ class PairRowsTerm(FactorTerm):
     def __init__(self, term):
         self.owner, self.style, self.tables = term, term.style, term.tables
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
-        self.p = self.scalars()
+        self.p, self.room = self.scalars(), ()
 
     def scalars(self) -> tuple:
         """As of `PairTerm`."""
@@ -172,16 +179,20 @@ class PairRowsTerm(FactorTerm):
         return self._scaled(pair_kernels.rows_kernel(self.style, self.uniform, energy=energy, piece=self.piece)[0], energy)
 
     def rebuild(self, engine):
-        """Nothing of its own: the rows are the engine's."""
+        if len(self.room) != engine.threads:
+            self.room, self.who = aligned((engine.threads, 7 * ROOM)), np.zeros((engine.threads, 2, ROOM), np.int32)
+
+    def relisted(self, engine):
+        return []
 
     def arguments(self, engine, tid):
         s, c = engine.state, engine.list
         rows = engine.rows[self.owner.molecules]
         f, acc = self._sums(engine, tid)
         return self._with_factor(engine, tid, (
-            s.x, f, s.q, s.type, rows.start[tid], rows.neighbors[tid], c.shifts, CLUSTER * int(c.bounds[tid]),
-            CLUSTER * int(c.bounds[tid + 1]), self.p, self.tables.rows, self.tables.arrays, engine.qqr2e, acc,
-            engine.bad[tid, self.index]))
+            s.x, f, s.q, s.type, rows.start[tid], rows.owners[tid], rows.neighbors[tid], c.shifts,
+            rows.ranges[tid], self.p, self.tables.rows, self.tables.arrays, engine.qqr2e, acc, engine.bad[tid, self.index],
+            self.room[tid], self.who[tid]))
 
     def describe(self, engine, item, value):
         j, i = divmod(int(item), 1 << 26)
@@ -237,6 +248,16 @@ class PairListTerm(Term):
             engine.k.special_pairs(pairs, kinds, engine.slot_of, engine.state.x, engine.close_shifts, engine.close_periodic, *out)
             self.i, self.j, self.code = out
             self.shifts, self.lj, self.coul = engine.close_shifts, weights, weights
+
+    def relisted(self, engine):
+        if self.pairs == "one_four":
+            pairs, kinds, _ = self.one_four
+        elif self.pairs == "special" and not (self.owner.molecules or self.sized or self.by_atom):
+            pairs, kinds = engine.exclusions.weighted, engine.exclusions.weighted_kinds
+        else:
+            return None
+        return [("place_pairs", (pairs, kinds, engine.slot_of, engine.state.x, engine.close_shifts, engine.close_periodic, self.i, self.j,
+                                 self.code))]
 
     def scale(self, engine) -> None:
         """Take up the present factor of the pair style; the arrays that kernels work on stay the same."""

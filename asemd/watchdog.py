@@ -107,7 +107,7 @@ class Watchdog:
         self.frames: list[Frame] = []
         self._energies: tuple[float, float] | None = None       # total and kinetic, of the start
         self.seconds, self._next, self._next_energy = 0.0, 0.0, 0.0
-        self._spare, self.reach = 0, np.inf
+        self._spare, self._built, self.reach = 0, 0, np.inf
         self._limit, self._free = np.inf, False
 
     # ---- before the run -----------------------------------------------------------------------------------------------------------------
@@ -159,6 +159,15 @@ class Watchdog:
             raise SimulationError(f"atom {self._id(slot)} moved {far[slot]:.4g} since the neighbour list was built, more than the width of "
                                   "the box: the time step is too long, or atoms are too close together")
         self._look_at_speed()
+
+    def patience(self) -> tuple[float, float]:
+        """For lists that the loop builds by itself: the squared distance up to which `before_build` has nothing to say, and the seconds
+        for which `after_build` has nothing to do."""
+        return (self._limit, max(0.0, self._next - time.perf_counter())) if self.on else (np.inf, np.inf)
+
+    def built(self, step: int) -> None:
+        """The loop built lists by itself, the last one at that step; 0: none."""
+        self._built = max(self._built, step)
 
     def after_build(self) -> None:
         """After a list was built: this is a good frame."""

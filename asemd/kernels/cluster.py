@@ -6,8 +6,9 @@ cluster the images on the positive side. An entry is slot number + (shift code <
 no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
-generated module, and so are MARK (which atoms are beyond reach is wanted), TRACK, see `arrange`. What follows from a list (exclusions,
-plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in `asemd.kernels.prune`.
+generated module, and so are MARK (which atoms are beyond reach is wanted), SORTED (rows are), TRACK, see `arrange`. What follows from
+a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in
+`asemd.kernels.prune`.
 """
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ import numpy as np
 from asemd.kernels.gaps import squeeze
 
 CLUSTER = 8
-ORTHO = MARK = TRACK = True
+ORTHO = MARK = TRACK = SORTED = True
 SLOT_BITS = 0x3FFFFFF
 
 
@@ -65,21 +66,26 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
         for z in range(nz + 1):
             cell_start[c, z] = 0
     n = 0
+    cells = cell_start.reshape(-1)      # nz + 1 to a column
     for i in range(ns):
         if row[i] < 0:
             continue
         dx = x[0, i] - origin[0]
         dy = x[1, i] - origin[1]
         dz = x[2, i] - origin[2]
-        a = min(max(int(squeeze(dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0], places, 0) * nx), 0), nx - 1)
-        b = min(max(int(squeeze(dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1], places, 1) * ny), 0), ny - 1)
-        c = min(max(int(squeeze(dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2], places, 2) * nz), 0), nz - 1)
+        s0 = dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]
+        s1 = dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]
+        s2 = dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]
+        a = min(max(int(squeeze(s0, places, 0) * nx), 0), nx - 1)
+        b = min(max(int(squeeze(s1, places, 1) * ny), 0), ny - 1)
+        c = min(max(int(squeeze(s2, places, 2) * nz), 0), nz - 1)
         for d in range(3):
-            x2[d, n] = x[d, i]
-            v2[d, n] = v[d, i]
-        row2[n] = row[i]
-        key[n] = (a * ny + b) * nz + c
-        cell_start[a * ny + b, c] += 1
+            x2[d, np.uint64(n)] = x[d, i]
+            v2[d, np.uint64(n)] = v[d, i]
+        row2[np.uint64(n)] = row[i]
+        at = (a * ny + b) * (nz + 1) + c
+        key[np.uint64(n)] = at
+        cells[np.uint64(at)] += 1
         n += 1
     p = 0
     for c in range(ncol):
@@ -106,10 +112,9 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
             v[d, k] = 0.0
         row[k] = -1
     for i in range(n):
-        c = key[i] // nz
-        z = key[i] - c * nz
-        k = cell_start[c, z]
-        cell_start[c, z] += 1
+        at = np.uint64(key[i])
+        k = np.uint64(cells[at])
+        cells[at] += 1
         for d in range(3):
             x[d, k] = x2[d, i]
             v[d, k] = v2[d, i]
@@ -242,13 +247,32 @@ def arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, e
     return n
 
 
+def append(ci, codes, kept, start, entries, own, span, width, empty, hide):
+    """The row as `arrange` makes it, but in no order: the cluster stands first, and all of its atoms need the whole row."""
+    own[ci] = 0
+    for k in range(CLUSTER):
+        entries[start + k] = np.int32(ci * CLUSTER + k) | np.int32(13 << 26)
+    first, n = start + CLUSTER, start + CLUSTER + kept
+    for t in range(kept):
+        entries[np.uint64(first + t)] = np.int32(codes[np.uint64(t)] & 0xFFFFFFFF)
+    for t in range(kept):
+        hide[np.uint64(first + t)] = np.uint8(255 - (codes[np.uint64(t)] >> 32))
+    while (n - start) % width != 0:
+        entries[n] = np.int32(empty) | np.int32(13 << 26)
+        hide[n] = np.uint8(255)
+        n += 1
+    for pair in range(4):
+        span[ci, 2 * pair], span[ci, 2 * pair + 1] = 0, n - start
+    return n
+
+
 def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, periodic, shifts, nx, ny, nz, reach, c0, c1,
           first, entries, own, span, unshifted, work, codes, width, empty, longest, sorting, hide, places):
     """List of clusters c0..c1-1 into `entries`; returns its length, -1 if `entries` is too small, -2 if the work arrays are,
     -4 if a cluster has more neighbours than can be counted.
 
     `shifts (27, 3)`; `widths (3,)`: perpendicular widths of the bin cell; `work (3, w)`, `codes (w,)`: candidates of one cluster.
-    A row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
+    With SORTED, a row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
     ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, which is counted as `sorting (3, 256)`
     says for the bits of the atoms that reach it; pair p then needs the sums p to p + 3. The cluster itself stands in the middle, at
     ``own[c]``. Rows end with copies of the slot `empty`, so that they fill vectors of `width`.
@@ -302,7 +326,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             ga = gap_a[ka]
             for kb in range(nb):
                 c2 = index_a[ka] * ny + index_b[kb]
-                if column_start[c2 + 1] <= ci * CLUSTER:
+                if column_start[np.uint64(c2 + 1)] <= ci * CLUSTER:
                     continue
                 sb = image_b[kb]
                 rz = reach / widths[2]
@@ -323,8 +347,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                         continue
                     code = (sa + 1) * 9 + (sb + 1) * 3 + sc + 1
                     start = (ci + 1) * CLUSTER if code <= 13 else ci * CLUSTER
-                    k0 = max(cell_start[c2, a0 - sc * nz], start)
-                    k1 = cell_start[c2, a1 - sc * nz + 1]
+                    k0 = max(cell_start[np.uint64(c2), np.uint64(a0 - sc * nz)], start)
+                    k1 = cell_start[np.uint64(c2), np.uint64(a1 - sc * nz + 1)]
                     run_start[runs] = k0
                     run_count[runs] = k1 - k0
                     run_code[runs] = code
@@ -364,7 +388,10 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         if kept > 0xFFFF - CLUSTER:
             return -4
         start = n
-        n = arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, empty, hide)
+        if SORTED:
+            n = arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, empty, hide)
+        else:
+            n = append(ci, codes, kept, start, entries, own, span, width, empty, hide)
         if MARK:
             for k in range(CLUSTER):
                 hide[start + own[ci] + k] = np.uint8(255 - (codes[nt + k] >> 32))

@@ -93,7 +93,7 @@ def hook(thread, arguments):
 
 
 @lru_cache(1024)
-def kernel_address(kernel: Callable, arguments: str):
+def kernel_address(kernel: Callable, arguments: str, thread: bool = False):
     """A kernel of a generated module with an address, as hooks have one.
 
     Parameters
@@ -101,17 +101,19 @@ def kernel_address(kernel: Callable, arguments: str):
     kernel : callable
     arguments : str
         The type of its arguments as one tuple, as `asemd.kernels.packed.text_of_type` writes it.
+    thread : bool
+        Its first argument is the `Thread`, which is not one of them.
     """
     if packed.WITHOUT_COMPILER:
-        return lambda th, *values: kernel(*values)
+        return kernel if thread else lambda th, *values: kernel(*values)
     function = kernel.py_func
     b = Builder(f"{function.__name__} by address")
     b.line("from importlib import import_module")
     b.line("from numba import types")
-    b.line("from asemd.kernels.packed import entry, reader")
+    b.line("from asemd.kernels.packed import entry, read_thread, reader")
     b.line(f"from {function.__module__} import {function.__name__} as kernel")
     b.line(f"read = reader({arguments})")
-    b.text("@entry()\ndef call(thread, arguments):\n    kernel(*read(arguments))", jit=False)
+    b.text(f"@entry()\ndef call(thread, arguments):\n    kernel({'read_thread(thread), ' * thread}*read(arguments))", jit=False)
     return b.build().call.address
 
 

@@ -20,9 +20,14 @@ ROWS = (608, 1120, 2144, 4192, 8288, 16480, 32864)
 def row_length(neighbours: int) -> int:
     """Buffer row for clusters with that many neighbours; not a power of two, to spare the cache's sets."""
     for r in ROWS:
-        if neighbours + 2 * pair_cluster.CLUSTER + 16 <= r:
+        if neighbours <= most_neighbours(r):
             return r
     raise ValueError(f"{neighbours} neighbours per cluster exceed the largest buffer")
+
+
+def most_neighbours(row: int) -> int:
+    """How many neighbours of a cluster a buffer row holds."""
+    return row - 2 * pair_cluster.CLUSTER - 16
 
 
 def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
@@ -315,7 +320,9 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = 
     each atom's share of energy and virial."""
     b = Builder(f"pair {style.name}: rows of atoms")
     b.line("real = np.float64")
-    for name, value in dict(ENERGY=energy, CHARGED=style.charged, CHECK=any(part.arrays for part in style.parts)).items():
+    b.line("place = np.uint64")
+    for name, value in dict(ROOM=pair_list.ROOM, AT_ONCE=pair_list.AT_ONCE,
+                            ENERGY=energy, CHARGED=style.charged, CHECK=any(part.arrays for part in style.parts)).items():
         b.constant(name, value)
     names = _paste_style(b, style.parts, False, False)
     where = [f"p[{sum(uniform[:k])}]" if u else f"rows[{k}, ti, tj]" for k, u in enumerate(uniform)]
@@ -345,8 +352,7 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = 
         b.function(pair_shares.row_shares, fast=True)
         module = b.build()
         return module.row_shares, module
-    for f in (pair_sums.eight, pair_sums.add):
+    for f in (pair_sums.eight, pair_sums.add, pair_list.pairs_at_once, pair_list.row_forces):
         b.function(f, fast=True)
-    b.function(pair_list.row_forces, fast=True)
     module = b.build()
     return module.row_forces, module

@@ -205,13 +205,15 @@ def coefficients(c, full, rows, t, types, held, filled, other):
     return k * NROWS * ROW, filled + 1
 
 
-def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, c0, c1, p, rows, far_,
+def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, clusters, p, rows, far_,
                    qqr2e, b, c, held, types, saved, near, push, acc, hide, skin, moved, farthest, whole):
-    """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl, coul, xx yy zz xy xz yz).
+    """Forces of `clusters (2,)`, from the first one to before the second, added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl,
+    coul, xx yy zz xy xz yz).
 
     `whole` is for PRUNED: what the list is made of, see `asemd.kernels.prune`. The four arguments before are for OUTDATED: the mask of the
     entries, squared displacements of the slots since the list was built, and `farthest (1,)`, the largest of them.
     """
+    c0, c1 = clusters[0], clusters[1]
     far = real(far_)
     late = False
     ca = cb = 0

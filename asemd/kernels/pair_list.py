@@ -15,6 +15,8 @@ import numpy as np
 from asemd.kernels.pair_sums import add, eight, halve
 
 ENERGY = PER_ATOM = WANTED = CHARGED = CHECK = FACTOR = SIZED = False
+ROOM, AT_ONCE = 264, 64
+place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
 pair_energy_one = furthest = pair_of = None
 
 
@@ -70,54 +72,71 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
             halve(atom_energy, atom_virial, i, j, ev + ec, dx, dy, dz, gx, gy, gz)
 
 
-def row_forces(x, f, q, type_of, start, neighbors, shifts, lo, hi, p, rows, arrays, qqr2e, acc, bad):
-    """Slots lo..hi-1 against the atoms of their rows (entries: slot + shift code << 26), one pair at a time: sparse systems, tables.
+def row_forces(x, f, q, type_of, start, owners, neighbors, shifts, slots, p, rows, arrays, qqr2e, acc, bad, b, who):
+    """`slots (2,)`, from the first one to before the second, against the atoms of their rows (entries: slot + shift code << 26; `owners`
+    says whose row each is in): sparse systems, tables.
 
+    Which pairs are in reach is hard for a processor to guess, and so is how long a row is: differences of all pairs of all rows are written
+    to the work space ``b (7 * ROOM,)``, their slots to ``who (2, ROOM)``, and the place moves on for those in reach. When it is full,
+    forces follow, for all at once.
     `bad (4,)` if CHECK: 1, the slots of the first pair whose energy or force is not finite as i + j << 26, its distance.
     """
-    for i in range(lo, hi):
-        xi = x[0, i]
-        yi = x[1, i]
-        zi = x[2, i]
-        qi = qqr2e * q[i] if CHARGED else 0.0
-        ti = type_of[i]
-        fx, fy, fz = 0.0, 0.0, 0.0
-        for m in range(start[i], start[i + 1]):
-            entry = neighbors[np.uint64(m)]
+    n = 0
+    end = np.int64(start[slots[1]])
+    for first in range(start[slots[0]], end, AT_ONCE):
+        if n > ROOM - AT_ONCE:
+            pairs_at_once(n, f, q, type_of, p, rows, arrays, qqr2e, acc, bad, b, who)
+            n = 0
+        for m in range(first, min(end, first + AT_ONCE)):
+            i = np.uint32(owners[place(m)])
+            entry = neighbors[place(m)]
             j = np.uint32(entry & np.int32(0x3FFFFFF))
             c = np.uint32(entry >> 26)
-            dx = xi - x[0, j]
-            dy = yi - x[1, j]
-            dz = zi - x[2, j]
-            if c != 13:
-                dx -= shifts[c, 0]
-                dy -= shifts[c, 1]
-                dz -= shifts[c, 2]
+            dx = x[0, i] - x[0, j] - shifts[c, 0]
+            dy = x[1, i] - x[1, j] - shifts[c, 1]
+            dz = x[2, i] - x[2, j] - shifts[c, 2]
             r2 = dx * dx + dy * dy + dz * dz
-            if r2 < furthest(p, rows, ti, type_of[j]):
-                qq = qi * q[j] if CHARGED else 0.0
-                fp, ev, ec = pair_of(r2, qq, p, rows, arrays, ti, type_of[j])
-                if CHECK:
-                    if not abs(fp) < np.inf or (ENERGY and not abs(ev + ec) < np.inf):
-                        if bad[0] == 0.0:
-                            bad[0] = 1.0
-                            bad[1] = i + np.int64(j) * 2.0**26
-                            bad[2] = np.sqrt(r2)
-                        continue
-                gx = dx * fp
-                gy = dy * fp
-                gz = dz * fp
-                fx += gx
-                fy += gy
-                fz += gz
-                f[0, j] -= gx
-                f[1, j] -= gy
-                f[2, j] -= gz
-                if ENERGY:
-                    add(acc, eight(ev, ec, dx, dy, dz, gx, gy, gz))
-        f[0, i] += fx
-        f[1, i] += fy
-        f[2, i] += fz
+            b[place(n)] = dx
+            b[place(n + ROOM)] = dy
+            b[place(n + 2 * ROOM)] = dz
+            b[place(n + 3 * ROOM)] = r2
+            who[0, place(n)] = i
+            who[1, place(n)] = j
+            n += r2 < furthest(p, rows, type_of[i], type_of[j])
+    pairs_at_once(n, f, q, type_of, p, rows, arrays, qqr2e, acc, bad, b, who)
+
+
+def pairs_at_once(n, f, q, type_of, p, rows, arrays, qqr2e, acc, bad, b, who):
+    """The first `n` pairs of the work space of `row_forces`."""
+    for k in range(n):
+        i, j = np.uint32(who[0, place(k)]), np.uint32(who[1, place(k)])
+        qq = qqr2e * q[i] * q[j] if CHARGED else 0.0
+        fp, ev, ec = pair_of(b[place(k + 3 * ROOM)], qq, p, rows, arrays, type_of[i], type_of[j])
+        b[place(k + 4 * ROOM)] = fp
+        if ENERGY:
+            b[place(k + 5 * ROOM)] = ev
+            b[place(k + 6 * ROOM)] = ec
+    for k in range(n):
+        i, j = np.uint32(who[0, place(k)]), np.uint32(who[1, place(k)])
+        dx, dy, dz, fp = b[place(k)], b[place(k + ROOM)], b[place(k + 2 * ROOM)], b[place(k + 4 * ROOM)]
+        if CHECK:
+            if not abs(fp) < np.inf or (ENERGY and not abs(b[place(k + 5 * ROOM)] + b[place(k + 6 * ROOM)]) < np.inf):
+                if bad[0] == 0.0:
+                    bad[0] = 1.0
+                    bad[1] = np.int64(i) + np.int64(j) * 2.0**26
+                    bad[2] = np.sqrt(b[place(k + 3 * ROOM)])
+                continue
+        gx = dx * fp
+        gy = dy * fp
+        gz = dz * fp
+        f[0, i] += gx
+        f[1, i] += gy
+        f[2, i] += gz
+        f[0, j] -= gx
+        f[1, j] -= gy
+        f[2, j] -= gz
+        if ENERGY:
+            add(acc, eight(b[place(k + 5 * ROOM)], b[place(k + 6 * ROOM)], dx, dy, dz, gx, gy, gz))
 
 
 def ghosts(x, ns, origin, inverse, widths, shifts, reach, out_slot, out_image, out_x):

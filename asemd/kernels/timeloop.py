@@ -1,9 +1,9 @@
 """The compiled time loop. Terms and fixes are called by address, so that it is compiled once for all runs.
 
-The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built by Python, loop entered again), pre_force,
-forces, post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after forces are
-complete. Where one fix alone integrates and nothing happens between its second half of a step and its first half of the next, its hook
-`final_initial` does both in one pass over the atoms.
+The order of a step is LAMMPS's: initial_integrate, post_integrate, list check, (list built: here, or by Python and the loop is entered
+again), pre_force, forces, post_force, final_integrate, end_of_step. All threads run the same text; barriers stand after positions and after
+forces are complete. Where one fix alone integrates and nothing happens between its second half of a step and its first half of the next,
+its hook `final_initial` does both in one pass over the atoms.
 """
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from asemd.kernels.clock import now
 from asemd.kernels.generate import FAST, Builder, plain_source
 from asemd.kernels.hooks import Calls, kernel_address, shared
 from asemd.kernels.packed import act, call
+from asemd.kernels.relist import FINE, NS, WANTED
 from asemd.kernels.state import Thread
 from asemd.kernels.threads import barrier
 
@@ -28,10 +29,19 @@ COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "f
 HALVES = ("initial_integrate", "final_integrate", "final_initial")      # strict: a run has the same digits wherever it is cut into pieces
 KINDS = (*COMPILED, "final_initial")
 # places in `control` (int64) and `numbers` (float64)
-STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL, OUTDATED, BOX_MOVES, FORCED = range(15)
-DT, TRIGGER, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME, KSPACE_TIME = range(7)
+STEP, LAST, RESUME, AGO, EVERY, DELAY, CHECK, BEGIN, END, DANGEROUS, ENERGY, VIRIAL, OUTDATED, BOX_MOVES, FORCED, BUILDS, BUILT = range(17)
+CONTROLS, NUMBERS = 17, 10
+DT, TRIGGER, FARTHEST, UNTIL, PAIR_TIME, BOND_TIME, MODIFY_TIME, COMM_TIME, KSPACE_TIME, NEIGH_TIME = range(10)
+TIMES = {"Pair": PAIR_TIME, "Bond": BOND_TIME, "Kspace": KSPACE_TIME, "Modify": MODIFY_TIME, "Comm": COMM_TIME, "Neigh": NEIGH_TIME}
 # places in a row of `terms`: addresses of the kernels, of their arguments, and the place of the time spent
 PLAIN, WITH_ENERGY, WITH_VIRIAL, ARGUMENTS, TIME = range(5)
+
+
+def take_timings(numbers: np.ndarray, timings: dict[str, float]) -> None:
+    """Add the seconds that the loop has counted to `timings`, and count anew."""
+    for name, at in TIMES.items():
+        timings[name] += float(numbers[at])
+        numbers[at] = 0.0
 
 
 def hooks_of(fixes: Sequence, kinds: Sequence[dict[str, bool]]) -> Calls:
@@ -97,6 +107,7 @@ def module() -> ModuleType:
         if name.isupper() and isinstance(value, int):
             b.constant(name, value)
     b.text(plain_source(compute), f"fastmath={FAST}")
+    b.text(plain_source(listed))
     b.text(plain_source(run), f"fastmath={FAST}")
     return b.build()
 
@@ -112,8 +123,35 @@ def compute(kind, th, terms, numbers, t0):
     return t0
 
 
-def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, calls, starts):
-    """Steps up to ``control[LAST]``; returns FINISHED, REBUILD (a list is due) or BAD (`bad` says which item)."""
+def listed(th, lists, live, control, numbers, odd, t0):
+    """Build a list, unless `odd` or something else is a case for Python; returns whether it is there. All threads call it."""
+    if lists.shape[0] == 0 or odd:
+        return False
+    if th.tid == 0:
+        live[WANTED] = t0 <= numbers[UNTIL]
+    barrier(th)
+    if live[WANTED] == 0:
+        return False
+    call(lists[0, 0], th, lists[0, 1])
+    if th.tid == 0:
+        for k in range(1, lists.shape[0]):
+            if live[FINE] != 0:
+                call(lists[k, 0], th, lists[k, 1])
+        control[BUILDS] += live[FINE]
+        control[BUILT] = th.step
+        numbers[NEIGH_TIME] += now() - t0
+    barrier(th)
+    return live[FINE] != 0
+
+
+def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, calls, starts, live,
+        lists):
+    """Steps up to ``control[LAST]``; returns FINISHED, REBUILD (a list is due that Python makes) or BAD (`bad` says which item).
+
+    `lists` are the calls that build a list, none if only Python can, and `live` what they share, see `asemd.kernels.relist`. They are for
+    ordinary builds only: not where an atom has moved so far (``numbers[FARTHEST]``) or so much time has passed (``numbers[UNTIL]``) that
+    the watchdog wants to look.
+    """
     step = control[STEP]
     last = control[LAST]
     resume = control[RESUME]
@@ -125,6 +163,7 @@ def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync,
     end = control[END]
     dt = numbers[DT]
     trigger = numbers[TRIGGER]
+    ns = live[NS]
     lo = ns * tid // nth
     hi = ns * (tid + 1) // nth
     f = buffers[tid]
@@ -134,6 +173,8 @@ def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync,
     ready = False          # whether the first half of the next step is done
     t0 = now()
     th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+    if tid == 0:
+        numbers[UNTIL] += t0
     barrier(th)
     while resume != 0 or step < last:
         if resume == 0:
@@ -179,7 +220,19 @@ def run(tid, nth, ns, x, virial, box, held, moved, farthest, buffers, bad, sync,
                     control[STEP] = step
                     if need and check != 0 and ago == max(every, delay):
                         control[DANGEROUS] += 1
-                return REBUILD
+                if not listed(th, lists, live, control, numbers, forced or farthest[tid] > numbers[FARTHEST], t0):
+                    return REBUILD
+                ago = 0
+                farthest[tid] = 0.0
+                ns = live[NS]
+                lo = ns * tid // nth
+                hi = ns * (tid + 1) // nth
+                x0, x1, x2 = x[0, lo:hi], x[1, lo:hi], x[2, lo:hi]
+                held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
+                away = moved[lo:hi]
+                th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+                if tid == 0:
+                    t0 = now()
         else:
             farthest[tid] = 0.0
         resume = 0

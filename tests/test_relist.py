@@ -1,0 +1,132 @@
+"""Lists that the time loop builds by itself are those that Python builds."""
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+from test_loop import CHAIN, PRISM, chains, crystal, loop_of
+
+from asemd import relist
+from asemd.box import Box
+from asemd.errors import SimulationError
+from asemd.fix.langevin import Langevin
+from asemd.fix.nve import NVE
+from asemd.forcefield import Interactions
+from asemd.system import System
+
+pytestmark = pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
+FULL = {"lj/cut 2.5": {(1, 1): (1.0, 1.0)}}
+WEIGHTS = (0.0, 0.5, 1.0)
+SCENES = {
+    "atoms": (crystal, {}, {}),
+    "tilted": (lambda: crystal(6, PRISM), {}, {}),
+    "outdated": (crystal, {}, dict(every=20, check=False)),
+    "mixed precision": (crystal, {}, dict(precision="mixed")),
+    "chains": (chains, CHAIN, {}),
+    "chains, partners left out": (chains, dict(CHAIN, pair=FULL), dict(skin=0.2)),
+    "chains, partners with a weight": (chains, dict(CHAIN, pair=FULL, special_bonds=WEIGHTS), dict(skin=0.2)),
+}
+
+
+def moved(name: str, threads: int):
+    """A loop after some steps of a scene, and how many of its lists Python made."""
+    make, interactions, options = SCENES[name]
+    forces = Interactions.build(**interactions) if interactions else None
+    loop = loop_of(make(), [NVE(), Langevin("all", 1.0, 2.0, 77)], interactions=forces, threads=threads, **options)
+    loop.watchdog.on = False
+    loop.setup()
+    count, rebuild = [0], loop.engine.rebuild
+
+    def counted():
+        count[0] += 1
+        rebuild()
+    loop.engine.rebuild = counted
+    for steps in (70, 1, 59):
+        loop.advance(steps)
+    return loop, count[0]
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("name", SCENES)
+def test_motion_has_the_same_digits(name, threads, monkeypatch):
+    loop, made = moved(name, threads)
+    monkeypatch.setattr(relist.Relist, "table", lambda *_: relist.NO_CALLS)
+    other, all_made = moved(name, threads)
+    assert loop.engine.builds == other.engine.builds == all_made > 4
+    assert made <= 1        # where arrays must grow
+    for field in ("x", "v", "f", "image"):
+        np.testing.assert_array_equal(getattr(loop.system, field), getattr(other.system, field))
+    assert loop.engine.pairs == other.engine.pairs
+    assert loop.engine.timings["Neigh"] > 0.0
+
+
+def test_arrays_that_are_too_small_grow():
+    """Atoms that rush into a plane: rows get longer, and Python makes some of the lists."""
+    n, edge = 1500, 16.0
+    x = np.random.default_rng(1).uniform(0, edge, (n, 3))
+    v = np.zeros((n, 3))
+    v[:, 0] = -0.9 * (x[:, 0] - edge / 2)
+
+    def system():
+        return System(box=Box(np.zeros(3), np.eye(3) * edge), x=x.copy(), type=1, v=v.copy(), units="lj",
+                      mass=np.array([np.nan, 1.0]))
+    loop = loop_of(system(), interactions=Interactions.build(pair={"soft 6.0": {(1, 1): (1e-9,)}}), dt=0.01)
+    loop.watchdog.on = False
+    loop.setup()
+    before, made, rebuild = loop.engine.terms[0].row, [0], loop.engine.rebuild
+
+    def counted():
+        made[0] += 1
+        rebuild()
+    loop.engine.rebuild = counted
+    loop.advance(70)
+    assert loop.engine.terms[0].row > before
+    assert 0 < made[0] < loop.engine.builds
+
+
+def test_fixes_that_have_to_do_with_lists_keep_them_in_python():
+    class Looks(NVE):
+        seen = 0
+
+        def post_neighbor(self, loop):
+            self.seen += 1
+    fix = Looks()
+    loop = loop_of(crystal(), [fix])
+    loop.setup()
+    fix.seen = 0
+    loop.advance(100)
+    assert fix.seen == loop.engine.builds > 4
+
+
+def test_the_watchdog_looks_in_between():
+    """Its frames do not grow old where lists are built without it."""
+    loop = loop_of(crystal())
+    loop.setup()
+    loop.advance(30)
+    assert loop.watchdog.patience()[0] < np.inf
+    loop.watchdog._next = 0.0       # its time has come
+    steps = [f.step for f in loop.watchdog.frames]
+    loop.advance(60)
+    assert max(f.step for f in loop.watchdog.frames) > max(steps)
+
+
+def test_a_term_whose_rebuild_does_more_is_for_python():
+    class Term:
+        def rebuild(self, engine): ...
+
+        def relisted(self, engine): ...
+
+    class More(Term):
+        def rebuild(self, engine): ...
+    assert relist.follows(Term()) and not relist.follows(More()) and not relist.follows(object())
+
+
+def test_a_position_that_is_not_a_number_is_found():
+    loop = loop_of(crystal())
+    loop.watchdog.on = False
+    loop.setup()
+    loop.advance(10)
+    loop.state.x[1, 7] = np.nan
+    with pytest.raises(SimulationError, match="not finite|NaN"):
+        loop.advance(50)
