@@ -1,7 +1,7 @@
 """A list build inside the compiled time loop: what `asemd.engine.Engine.rebuild` does, by all threads of the loop together.
 
 Arrays do not grow here and no error is raised: where something is out of the ordinary, `live` says so and Python makes the list
-(`docs/decisions/0014-lists-built-in-the-loop.md`). EXCLUDE and ROWS are constants of the generated module: special pairs are left out of
+(`docs/decisions/0015-lists-built-in-the-loop.md`). EXCLUDE and ROWS are constants of the generated module: special pairs are left out of
 the cluster list; rows of single atoms are made of it.
 """
 from __future__ import annotations
