@@ -301,8 +301,8 @@ class ClusterList:
         `partners` and `rules` are what `asemd.exclusions.Exclusions` says, as arrays.
         """
         rows.edges[:] = CLUSTER * self.bounds
-        if rows.start.shape[1] < ns + 1:
-            rows.start = np.zeros((self.threads, ns + 1 + ns // 8), np.int32)
+        if rows.start.shape[1] <= state.x.shape[1]:      # lists that the time loop builds may have more slots than this one
+            rows.start = np.zeros((self.threads, state.x.shape[1] + 1), np.int32)
         results = [0] * self.threads
 
         def work(t):

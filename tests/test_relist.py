@@ -130,3 +130,10 @@ def test_a_position_that_is_not_a_number_is_found():
     loop.state.x[1, 7] = np.nan
     with pytest.raises(SimulationError, match="not finite|NaN"):
         loop.advance(50)
+
+
+def test_rows_have_room_for_all_slots():
+    """Lists that follow may have more slots than the first one: atoms that leave a column make another one longer."""
+    loop, _ = moved("chains", 1)
+    engine = loop.engine
+    assert engine.rows and all(rows.start.shape[1] > engine.state.x.shape[1] >= engine.list.capacity for rows in engine.rows.values())
