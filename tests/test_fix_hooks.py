@@ -2,7 +2,10 @@
 from __future__ import annotations
 
 import importlib
+import os
 import pkgutil
+import subprocess
+import sys
 from typing import NamedTuple
 
 import numba
@@ -95,3 +98,17 @@ def test_state_and_numbers_are_as_packed():
         packed.text_of_type(numba.typeof("x"))
     with pytest.raises(ValueError, match="contiguous"):
         packed.pack((np.zeros((3, 3))[:, :2],), [])
+
+
+@pytest.mark.parametrize("fix", ["wall/lepton xlo -1.0 k*(r-rc)^2;k=2 2.5", "rigid/nvt molecule temp 1.0 1.0 0.1"])
+def test_without_compiler_hooks_find_what_they_use(fix):
+    """What stands in `uses` need not be a name of the module of the hook."""
+    lines = ["units lj", "atom_style molecular", "boundary f p p", "lattice sc 0.5", "region r block 0 3 0 3 0 3", "create_box 1 r",
+             "create_atoms 1 box", "set type 1 mol 1", "mass 1 1", "pair_style zero 1.5", "pair_coeff * *", "velocity all create 1.0 7",
+             f"fix 1 all {fix}", *(["fix 2 all nve"] if "wall" in fix else []), "run 2"]
+    code = "import sys; from asemd.lammps import Lammps; lmp = Lammps(cmdargs=['-screen', 'none', '-log', 'none']); " \
+           f"lmp.commands_list({lines!r}); print(sum(abs(v) for v in lmp.gather_atoms('x', 1, 3)))"
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True,
+                          env={**os.environ, "NUMBA_DISABLE_JIT": "1"})
+    assert done.returncode == 0, done.stderr[-1000:]
+    assert 0.0 < float(done.stdout) < 1000.0
