@@ -39,6 +39,7 @@ CASES = [
     ("lepton/sphere 2.5", "shift no", ("1 1 '4*eps*((sig/r)^12-(sig/r)^6);eps=1;sig=radi+radj'",
                                        "1 2 'k*(radi+radj-r)^2*exp(-radi*radj);k=3' 2.2",
                                        "2 2 '4*eps*((sig/r)^12-(sig/r)^6);eps=2;sig=2*sqrt(radi*radj)'"), True),
+    ("lepton/sphere 2.5", "shift no", ("* * '4*eps*((sig/r)^12-(sig/r)^6);eps=1;sig=2*sqrt(radi*radj)'",), True),      # its own example
 ]
 WHEEL = """
 answer = []

@@ -40,8 +40,9 @@ class SphereExpression(PairStyle):
 
     def __init__(self, name: str, **options):
         super().__init__(name, (), settings="cut", coeff="expression [cut]", units={"expression": "word"}, **options)
+        self.sized = True
         twin = self.bind({}, {(1, 1): self.parse_coeff(self.example.split(), {})})
-        self.parts, self.function, self.sized = twin.parts, twin.function, True
+        self.parts, self.function = twin.parts, twin.function
 
     def parse_coeff(self, words, settings):
         if words and words[0][0] in "'\"":      # blanks inside the quotation marks of a data file
