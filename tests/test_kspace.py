@@ -42,6 +42,7 @@ CASES = {
     "weights of special pairs": case(["kspace_style pppm 1e-4", "special_bonds lj 0 0.3 1 coul 0.2 0.5 0.9"]),
     "pppm/stagger": case(["kspace_style pppm/stagger 1e-4", "kspace_modify gewald 0.4 mesh 8 9 10"], *SHARES,
                          values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
+    "pppm/stagger, a coarse mesh of its own": case(["kspace_style pppm/stagger 1e-2"]),
     "pppm/stagger ad": case(["kspace_style pppm/stagger 1e-4", "kspace_modify gewald 0.4 mesh 8 9 10 diff ad order 4"]),
     "ewald": case(["kspace_style ewald 1e-4"]),
     "ewald triclinic, shares": case(["kspace_style ewald 1e-5"], *SHARES, box=TILT, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),

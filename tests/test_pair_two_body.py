@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from pathlib import Path
 
@@ -138,12 +139,21 @@ def test_second_derivatives(name):
         row, constant = row + 2 + len(part.rows), constant + len(part.constants)
         given = [*[-302.0] * part.charged, *[0.5, 0.5] * part.sized, *values, *numbers]
         d2 = getattr(part.function, "d2", None)
-        for r in np.linspace(0.37, 0.995, 23) * cut2**0.5 if d2 and cut2 and not part.charged else ():
+        for r in np.linspace(0.37, 0.995, 23) * cut2**0.5 if d2 and cut2 and not (part.charged and part.long) else ():
             q = float(r * r if part.coordinate == "r2" else r)
             slopes = [part.function(q + k * 1e-4 * q, *given)[1] for k in (-2, -1, 1, 2)]
             want = (slopes[0] - slopes[3] + 8.0 * (slopes[2] - slopes[1])) / (12e-4 * q)
+            if not math.isfinite(want):          # outside the domain
+                continue
             rough = 3e-11 * max(map(abs, slopes)) / (1e-4 * q)
             assert d2(q, *given) == pytest.approx(want, rel=1e-6, abs=rough), (part.function.__name__, r)
+
+
+def test_every_two_body_style_has_second_derivatives():
+    """Left out: forces that depend on velocities, on the radii of atoms, and tables."""
+    without = [s.name for s in map(lambda n: style.find("pair", n), style.names("pair")) if s.parts and not s.many
+               and not all(getattr(p.function, "d2", None) for p in s.parts) and not (s.stirred or s.sized or s.name == "table")]
+    assert not without and len(CURVED) > 90
 
 
 SITES = """units lj

@@ -18,12 +18,15 @@ WIDE = 8
 
 
 def power(u, n):
-    """(sin u / u)^n."""
-    if u == 0.0:
-        return 1.0
-    s, p = math.sin(u) / u, 1.0
-    for _ in range(n):
-        p *= s
+    """(sin u / u)^n, by squares, so that it is rounded as in LAMMPS."""
+    p = 1.0
+    if u != 0.0:
+        s = math.sin(u) / u
+        while n > 0:
+            if n % 2 == 1:
+                p *= s
+            s *= s
+            n //= 2
     return p
 
 
@@ -32,27 +35,32 @@ def one_direction(n, length, g, images, out):
     for i in range(n):
         for m in range(2 * images + 1):
             q = 2.0 * math.pi / length * (folded(i, n) + n * (m - images))
-            out[0, i, m], out[1, i, m], out[2, i, m] = q, math.exp(-0.25 * (q / g) ** 2), power(0.5 * q * length / n, 2 * ORDER)
+            r = q / g
+            out[0, i, m], out[1, i, m], out[2, i, m] = q, math.exp(-0.25 * (r * r)), power(0.5 * q * length / n, 2 * ORDER)
 
 
 def quality(numbers, lengths, g):
-    """The sum over the mesh that the square of the error of forces is proportional to, for the best influence function."""
+    """The sum over the mesh that the square of the error of forces is proportional to, for the best influence function.
+
+    Differences of nearly equal numbers: it is computed in LAMMPS's order, without shortcuts, because the search for the splitting parameter
+    takes differences of it and would end elsewhere.
+    """
     a, b, c = np.empty((3, numbers[0], 5)), np.empty((3, numbers[1], 5)), np.empty((3, numbers[2], 5))
     one_direction(numbers[0], lengths[0], g, 2, a)
     one_direction(numbers[1], lengths[1], g, 2, b)
     one_direction(numbers[2], lengths[2], g, 2, c)
     total = 0.0
     four_pi = 4.0 * math.pi
-    for i in range(numbers[0]):
+    for k in range(numbers[2]):
         for j in range(numbers[1]):
-            for k in range(numbers[2]):
+            for i in range(numbers[0]):
                 if i == 0 and j == 0 and k == 0:
                     continue
                 s1, s2, s3, s4 = 0.0, 0.0, 0.0, 0.0
                 for m0 in range(5):
                     for m1 in range(5):
                         for m2 in range(5):
-                            qq = a[0, i, m0] ** 2 + b[0, j, m1] ** 2 + c[0, k, m2] ** 2
+                            qq = a[0, i, m0] * a[0, i, m0] + b[0, j, m1] * b[0, j, m1] + c[0, k, m2] * c[0, k, m2]
                             u1 = a[1, i, m0] * b[1, j, m1] * c[1, k, m2]
                             u2 = a[2, i, m0] * b[2, j, m1] * c[2, k, m2]
                             s1 += u1 * u1 / qq * four_pi * four_pi
@@ -153,5 +161,5 @@ def quality_of(order: int):
     b = Builder(f"error of differentiated weights, order {order}")
     b.constant("ORDER", order)
     for f in (folded, power, one_direction, quality):
-        b.function(f, fast=True)
+        b.function(f)
     return b.build().quality

@@ -51,7 +51,7 @@ def aliases(order: int) -> np.ndarray:
         for k in range(m, 0, -1):
             b[k] = 4.0 * (b[k] * (k - m) * (k - m - 0.5) - b[k - 1] * (k - m - 1) ** 2)
         b[0] = 4.0 * b[0] * m * (m + 0.5)
-    return b / math.factorial(2 * order - 1)
+    return b * (1.0 / math.factorial(2 * order - 1))
 
 
 class PPPM(KSpace):
@@ -129,7 +129,8 @@ class PPPM(KSpace):
     def real_error(self) -> float:
         """Estimated error of forces that the pair part makes; without the empty volume of a slab."""
         volume = float(self.inner.prod())
-        return 2.0 * self.q2 * math.exp(-(self.g_ewald * self.cutoff) ** 2) / math.sqrt(self.n * self.cutoff * volume)
+        g, cut = self.g_ewald, self.cutoff
+        return 2.0 * self.q2 * math.exp(-g * g * cut * cut) / math.sqrt(self.n * cut * volume)
 
     def balance(self) -> None:
         """The splitting parameter for which pair part and mesh make the same error.

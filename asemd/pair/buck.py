@@ -21,8 +21,12 @@ def check(coeff, settings):
         raise InputError(f"pair_coeff buck: rho must be > 0, got {coeff['rho']:g}")
 
 
+def buck_d2(r, A, rho, C):
+    return A / (rho * rho) * math.exp(-r / rho) - 42.0 * C / r**8
+
+
 @pair("buck", settings="cut", coeff="A rho C [cut]", tail=tail, check=check, units={"C": "energy*distance^6"}, settings_example="2.5",
-      example="100.0 0.3 20.0 2.4", see="LAMMPS manual, pair_style buck")
+      example="100.0 0.3 20.0 2.4", see="LAMMPS manual, pair_style buck", d2=buck_d2)
 def buck(r, A: "energy", rho: "distance", C: "energy*distance^6"):
     rinv = 1.0 / r
     r2inv = rinv * rinv

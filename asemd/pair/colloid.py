@@ -60,6 +60,40 @@ def solvated(r2, A: "energy", sigma: "distance", radius: "distance"):
     return (front * (1.0 - p * x) if apart else math.inf), (front * (3.0 * w - x * (slope + 9.0 * p * w)) if apart else math.inf)
 
 
+def spheres_d2(r, A, sigma, a1, a2):
+    s, d, k = a1 + a2, a1 - a2, a1 * a2
+    if r <= s:
+        return math.inf
+    squares, p, q = 6.0 * (a1 * a1 + a2 * a2), (r - s) * (r + s), (r - d) * (r + d)
+    gap = 4.0 * k / (p * q)
+    total = change = bend = 0.0
+    for m in range(4):      # the four powers of the sum: distance, sign, and the polynomial with its slope
+        t = -s if m == 0 else s if m == 1 else d if m == 2 else -d
+        sign = 1.0 if m < 2 else -1.0
+        u = 1.0 / (r + t)
+        n, slope = r * (r + 7.0 * t) + squares + sign * 42.0 * k, 2.0 * r + 7.0 * t
+        u7 = sign * u**7
+        total += n * u7
+        change += (slope - 7.0 * n * u) * u7
+        bend += (2.0 - 14.0 * slope * u + 56.0 * n * u * u) * u7
+    attraction = 0.6666666666666666 * A * k * gap * gap * (1.0 - 4.0 * r * r * (1.0 / p + 1.0 / q))
+    return attraction + A * sigma**6 / (37800.0 * r) * (bend - 2.0 * change / r + 2.0 * total / (r * r))
+
+
+def solvated_d2(r2, A, sigma, radius):
+    a2 = radius * radius
+    if r2 <= a2:
+        return math.inf
+    w = 1.0 / (a2 - r2)
+    front = 0.2222222222222222 * A * (radius * sigma) ** 3 * w**3
+    p = a2 * a2 * (5.0 * a2 + 45.0 * r2) + r2 * r2 * (63.0 * a2 + 15.0 * r2)
+    slope, bend = 45.0 * a2 * a2 + r2 * (126.0 * a2 + 45.0 * r2), 126.0 * a2 + 90.0 * r2
+    return front * (12.0 * w * w - 0.06666666666666667 * (sigma * w) ** 6 * (bend + 18.0 * w * slope + 90.0 * w * w * p))
+
+
+spheres.d2, solvated.d2 = spheres_d2, solvated_d2
+
+
 class ColloidPair(PairStyle):
     """Says which of the three formulas a pair of types has."""
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from asemd.pair.coul_long import EWALD, long_range
+from asemd.pair.coul_long import EWALD, coul_long_d2, long_range
 from asemd.pairstyle import pair_sum
 
 
@@ -37,6 +37,14 @@ def coul_slater_long(r2, qq, lamda: "distance", g_ewald):
     return e * (tail - (1.0 + y) * cloud), -0.5 * e * (tail + 1.12837917 * x * gauss - (1.0 + 2.0 * y * (1.0 + y)) * cloud) * r2inv
 
 
+def coul_slater_long_d2(r2, qq, lamda, g_ewald):
+    r = math.sqrt(r2)
+    y = r / lamda
+    cloud = math.exp(-2.0 * y) * (3.0 + y * (6.0 + y * (6.0 + 4.0 * y)))
+    return coul_long_d2(r2, qq, g_ewald) - 0.25 * qq * cloud / (r2 * r2 * r)
+
+
 coul_slater_long.special = special
+coul_slater_long.d2 = coul_slater_long_d2
 pair_sum("coul/slater/long", (coul_slater_long, "cut"), scales=True, settings="lamda cut", settings_example="1.5 10.0",
          see="LAMMPS manual, pair_style coul/slater/long")

@@ -28,7 +28,7 @@ class Concentration(Embedded):
 
     def __init__(self, name: str, sites: int, **options):
         super().__init__(name, forces=concentration_forces, helpers=(embedding, polynomial, mixed), shares=4, form={"polynomial": True},
-                         example="FeCr.cdeam Fe", see="Stukowski et al., Modell. Simul. Mater. Sci. Eng. 17, 075005 (2009)", **options)
+                         example="FeCr.cdeam Fe Cr", see="Stukowski et al., Modell. Simul. Mater. Sci. Eng. 17, 075005 (2009)", **options)
         self.sites = sites
 
     def read(self, file, elements, settings):

@@ -78,6 +78,24 @@ def coul_charmmfsh(r2, qq, cut_coul):
     return c * rest * rest, -0.5 * c * rest * (1.0 + r / cut_coul) / r2
 
 
+def lj_charmmfsw_d2(r2, epsilon, sigma, shift12, shift6, inner2, outer, factor12, factor6):
+    s6 = (sigma * sigma / r2) ** 3
+    if r2 <= inner2:
+        return 24.0 * epsilon * s6 * (7.0 * s6 - 2.0) / (r2 * r2)
+    far3, near3 = 1.0 / (outer * outer * outer), 1.0 / (r2 * math.sqrt(r2))
+    sigma6 = sigma**6
+    repulsion = 18.0 / r2**8 + 24.0 * (near3 - far3) * (near3 + far3) / r2**5
+    attraction = 4.5 / r2**5 + 7.5 * (near3 - far3) * near3 / (r2 * r2)
+    return 4.0 * epsilon * sigma6 * (factor12 * sigma6 * repulsion - factor6 * attraction)
+
+
+def coul_charmmfsh_d2(r2, qq, cut_coul):
+    return 0.25 * qq * (3.0 / r2 - 1.0 / (cut_coul * cut_coul)) / (r2 * math.sqrt(r2))
+
+
+lj_charmmfsw.d2, coul_charmmfsh.d2 = lj_charmmfsw_d2, coul_charmmfsh_d2
+
+
 class CharmmSwitchedPair(PairStyle):
     """Checks the switching distances, derives constants of the switches, and has tables of 1-4 pairs for both CHARMM dihedral styles."""
 

@@ -77,10 +77,22 @@ class RelResPair(PairStyle):
         return super().mixed(a, b, rule) | {n: mix_distance(rule, a[n], b[n]) for n in ENDS}
 
 
+def lj_relres_d2(r2, epsilonf, sigmaf, epsilonc, sigmac, rsi, rso, rci, rco, middle, end, lift, s0, s1, s2, s3, c0, c1, c2, c3):
+    r = math.sqrt(r2)
+    fine = r < rso
+    if r >= (rsi if fine else rci):
+        u = rso - r if fine else rco - r
+        a, b, c, k = (s0, s1, s2, s3) if fine else (c0, c1, c2, c3)
+        return 0.25 * (b + u * (2.0 * c + u * 3.0 * k) + (a + u * (b + u * (c + u * k))) / r) / r2
+    epsilon, sigma = (epsilonf, sigmaf) if fine else (epsilonc, sigmac)
+    u6 = (sigma * sigma / r2) ** 3
+    return 24.0 * epsilon * u6 * (7.0 * u6 - 2.0) / (r2 * r2)
+
+
 @pair("lj/relres", settings="rsi rso rci rco", coeff="epsilonf sigmaf epsilonc sigmac [rsi] [rso] [rci] [rco]", cut="rco", cls=RelResPair,
       derived=derived, rows="middle end lift s0 s1 s2 s3 c0 c1 c2 c3", units=dict.fromkeys(ENDS, "distance"),
       mix={"epsilonf": "sigmaf", "sigmaf": "distance", "epsilonc": "sigmac", "sigmac": "distance"}, settings_example="1.3 1.6 2.2 2.5",
-      example="1.0 1.1 0.3 1.2 1.2 1.5 2.1 2.4", see="LAMMPS manual, pair_style lj/relres")
+      example="1.0 1.1 0.3 1.2 1.2 1.5 2.1 2.4", see="LAMMPS manual, pair_style lj/relres", d2=lj_relres_d2)
 def lj_relres(r2, epsilonf: "energy", sigmaf: "distance", epsilonc: "energy", sigmac: "distance", rsi: "distance", rso: "distance",
               rci: "distance", rco: "distance", middle, end, lift, s0, s1, s2, s3, c0, c1, c2, c3):
     r2inv = 1.0 / r2

@@ -27,6 +27,14 @@ def lj_spica(r2, front: "energy", sigma: "distance", n, m):
     return e * (ratio - 1.0), -0.5 * e * (n * ratio - m) * r2inv
 
 
+def lj_spica_d2(r2, front, sigma, n, m):
+    s = sigma / math.sqrt(r2)
+    return 0.25 * front * (n * (n + 2.0) * math.pow(s, n) - m * (m + 2.0) * math.pow(s, m)) / (r2 * r2)
+
+
+lj_spica.d2 = lj_spica_d2
+
+
 class SpicaPair(PairStyle):
     """Turns the word for the exponents into numbers, and has tables of repulsive 1-3 pairs for angle_style spica."""
 

@@ -207,5 +207,5 @@ class Polymorphic(ManyBody):
                                                       cubics(data["spaced"]), cubics(data["bent"]), cubics(outer)))
 
 
-register(Polymorphic("polymorphic", site=polymorphic, helpers=(look,), rooms=11, converts=False, example="GaN_tersoff.poly Ga",
+register(Polymorphic("polymorphic", site=polymorphic, helpers=(look,), rooms=11, converts=False, example="GaN_tersoff.poly Ga N",
                      see="X. W. Zhou, M. E. Foster, R. E. Jones, P. Yang, H. Fan, F. P. Doty, J. Mater. Sci. Res. 4, 15 (2015)"))

@@ -10,8 +10,20 @@ import math
 from asemd.pairstyle import pair
 
 
+def soft_d2(r2, A, cut):
+    k = math.pi / cut
+    u = k * math.sqrt(r2)
+    if u < 0.5:      # (u cos u - sin u) / u^3 as a power series, where digits would cancel
+        w = u * u
+        bend = w * (1.0 / 45360.0 - w * (1.0 / 3991680.0 - w * (1.0 / 518918400.0 - w / 93405312000.0)))
+        bend = -1.0 / 3.0 + w * (1.0 / 30.0 - w * (1.0 / 840.0 - bend))
+    else:
+        bend = (u * math.cos(u) - math.sin(u)) / (u * u * u)
+    return -0.25 * A * k * k * k * k * bend
+
+
 @pair("soft", settings="cut", coeff="A [cut]", mix={"A": "geometric"}, settings_example="1.2", example="10.0 1.1",
-      see="LAMMPS manual, pair_style soft")
+      see="LAMMPS manual, pair_style soft", d2=soft_d2)
 def soft(r2, A: "energy", cut: "distance"):
     r = math.sqrt(r2)
     gap = (cut - r) / cut

@@ -31,9 +31,17 @@ class WangFrenkelPair(PairStyle):
         return values
 
 
+def wf_cut_d2(r2, front, sigma, nu, mu, cut):
+    a, b = math.pow(sigma * sigma / r2, mu), math.pow(cut * cut / r2, mu)
+    rest = math.pow(b - 1.0, 2.0 * nu - 2.0)
+    p = a * (b - 1.0) + 2.0 * nu * (a - 1.0) * b
+    near = mu * (a * (b - 1.0) + a * b + 2.0 * nu * b * (2.0 * a - 1.0)) + p
+    return front * mu / (r2 * r2) * rest * (mu * (2.0 * nu - 1.0) * b * p + (b - 1.0) * near)
+
+
 @pair("wf/cut", settings="cut", coeff="epsilon sigma nu mu [cut]", derived=derived, rows="front", cls=WangFrenkelPair,
       units={"epsilon": "energy", "nu": "integer", "mu": "integer"}, settings_example="2.0", example="1.0 1.1 1 2 2.4",
-      see="LAMMPS manual, pair_style wf/cut")
+      see="LAMMPS manual, pair_style wf/cut", d2=wf_cut_d2)
 def wf_cut(r2, front: "energy", sigma: "distance", nu, mu, cut: "distance"):
     r2inv = 1.0 / r2
     a = math.pow(sigma * sigma * r2inv, mu)
