@@ -123,7 +123,7 @@ def test_forces_are_the_gradient(name, tmp_path):
     ("coul/ctip 0.3 6.5", CTIP.replace("1.428571", "0"), "element O: gamma must be positive.*ctip:3"),
     ("coul/ctip 0.3 6.5", CTIP.replace("-0.3 0.1", "0.3 0.1"), "qmin must not be above qmax"),
     ("coul/ctip 0.3 6.5", CTIP + "Ni 1 1 1 1 1 1 1 1", "element Ni: it is there twice"),
-    ("coul/ctip 0.3 6.5", CTIP.replace("0.54929", "nan"), "element Ni"),
+    ("coul/ctip 0.3 6.5", CTIP.replace("0.54929", "nan"), "gamma must be a number"),
     ("coul/ctip 0.3 6.5", CTIP.replace("15.655862", "x"), "eta must be a number, got 'x'"),
     ("coul/ctip 0.3 6.5", CTIP[:60], "the last entry needs 9 words|not in the potential file"),
     ("coul/ctip 0.3 0", CTIP, "cutoff must be more than 0"),
