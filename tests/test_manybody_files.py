@@ -49,7 +49,7 @@ def test_wrong_files(text, words, says, tmp_path, monkeypatch):
 @pytest.mark.parametrize(("content", "says"), [
     (gzip.compress(GOOD.encode()), r"the file is compressed: unpack it and name the text file \(X.file:1"),
     (b"# a\n\0\1\2", r"not a text file, it has bytes of value 0 \(X.file:2"), (b" \n", r"the file is empty \(X.file:1"),
-    (None, "X.file is a folder: name a file in it")])
+    (None, "X.file is a folder: name a file in it")], ids=["compressed", "zero bytes", "empty", "folder"])
 def test_no_text_files(style, words, content, says, tmp_path, monkeypatch):
     from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
