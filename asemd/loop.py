@@ -10,7 +10,7 @@ import numpy as np
 from asemd import population
 from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
-from asemd.fix import Fix
+from asemd.fix import NEVER, Fix
 from asemd.interrupt import Interrupt
 from asemd.kernels import relist
 from asemd.kernels import timeloop as tl
@@ -21,7 +21,6 @@ from asemd.watchdog import Watchdog
 
 IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
 ABOUT_LISTS = ("pre_exchange", "pre_neighbor", "post_neighbor")
-NEVER = 2**62
 
 
 def warn(message: str) -> None:
@@ -138,7 +137,7 @@ class Loop:
         self._in_python = [f for f, kinds in zip(self.fixes, self._kinds)
                            if f.follows or any(not kinds.get(name, True) for name in IN_A_STEP)]
         self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
-        self._about_lists = any(name in kinds for kinds in self._kinds for name in ABOUT_LISTS)
+        self._about_lists = [f for f, kinds in zip(self.fixes, self._kinds) if any(name in kinds for name in ABOUT_LISTS)]
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
 
     def _next_whole(self, step: int) -> int:
@@ -281,7 +280,8 @@ class Loop:
         status = [0] * e.threads
         run, (calls, starts) = tl.module().run, self._calls.table(tl.KINDS, e.state, self.fix_data)
         terms = [self._terms(t) for t in range(e.threads)]
-        lists, live = NO_CALLS if self._about_lists else self._relist.table(e), self._relist.live
+        acts = any(f.next_list(self.step) <= last for f in self._about_lists)
+        lists, live = NO_CALLS if acts else self._relist.table(e), self._relist.live
         live[relist.NS] = e.ns
 
         def work(tid):

@@ -61,6 +61,25 @@ def test_motion_has_the_same_digits(name, threads, monkeypatch):
     assert loop.engine.timings["Neigh"] > 0.0
 
 
+@pytest.mark.parametrize("sort", [0, 1000])
+def test_fixes_that_wait_for_their_step_leave_lists_to_the_loop(sort):
+    """Only the lists before which a reservoir acts are made by Python, and those before which it sorts."""
+    from asemd.fix.gcmc import GCMC
+    fix = GCMC(every=50, exchanges=3, moves=3, kind=1, seed=7, temperature=1.4, mu=-3.0, displace=0.3)
+    fix.storage.every = sort
+    loop = loop_of(crystal(), [NVE(), fix])
+    loop.watchdog.on = False
+    loop.setup()
+    before, made, rebuild = loop.engine.builds, [], loop.engine.rebuild
+
+    def counted():
+        made.append(loop.step)
+        rebuild()
+    loop.engine.rebuild = counted
+    loop.advance(160)
+    assert made == [1, 51, 101, 151] and loop.engine.builds - before > len(made) + 5
+
+
 def test_arrays_that_are_too_small_grow():
     """Atoms that rush into a plane: rows get longer, and Python makes some of the lists."""
     n, edge = 1500, 16.0

@@ -44,6 +44,7 @@ from asemd.words import whole, yes_no
 if TYPE_CHECKING:
     from asemd.loop import Loop
 
+NEVER = 2**62       # a step that does not come
 HOOKS = ("initial_integrate", "post_integrate", "pre_exchange", "pre_neighbor", "post_neighbor", "pre_force", "post_force",
          "final_integrate", "end_of_step")
 
@@ -187,6 +188,11 @@ class Fix:
     def next_end(self, step: int) -> int:
         """The next step after `step` at whose end `end_of_step`, in Python, acts."""
         return (step // self.every + 1) * self.every
+
+    def next_list(self, step: int) -> int:
+        """The next step after `step` on which hooks around a list build act, besides those on which the fix asks for one; until then the
+        compiled loop may build lists by itself."""
+        return step + 1
 
     def follow(self, loop: Loop) -> None:
         """Put the present numbers into ``p`` and ``a``; called before the compiled hook that `follows` names."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from asemd import population
 from asemd.errors import InputError, nearest
-from asemd.fix import Fix, hook
+from asemd.fix import NEVER, Fix, hook
 from asemd.kernels.random import uniform
 from asemd.marsaglia import Marsaglia
 from asemd.words import choice, number, take, whole
@@ -151,6 +151,9 @@ class AppendAtoms(Fix):
                     for d in range(3):
                         noise = p[4] * math.sqrt(s.mass[i]) * (uniform(seed, step, s.row[i], d) - 0.5)
                         s.f[d, i] += noise - p[3] * s.mass[i] * s.v[d, i]
+
+    def next_list(self, step: int) -> int:
+        return NEVER
 
     def pre_exchange(self, loop) -> None:
         """On its steps: the new atoms."""

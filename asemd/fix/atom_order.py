@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.fix import NEVER
+
 SPREAD = 64     # the largest id over the number of atoms
 
 
@@ -72,6 +74,7 @@ class AtomOrder:
         # also of pair style zero, which needs no list
         cutoff = max(loop.interactions.cutoff(system.counts["ntypes"], e.units), e.reach - e.settings.skin)
         if not self.every or not cutoff > 0.0:
+            self.due = NEVER
             return
         self.due = (loop.step // self.every + 1) * self.every
         if x is None:

@@ -21,7 +21,7 @@ import numpy as np
 
 from asemd import population
 from asemd.errors import InputError, nearest
-from asemd.fix import Fix
+from asemd.fix import NEVER, Fix
 from asemd.random import ParkMiller
 from asemd.words import bounds, number, take, whole, yes_no
 
@@ -126,6 +126,9 @@ class AtomSwap(Fix):
                 self.charges[kind] = float(values[0]) if len(values) else 0.0
         if self.next_reneighbor < 0:        # made in Python
             self.next_reneighbor = loop.step + 1
+
+    def next_list(self, step: int) -> int:
+        return NEVER
 
     def pre_exchange(self, loop) -> None:
         """On its steps: the attempts."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from asemd import population
 from asemd.errors import InputError, nearest
-from asemd.fix import Fix
+from asemd.fix import NEVER, Fix
 from asemd.fix import holder as holders
 from asemd.kernels import nearest as near_atoms
 from asemd.molecule import rotation, turned
@@ -181,6 +181,9 @@ class Deposit(Fix):
         self.holds = holders.find(loop, self.holder, self.template, "fix deposit") if self.holder else None
         if self.next_ids and not any(self.last_ids):
             self.last_ids = [int(loop.system.id.max(initial=0)), int(loop.system.molecule.max(initial=0))]
+
+    def next_list(self, step: int) -> int:
+        return NEVER
 
     def pre_exchange(self, loop) -> None:
         """On its steps: find a place and put a particle there."""

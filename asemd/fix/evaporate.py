@@ -89,6 +89,9 @@ class Evaporate(Fix):
     def _next(self, step: int) -> int:
         return (step // self.interval + 1) * self.interval
 
+    def next_list(self, step: int) -> int:
+        return max(step + 1, self.storage.due)
+
     def pre_exchange(self, loop) -> None:
         """On its steps: choose and take."""
         if loop.step == self.next_reneighbor:

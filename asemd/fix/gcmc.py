@@ -197,6 +197,9 @@ class GCMC(Fix):
         if self.next_reneighbor < 0:        # made in Python
             self.next_reneighbor = loop.step + 1
 
+    def next_list(self, step: int) -> int:
+        return max(step + 1, self.storage.due)
+
     def pre_exchange(self, loop) -> None:
         """On its steps: a series of attempts."""
         if loop.step == self.next_reneighbor:

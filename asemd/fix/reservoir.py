@@ -155,7 +155,7 @@ class Reservoir:
     def __init__(self, fix, loop):
         self.fix, self.loop, self.system, self.box = fix, loop, loop.system, loop.system.box
         self.energies = Energies.of_loop(loop, fix.full_energy or not fix.as_lammps, fix.overlap, fix.what)
-        self.energies.see(self.box, 3)
+        self.energies.see(self.box)
         self.edges = np.diag(self.box.cell).copy() if self.box.aligned and self.box.periodic.all() else None
         self.atoms = TrialAtoms(loop, fix.storage, fix.group, self.wrap)
         self.volume = fix.volume if fix.region is not None else self.box.volume

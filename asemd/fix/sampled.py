@@ -5,12 +5,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from asemd.errors import InputError, nearest
-from asemd.fix import Fix
+from asemd.fix import NEVER, Fix
 from asemd.fix.output_file import OutputFile
 from asemd.fix.values import given, snapshot_of
 from asemd.words import choice, whole
-
-NEVER = 2**62
 
 
 class Sampled(Fix):

@@ -18,6 +18,7 @@ from asemd.kernels.rows import of_rows
 
 NOBODY = -1
 _known: WeakKeyDictionary = WeakKeyDictionary()      # loop -> energies that were asked for
+_arrays: WeakKeyDictionary = WeakKeyDictionary()     # loop -> copies by name; fresh memory would cost as much as filling it
 
 
 class Energies:
@@ -60,6 +61,7 @@ class Energies:
         self.cutoff, self.overlap, self.exact = max(float(self.cut2.max()) ** 0.5, overlap), overlap, exact
         self.ghosts = float(self.cut2.max()) ** 0.5 + loop.settings.skin
         self.numbers = np.array([-1.0, -1.0, overlap**2, engine.qqr2e, float(not exact)])
+        self.seen = b""
 
     @classmethod
     def of_loop(cls, loop, exact: bool, overlap: float, what: str) -> Energies:
@@ -69,8 +71,12 @@ class Energies:
             known[exact, overlap] = terms, cls(loop, exact, overlap, what)
         return known[exact, overlap][1]
 
-    def see(self, box, dimension: int) -> None:
+    def see(self, box) -> None:
         """Take the present box."""
+        now = box.cell.tobytes() + box.origin.tobytes() + bytes(box.periodic)
+        if now == self.seen:
+            return
+        self.seen = now
         self.cell, self.inverse = np.ascontiguousarray(box.cell, float), np.ascontiguousarray(box.inverse)
         heights = 1.0 / np.linalg.norm(self.inverse, axis=0)
         periodic = np.array(box.periodic)
@@ -114,15 +120,19 @@ class TrialAtoms:
         self.loop, self.storage, self.wrap = loop, storage, wrap
         system, rows = loop.system, storage.rows(loop.system)
         n = self.n = len(rows)
-        cap = n + 64
+        kept = _arrays.setdefault(loop, {})
+        cap = max([n + 64, *map(len, kept.values())])
         s = SimpleNamespace(x=system.x, image=system.image, type=np.asarray(system.type, np.int64), v=system.v, id=system.id,
                             q=np.zeros(n) if system.q is None else system.q, molecule=np.asarray(system.molecule, np.int64),
                             mass=system.atom_masses(), gas=loop.groups[group], row=np.arange(n))
         for name, values in vars(s).items():
-            array = np.zeros((cap, *values.shape[1:]), values.dtype, order="F")     # x, y and z each in one piece, for vector instructions
+            array = kept.get(name)
+            if array is None or len(array) < cap or array.dtype != values.dtype:
+                array = np.zeros((cap, *values.shape[1:]), values.dtype, order="F")     # x, y, z each in one piece, for vector instructions
+                kept[name] = array
             values.take(rows, out=array[:n], mode="clip") if values.ndim == 1 else of_rows(values, rows, array.T)
             setattr(self, name, array)
-        self.moved = np.zeros(cap, bool)
+        self.moved = np.zeros(len(self.x), bool)
         self.names = (*vars(s), "moved")
         self.wrap(self.x[:n], self.image[:n])
         self.removed = False

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from asemd.errors import InputError
-from asemd.fix import Fix
+from asemd.fix import NEVER, Fix
 from asemd.fix.atom_order import AtomOrder
 from asemd.fix.reservoir import Reservoir, check_scene, find_molecule, find_region, gas_type, read, region_volume
 from asemd.random import ParkMiller
@@ -108,6 +108,9 @@ class Widom(Fix):
         self.mean, self.seen = 0.0, self.volume if self.region is not None else loop.system.box.volume
         if self.next_reneighbor < 0:        # made in Python
             self.next_reneighbor = loop.step + 1
+
+    def next_list(self, step: int) -> int:
+        return NEVER
 
     def pre_exchange(self, loop) -> None:
         """On its steps: a series of insertions."""
