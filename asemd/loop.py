@@ -46,6 +46,8 @@ class Loop:
         Number of the present step.
     """
 
+    in_levels = False       # whether fixes act on the forces of one level after the other
+
     def __init__(self, system, interactions, settings: Settings, fixes: list[Fix], groups, dt: float, step: int = 0):
         self.system, self.interactions, self.settings = system, interactions, settings
         self.fixes, self.groups, self.dt, self.step = list(fixes), groups, float(dt), int(step)
@@ -93,21 +95,19 @@ class Loop:
         """Lists, first forces, and the fixes' part in them; compiles what the run needs. Returns the result of the first step."""
         self.begin = self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
-        e = self.engine
-        self.fix_data = ()
+        e, self.fix_data = self.engine, ()
         for f in self.fixes:
             f.prepare(self)
         self._with_lost(e.load)
-        self.gone, self.natoms = {}, self.system.n
+        self.gone, self.natoms, self._ago = {}, self.system.n, 0
         e.bonds.hold(True)
         e.forces(True)
-        self._ago = 0
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
         self._collect()
         for n, f in enumerate(self.fixes):
             f.setup(self)
-            if "post_force" in self._kinds[n]:
+            if "post_force" in self._kinds[n] and not self.in_levels:
                 self._call(n, "post_force")
         self._collect()
         e.timings = dict.fromkeys(e.timings, 0.0)

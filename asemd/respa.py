@@ -151,6 +151,8 @@ class RespaLoop(Loop):
         A fix that does not know levels, or what `Levels.check` finds.
     """
 
+    in_levels = True
+
     def __init__(self, *args, levels: Levels, **keywords):
         super().__init__(*args, **keywords)
         self.levels = levels
@@ -172,7 +174,14 @@ class RespaLoop(Loop):
         for level in range(1, self.levels.n + 1):
             self._forces(level, True)
         self._total()
+        acted = [fix for n, fix in enumerate(self.fixes) if "post_force" in self._kinds[n]]
+        if acted:       # until the first step LAMMPS leaves the forces of the level on which a fix acted last, not their sum
+            last = self.levels.n if hasattr(acted[-1], "elsewhere") else self._own_level(acted[-1])
+            self.engine.buffers[0] = self._level_forces[last - 1]
         return self._collect()
+
+    def _own_level(self, fix) -> int:
+        return min(fix.level or self.levels.n, self.levels.n)
 
     def _total(self) -> None:
         """The sum of all levels, which everybody sees."""
@@ -370,7 +379,7 @@ class RespaLoop(Loop):
 
     def _post_force(self, n: int, fix, level: int) -> None:
         """A fix that acts on one level may do something on the others, too; what it counts is the sum over levels."""
-        own = min(fix.level or self.levels.n, self.levels.n)
+        own = self._own_level(fix)
         if fix.levels == "every" or level == own:
             self._call(n, "post_force")
         if not hasattr(fix, "elsewhere"):
