@@ -119,20 +119,6 @@ class Atoms(ase.Atoms):
         self.topology = top
         return self
 
-    def todict(self):
-        out = super().todict()
-        if not self.topology.is_empty:
-            out["topology"] = self.topology.as_dict()
-        return out
-
-    @classmethod
-    def fromdict(cls, dct):
-        dct = dict(dct)
-        top = dct.pop("topology", None)
-        atoms = super().fromdict(dct)
-        atoms.topology = Topology(**top) if top else Topology()
-        return atoms
-
 
 def _index(i):
     """Lists as arrays, so that lists of bools are masks."""

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.topology import WIDTHS, Topology
+from asemd.topology import WIDTHS, Partners, Topology
 
 PREFIX = "asemd_"
+PAIRS = "frozen_pairs"      # of a `Partners`
 ARRAYS = {"types": "type", "molecules": "mol-id"}      # entry -> array of the atoms
 
 
@@ -29,6 +30,8 @@ def entries(topology: Topology, arrays: Mapping[str, np.ndarray]) -> dict[str, n
         for kind, atoms, types in top.every() if isinstance(top, Topology) else ():
             if len(atoms):
                 out[f"{PREFIX}{prefix}{kind}s"] = np.column_stack([types, atoms]).astype(int)
+    if isinstance(topology.frozen, Partners):
+        out[PREFIX + PAIRS] = np.column_stack([topology.frozen.kinds, topology.frozen.pairs]).astype(int).reshape(-1, 3)
     for name, array in ARRAYS.items():
         if array in arrays and np.any(arrays[array] != arrays[array][:1]):
             out[PREFIX + name] = np.asarray(arrays[array], int)[:, None]
@@ -50,7 +53,7 @@ def drop(info: dict[str, Any]) -> None:
 def holds(info: Mapping[str, Any]) -> bool:
     """Whether there is a topology, or atom types."""
     data = info.get("data")
-    return PREFIX + "atoms" in info or (isinstance(data, Mapping) and "topology" in data)
+    return PREFIX + "atoms" in info or (isinstance(data, Mapping) and ("topology" in data or PREFIX + "atoms" in data))
 
 
 def found(info: Mapping[str, Any], numbers: np.ndarray) -> tuple[Topology | None, dict[str, np.ndarray]]:
@@ -61,14 +64,18 @@ def found(info: Mapping[str, Any], numbers: np.ndarray) -> tuple[Topology | None
     InputError
         They belong to other atoms, or are damaged.
     """
-    if PREFIX + "atoms" not in info:
-        return (Topology(**info["data"]["topology"]) if holds(info) else None), {}      # as written to ase.db
+    if PREFIX + "atoms" not in info:        # ase.db holds it as data: atoms.info, or the topology alone
+        data = info["data"] if holds(info) else {}
+        return found(data, numbers) if PREFIX + "atoms" in data else (Topology(**data["topology"]) if data else None, {})
     try:
         if not np.array_equal(np.ravel(info[PREFIX + "atoms"]), np.ravel(_mark(numbers))):
             raise InputError(f"the bonds in atoms.info belong to {int(np.ravel(info[PREFIX + 'atoms'])[0])} other atoms than these "
                              f"{len(numbers)}: make asemd.Atoms of what was read before it is sliced, sorted or repeated")
         frozen = _topology(info, "frozen_")
         top = _topology(info, "", None if frozen.is_empty else frozen)
+        if PREFIX + PAIRS in info:
+            rows = np.asarray(info[PREFIX + PAIRS], int).reshape(-1, 3)
+            top.frozen = Partners(rows[:, 1:], rows[:, 0])
         arrays = {array: np.broadcast_to(np.ravel(info[PREFIX + name]).astype(int), len(numbers)).copy()
                   for name, array in ARRAYS.items() if PREFIX + name in info}
     except (ValueError, TypeError, IndexError) as e:

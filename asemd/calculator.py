@@ -3,27 +3,34 @@ from __future__ import annotations
 
 import copy
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from ase.calculators.calculator import Calculator, PropertyNotImplementedError, all_changes
+from ase.calculators.calculator import (
+    Calculator,
+    PropertyNotImplementedError,
+    all_changes,
+    external_calculators,
+    register_calculator_class,
+)
 
+from asemd import recipe
 from asemd import units as unit_styles
 from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.forcefield import Interactions
 from asemd.loads import Load, Maps, constraints_of, loads_of, together
-from asemd.native import as_json, coefficients, with_keys
+from asemd.native import coefficients, with_keys
 from asemd.result import with_masks
+from asemd.seen import GROUPS, same, topology_of, typed, uses_charges, view
 from asemd.system import System
 from asemd.topology import Topology
 
 VOIGT = [0, 1, 2, 5, 4, 3]      # LAMMPS xx yy zz xy xz yz -> ASE xx yy zz yz xz xy
 BONDED = ("bond", "angle", "dihedral", "improper")
-GROUPS = "groups"               # array of atoms: group bits, for interactions that differ by group
 
 
 class ForceField(Calculator):
@@ -46,6 +53,10 @@ class ForceField(Calculator):
         ``double`` or ``mixed``.
     shift, tail, mix, dielectric, compat, kspace, kspace_modify
         As in LAMMPS's commands (``kspace="pppm 1e-4"``); ``compat="lammps"``: its forces also where they are no gradient of its energy.
+    commands : str or sequence of str, optional
+        In the place of all these: styles and coefficients as LAMMPS commands, whose numbers are in the unit style `units`.
+    types : sequence of str, mapping or int, optional
+        Elements in the order of their atom types, or element -> type, for atoms without the array ``type``; or how many there are.
 
     Raises
     ------
@@ -58,14 +69,19 @@ class ForceField(Calculator):
     exists if the cell has three vectors. `energies` and `stresses` are LAMMPS's shares of each atom (equal parts of every term).
     """
 
+    name = "asemd"
     implemented_properties = ["energy", "free_energy", "forces", "stress", "energies", "stresses"]
     nolabel = True
 
     def __init__(self, bond: Mapping | None = None, angle: Mapping | None = None, dihedral: Mapping | None = None,
                  improper: Mapping | None = None, pair: Mapping | None = None, *, topology: Topology | Mapping | None = None,
                  special_bonds=None, shift: bool = False, tail: bool = False, mix: str | None = None, dielectric: float = 1.0,
-                 compat: str = "", kspace: str = "", kspace_modify: str = "", skin: float = 2.0, threads: int = 1, precision="double"):
+                 compat: str = "", kspace: str = "", kspace_modify: str = "", skin: float = 2.0, threads: int = 1, precision="double",
+                 commands: str | Sequence[str] | None = None, units: str = "", types: Mapping | Sequence[str] | int | None = None,
+                 from_script: Sequence[str] = ()):
         super().__init__()
+        if from_script:
+            raise InputError(f"{from_script[0]} comes from a script: make this calculator with asemd.read of that script")
         for name, value, known in (("precision", precision, ("double", "mixed")), ("compat", compat, ("lammps", ""))):
             if value not in known:
                 raise InputError(f"{name} must be {' or '.join(known) if all(known) else 'lammps or nothing'}, got {value!r}")
@@ -88,6 +104,13 @@ class ForceField(Calculator):
         self._engine: Engine | None = None
         self._seen: dict[str, np.ndarray | None] = {}
         self._seen_topology: Topology | None = None
+        self.type_of, ntypes = recipe.numbers_of(types)
+        if commands is not None:
+            if given := [name for name, value in self.arguments.items() if value and value != 1.0 and name != "compat"]:
+                raise InputError(f"{given[0]} cannot be given beside commands: write it as a command")
+            recipe.take_commands(self, commands, units, ntypes, compat)
+        elif units:
+            raise InputError("units are for commands: other arguments are in ASE's units")
 
     # ---- from a script ------------------------------------------------------------------------------------------------------------------
     @classmethod
@@ -148,59 +171,28 @@ class ForceField(Calculator):
 
     def todict(self, skip_default: bool = True) -> dict:
         """The arguments, JSON-able; of a script's force field the commands that make it."""
-        out: dict[str, Any] = {k: as_json(v) for k, v in self.arguments.items() if v and not (k == "dielectric" and v == 1.0)}
-        if self.interactions is not None and not self.arguments:
-            out |= {"units": self.units, "commands": self.commands(), "compat": self.interactions.compat}
-        if self.topology is not None and self.arguments:
-            out["topology"] = {f"{kind}s": items.tolist() for kind, items, _ in self.topology.every() if len(items)} | {
-                f"{kind}_types": types.tolist() for kind, _, types in self.topology.every() if len(types)}
-        return out | {"skin": self.settings.skin, "precision": self.settings.precision}
+        return recipe.as_dict(self)
 
     def commands(self) -> list[str]:
         """The force field as LAMMPS commands, in its own units."""
-        inter, lines = self.interactions, []
-        for category in inter.uses:
-            if inter.uses[category]:
-                lines.append(" ".join([f"{category}_style", *inter.style_line(category)]))
-                lines += [" ".join([f"{category}_coeff", *words]) for words in inter.coeff_lines(category)]
-        lines += [" ".join(["pair_modify", *words]) for words in inter.modify_lines()]
-        return [*lines, " ".join(["special_bonds", *inter.special_line()]), *inter.kspace_lines()]
+        return recipe.commands(self.interactions)
+
+    def with_types(self, types: Mapping[str, int] | Sequence[str]) -> ForceField:
+        """A copy that also takes atoms without the array ``type``: their types go by elements, `types` as in `ForceField`."""
+        new = self.copy()
+        new.type_of, _ = recipe.numbers_of(types)
+        return new
 
     # ---- atoms -> system ----------------------------------------------------------------------------------------------------------------
     def _topology_of(self, atoms) -> Topology:
-        """The bonds of these atoms: their own, else the ones given to the calculator."""
-        own = getattr(atoms, "topology", None)
-        bonded = [] if self.topology is not None else [category for category in BONDED if self.arguments.get(category)]
-        if own is not None and own.is_empty and bonded and len(atoms) > 1:
-            warnings.warn(f"the force field has {' and '.join(bonded)} styles, but these atoms have no bonds: they need "
-                          "asemd.Atoms(atoms, topology=...)", InputWarning, stacklevel=2)
-        if own is not None and (self.topology is None or self.like is not None or not own.is_empty):
-            for kind, items, _ in own.every():
-                if len(items) and not 0 <= int(items.min()) <= int(items.max()) < len(atoms):
-                    wrong = items[(items < 0) | (items >= len(atoms))][0]
-                    raise InputError(f"the {kind}s name atom {wrong}, but the atoms are 0 to {len(atoms) - 1}")
-            return own
-        if self.topology is None:
-            if bonded:
-                raise InputError(f"the force field has {' and '.join(bonded)} styles, but these atoms do not know their bonds: use "
-                                 "asemd.Atoms(atoms, topology=...), or give the topology to the ForceField")
-            return Topology()
-        n = len(atoms)
-        largest = max((int(items.max()) for _, items, _ in self.topology.every() if len(items)), default=-1)
-        if largest >= n:
-            raise InputError(f"the topology names atom {largest}, but there are {n} atoms: use asemd.Atoms, whose topology "
-                             "follows slices and copies, or hand a new topology to the calculator")
-        if not self.topology.is_empty and self.natoms not in (0, n):
-            raise InputError(f"the topology of the calculator is for {self.natoms} atoms, not for {n}: use asemd.Atoms, whose topology "
-                             "follows slices and copies, or hand a new topology to the calculator")
-        self.natoms = n
-        return self.topology
+        made = self.interactions.uses if self.interactions else {}
+        return topology_of(self, atoms, [c for c in BONDED if self.topology is None and (self.arguments.get(c) or made.get(c))])
 
     def _system(self, atoms) -> System:
         """The atoms in the units of the force field."""
         if getattr(atoms, "topology", None) is None and self.topology is None and holds(atoms.info):     # read from a file
             atoms = Atoms(atoms)
-        types = None
+        atoms, types = typed(atoms, self.type_of), None
         strange = np.flatnonzero(~np.isfinite(atoms.positions).all(axis=1))
         if strange.size:
             k = int(strange[0])
@@ -208,7 +200,7 @@ class ForceField(Calculator):
         if "type" not in atoms.arrays:
             if self.like is not None:
                 raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements; "
-                                 "use atoms that asemd.read gave, or atoms.set_array('type', ...)")
+                                 "use atoms that asemd.read gave, atoms.set_array('type', ...), or calc.with_types({'C': 1, ...})")
             named = {k for style in self.arguments["pair"].values() for key in coefficients(style)
                      for k in (key if isinstance(key, tuple) else (key,)) if isinstance(k, str)}
             symbols = set(atoms.get_chemical_symbols())
@@ -216,6 +208,8 @@ class ForceField(Calculator):
             types = self.types
         system = System.from_ase(atoms, types=types, units=self.units, like=self.like)
         system.topology = self._topology_of(atoms)
+        if self.type_of and self.like is None:
+            system.labels["atom"] = {number: symbol for symbol, number in self.type_of.items()}
         if self.interactions is None:
             self.interactions = Interactions.build(**self.arguments, labels=system.labels)
         for use in self.interactions.uses["pair"]:
@@ -259,19 +253,14 @@ class ForceField(Calculator):
         return self._engine
 
     # ---- what has changed ---------------------------------------------------------------------------------------------------------------
-    @staticmethod
-    def _view(atoms) -> dict[str, np.ndarray | None]:
-        """What the results depend on, besides the topology."""
-        a = atoms.arrays
-        return {"positions": a["positions"], "numbers": a["numbers"], "cell": atoms.cell.array, "pbc": atoms.pbc,
-                "initial_charges": a.get("initial_charges"), "type": a.get("type"), "origin": atoms.get_celldisp(), "image": a.get("image"),
-                **{name: a.get(name) for name in ("mu", "shape", "quaternions", "epsilon", GROUPS)}}
+    def _view(self, atoms) -> dict[str, np.ndarray | None]:
+        return view(atoms, uses_charges(self.interactions, self.loads))
 
     def check_state(self, atoms, tol: float = 0.0) -> list[str]:
         """Names of what is not as it was at the last evaluation; besides ASE's: type, origin, image, groups, topology."""
         if not self._seen:
             return list(all_changes)
-        changes = [name for name, array in self._view(atoms).items() if not _same(array, self._seen[name])]
+        changes = [name for name, array in self._view(atoms).items() if not same(array, self._seen[name])]
         topology = self.topology if (own := getattr(atoms, "topology", None)) is None else own
         return changes if topology == self._seen_topology else [*changes, "topology"]
 
@@ -322,6 +311,10 @@ class ForceField(Calculator):
             self._seen = {}
             raise
         self._remember(atoms, system_changes)
+
+    def get_atomic_volumes(self) -> np.ndarray:
+        """(n,) volumes that ASE refers the kinetic part of `stresses` to: that of the cell, whose shares they are."""
+        return np.full(len(self.atoms), self.atoms.cell.volume)
 
     def get_hessian(self, atoms=None, numerical: bool = False):
         """Second derivatives of the energy, a sparse matrix (3 n, 3 n) in eV/Angstrom^2: see `asemd.hessian.of_calculator`."""
@@ -396,5 +389,6 @@ class ForceField(Calculator):
         return f"ForceField({'; '.join(parts) or 'no styles'}; units {self.units})"
 
 
-def _same(a, b) -> bool:
-    return a is b or (a is not None and b is not None and a.shape == b.shape and bool((a == b).all()))
+
+if "asemd" not in external_calculators:       # ase.calculators.calculator.get_calculator_class("asemd")
+    register_calculator_class("asemd", ForceField)

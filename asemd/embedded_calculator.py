@@ -2,8 +2,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
+from ase.calculators.calculator import external_calculators, register_calculator_class
 from ase.data import chemical_symbols
 
 from asemd.calculator import ForceField
@@ -23,7 +25,7 @@ class EAM(ForceField):
 
     Parameters
     ----------
-    *files : str or path
+    *file, files : str or path
         One file (setfl and its relatives), or one for each element (funcfl): here or in a folder of ``LAMMPS_POTENTIALS``.
     style : str, optional
         ``eam``, ``eam/alloy``, ``eam/fs``, ``eam/he``, ``eam/cd``, ``eam/cd/old`` or ``adp``; by default what the file's name ends with.
@@ -49,10 +51,12 @@ class EAM(ForceField):
     -3.54
     """
 
-    def __init__(self, *files, style: str = "", elements: dict[str, str] | None = None, skin: float = 1.0, threads: int = 1,
-                 compat: str = ""):
+    name = "asemd-eam"
+
+    def __init__(self, *file, files: Sequence[str] = (), style: str = "", elements: dict[str, str] | None = None, skin: float = 1.0,
+                 threads: int = 1, compat: str = ""):
         super().__init__(skin=skin, threads=threads, compat=compat)
-        self.files = [os.fspath(file) for file in files]
+        self.files = [os.fspath(name) for name in (*file, *files)]
         if not self.files:
             raise InputError("EAM needs a potential file, as EAM.from_file('Cu_u3.eam')")
         self.style_name = style or _style_of(self.files[0])
@@ -127,6 +131,10 @@ class EAM(ForceField):
 
     def __repr__(self) -> str:
         return f"EAM({', '.join(map(repr, self.files))}, style={self.style_name!r})"
+
+
+if EAM.name not in external_calculators:
+    register_calculator_class(EAM.name, EAM)
 
 
 def _style_of(file: str) -> str:

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import os
 
+from ase.calculators.calculator import external_calculators, register_calculator_class
+
 from asemd.calculator import ForceField
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
@@ -50,6 +52,8 @@ class Potential(ForceField):
     >>> silicon.get_potential_energy() / len(silicon)  # doctest: +SKIP
     -4.3366
     """
+
+    name = "asemd-potential"
 
     def __init__(self, file, *, style: str = "", elements: dict[str, str] | None = None, settings: str = "", skin: float = 1.0,
                  threads: int = 1, compat: str = ""):
@@ -100,6 +104,10 @@ class Potential(ForceField):
 
     def __repr__(self) -> str:
         return f"Potential({self._shown!r}, style={self.style_name!r})"
+
+
+if Potential.name not in external_calculators:
+    register_calculator_class(Potential.name, Potential)
 
 
 def _style_of(files: list[str]) -> str:

@@ -6,11 +6,13 @@ import ase.io
 import numpy as np
 import pytest
 from ase.db import connect
+from ase.io.jsonio import decode, encode
 from ase.io.trajectory import Trajectory
 
 import asemd
 from asemd import Atoms, ForceField, Topology
 from asemd.errors import InputError, InputWarning
+from asemd.topology import Partners
 
 
 def field() -> ForceField:
@@ -73,6 +75,15 @@ def test_database(water, tmp_path):
     lost.calc = field()
     with pytest.raises(InputError, match="do not know their bonds"):
         lost.get_potential_energy()
+
+
+def test_json_of_ase(water):
+    """ASE's JSON, with which phonons and vibrations keep atoms, knows nothing of topologies; lists older than the bonds stay too."""
+    top = water.topology
+    for frozen in (None, Topology(bonds=[[0, 1], [0, 2], [3, 4], [3, 5], [2, 5]]), Partners([[0, 1], [2, 5]], [1, 3])):
+        water.topology = Topology(bonds=top.bonds, bond_types=top.bond_types, angles=top.angles, frozen=frozen)
+        back = decode(encode(water))
+        assert type(back) is ase.Atoms and Atoms(back).topology == Atoms.fromdict(water.todict()).topology == water.topology
 
 
 def test_atoms_that_lost_their_bonds(water, tmp_path):

@@ -33,7 +33,7 @@ def python(*arguments: str, cwd: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md", "docs/kspace.md"])
+@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md", "docs/ase.md", "docs/kspace.md"])
 def test_python_blocks_run(name, tmp_path):
     page = ROOT / name
     for script, text in scripts(page).items():
