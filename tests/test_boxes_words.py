@@ -29,7 +29,7 @@ def session_of(triclinic: bool, boundary=("pp", "pp", "pp"), dimension: int = 3)
     "deform 1 x trate 0.1 xy wiggle 1.0 5.0 remap x flip yes units box",
     "deform 1 yz variable v_d v_e remap x flip yes units box", "deform 1 remap v flip yes units box",
     "nvt/sllod temp 1.0 2.0 0.5 tchain 1 tloop 1 psllod no", "nvt/sllod temp 1.0 2.0 0.5 tchain 3 tloop 1 drag 0.1 psllod yes",
-    "heat 1 0.5", "heat 2 v_d region half", "ehex 1 0.5 region half hex", "ehex 10 -0.5", "accelerate/cos 0.1",
+    "heat 1 0.5", "heat 2 v_d region half", "ehex 1 0.5 region half constrain com hex", "ehex 10 -0.5", "accelerate/cos 0.1",
     "box/relax x 1.0 y 1.0 couple xy dilate partial vmax 0.001 nreset 5 scaleyz no scalexz yes scalexy no fixedpoint 0.0 1.0 0.0",
     "viscosity 10 x z 20 swap 2 vtarget 1.5", "viscosity 10 y x 4 swap 1 vtarget INF", "thermal/conductivity 10 z 20 swap 3",
 ])
@@ -53,7 +53,8 @@ def test_round_trip(line):
     ("heat 1", "2 values"), ("heat 0 1.0", "at least 1"), ("heat 1 1.0 region hal", "did you mean half"),
     ("heat 1 1.0 regoin half", "region ID"),
     ("heat 1 1.0 region half 3", "region ID"), ("heat 1 v_q", "undefined variable q"), ("ehex 1", "2 values"), ("ehex 0 1", "at least 1"),
-    ("ehex 1 v_d", "number"), ("ehex 1 1 constrain", "fix shake"), ("ehex 1 1 com", "fix shake"), ("ehex 1 1 hexe", "did you mean hex"),
+    ("ehex 1 v_d", "number"), ("ehex 1 1 constrain region", "1 value"), ("ehex 1 1 com", "needs constrain"),
+    ("ehex 1 1 hexe", "did you mean hex"),
     ("ehex 1 1 region", "1 value"), ("accelerate/cos", "1 value"), ("accelerate/cos 1 2", "1 value"), ("accelerate/cos x", "number"),
     ("box/relax", "target pressure"), ("box/relax couple xyz", "target pressure for each|needs a target"), ("box/relax iso", "1 value"),
     ("box/relax iso 1 vmax 0", "vmax"), ("box/relax iso 1 nreset -1", "nreset"), ("box/relax x 1 y 2 couple xy", "same target"),

@@ -152,6 +152,7 @@ def test_bad_words(kind, words, message, data):
 
 @pytest.mark.parametrize(("commands", "message"), [
     (["fix s all shake 1e-4 20 0 b 1", "fix t all shake 1e-4 20 0 b 2"], "there can be only one"),
+    (["fix h all ehex 1 0.1 constrain"], "constrain needs a fix shake or rattle"),
     (["bond_style none", "fix s all shake 1e-4 20 0 b 1"], "bond_style must be defined"),
     (["angle_style none", f"fix s all shake 1e-4 20 0 {WATER}"], "angle_style must be defined"),
     (["thermo_modify lost/bond ignore", "fix s all shake 1e-4 20 0 b 1 2 4", "delete_atoms group hydrogen"], "not all of them are there"),

@@ -8,6 +8,7 @@ from shake_scene import ALL, NVE, VALUES
 from wheel import ask
 
 PLAIN = ["run 0", "run 60", "run 40"]
+HALF = "region half block 0 6.5 INF INF INF INF"
 ENERGIES = ("temp", "pe", "ebond", "eangle")      # LAMMPS counts half of the virial of springs
 CASES = {
     "all kinds": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}"], PLAIN),
@@ -27,6 +28,12 @@ CASES = {
     "rattle": ([NVE, f"fix s all rattle 1e-6 100 0 {ALL}"], PLAIN),
     "rattle loose": ([NVE, "fix s all rattle 1e-4 4 0 b 1 2 4 a 1 2", "timestep 2"], PLAIN),
     "rattle minimise": ([f"fix s all rattle 1e-5 20 0 {ALL} kbond 2000.0"], ["minimize 0 0 5 50"], ENERGIES),
+    "ehex": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}", "fix h all ehex 1 0.05 constrain"], ["run 0", "run 40"]),
+    "ehex com": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}", HALF, "fix h all ehex 2 -0.02 region half com constrain"], PLAIN),
+    "ehex group": ([NVE, "fix s all shake 1e-6 100 0 b 1", "fix h water ehex 3 0.02 constrain com hex"], PLAIN),
+    "ehex first": (["fix h all ehex 1 0.05 constrain", NVE, f"fix s all shake 1e-6 100 0 {ALL}"], ["run 0", "run 40"]),
+    "ehex tilted": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}", HALF, "fix h all ehex 1 0.02 region half com constrain"], ["run 40"]),
+    "ehex rattle": ([NVE, f"fix s all rattle 1e-6 100 0 {ALL}", HALF, "fix h all ehex 2 0.05 region half com constrain"], PLAIN),
     "tilted": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}"], ["run 40"]),
 }
 

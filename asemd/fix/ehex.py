@@ -8,6 +8,9 @@ r"""Heat exchange that conserves energy: kinetic energy at a given rate, and pos
 with the kinetic energy K of the atoms (of the group, within the region) relative to their centre of mass, its velocity V and the mass M.
 With ``hex`` positions are not corrected.
 
+With ``constrain`` the forces of fix shake or fix rattle are found anew after each change, so that the next step keeps the bonds. With
+``com`` clusters of that fix are taken whole: those whose centre of mass is within the region, if all their atoms are in the group.
+
 Source: P. Wirnsberger, D. Frenkel, C. Dellago, J. Chem. Phys. 143, 124104 (2015); LAMMPS manual, fix ehex. Units: energy/time. Output: the
 scalar is the last factor :math:`\xi`.
 """
@@ -18,7 +21,9 @@ import math
 import numpy as np
 
 from asemd.errors import InputError, SimulationError, nearest
+from asemd.fix.constraint_clusters import SIZE
 from asemd.fix.heat import Heat
+from asemd.fix.shake import Shake
 from asemd.words import number, take, whole
 
 KEYWORDS = ("region", "constrain", "com", "hex")
@@ -39,52 +44,93 @@ class EHEX(Heat):
         Only atoms within it.
     hex : bool
         Without the correction of positions.
+    constrain : bool
+        Constraints of fix shake or rattle are solved again after each change.
+    com : bool
+        Their clusters are within the region with all atoms or with none; needs `constrain`.
 
     Raises
     ------
     InputError
-        `every` below 1; at the start of a run, a group without atoms.
+        `every` below 1, `com` without `constrain`; at the start of a run, a group without atoms, or no fix shake or rattle for `constrain`.
     SimulationError
         The kinetic energy would become negative.
     """
 
     style = "ehex"
 
-    def __init__(self, group: str = "all", every: int = 1, rate: float = 0.0, region=None, hex: bool = False, region_id: str = ""):
+    def __init__(self, group: str = "all", every: int = 1, rate: float = 0.0, region=None, hex: bool = False, region_id: str = "",
+                 constrain: bool = False, com: bool = False):
         super().__init__(group, every, rate, region, region_id)
-        self.hex = hex
+        if com and not constrain:
+            raise InputError("fix ehex: com is for clusters of fix shake or rattle and needs constrain too")
+        self.hex, self.constrain, self.com = hex, constrain, com
 
     @classmethod
     def from_lammps(cls, group, words, session):
         every, rate = take(words, 2, "fix ehex")[:2]
-        words, region, id, hex_ = words[2:], None, "", False
+        words, region, id, flags = words[2:], None, "", {}
         while words:
             if words[0] not in KEYWORDS:
                 raise InputError(f"fix ehex: unknown keyword {words[0]!r}{nearest(words[0], KEYWORDS)}")
-            if words[0] in ("constrain", "com"):
-                raise InputError(f"fix ehex: {words[0]} is for clusters of fix shake, which fix ehex does not know; leave it out")
-            if words[0] == "hex":
-                hex_, words = True, words[1:]
-            else:
+            if words[0] == "region":
                 id = take(words[1:], 1, "fix ehex region")[0]
                 region, words = session.scene.region(id, "fix ehex region"), words[2:]
-        return cls(group, whole(every, "fix ehex N"), number(rate, "fix ehex F"), region, hex_, id)
+            else:
+                flags[words[0]], words = True, words[1:]
+        return cls(group, whole(every, "fix ehex N"), number(rate, "fix ehex F"), region, region_id=id, **flags)
 
     def to_lammps(self) -> list[str]:
-        return super().to_lammps() + ["hex"] * self.hex
+        return super().to_lammps() + [word for word in ("constrain", "com", "hex") if getattr(self, word)]
+
+    def setup(self, loop) -> None:
+        super().setup(loop)
+        if self.constrain and self._holder(loop) is None:
+            raise InputError(f"fix {self.id} (style ehex): constrain needs a fix shake or rattle, there is none")
+
+    @staticmethod
+    def _holder(loop) -> Shake | None:
+        """The fix that holds bonds."""
+        return next((f for f in loop.fixes if isinstance(f, Shake)), None)
 
     def chosen(self, loop) -> np.ndarray:
         """(m,) slots of the atoms it acts on now; those that have just left the box count where they come back."""
         s = loop.state
-        slots = np.flatnonzero(s.mask[:loop.nslots] & np.int32(loop.group_bit(self.group)))
-        if self.region is None:
-            return slots
-        x = s.x[:, slots].T.copy()
+        allowed = s.mask[:loop.nslots] & np.int32(loop.group_bit(self.group)) != 0
+        if self.region is not None:
+            there = np.flatnonzero(allowed)
+            allowed[there] = self._within(s.x[:, there].T, loop)
+        if self.com:
+            self._choose_clusters(allowed, loop)
+        return np.flatnonzero(allowed)
+
+    def _within(self, x: np.ndarray, loop) -> np.ndarray:
+        """(m,) bool: which places (m, 3) are in the region, as seen in the box."""
+        x = x.copy()
         loop.system.box.wrap(x, np.zeros(x.shape, np.int32))
-        return slots[self.region.inside(x)]
+        return self.region.inside(x)
+
+    def _choose_clusters(self, allowed: np.ndarray, loop) -> None:
+        """All atoms of a cluster are chosen, or none: by the group, and by where its centre of mass is."""
+        s, clusters = loop.state, self._holder(loop).clusters
+        member = np.arange(4) < SIZE[clusters.kind][:, None]
+        slots = s.slot[np.where(member, clusters.atoms, clusters.atoms[:, :1])]
+        whole = (s.mask[slots] & np.int32(loop.group_bit(self.group)) != 0).all(axis=1)
+        if self.region is not None:
+            first = s.x[:, slots[:, 0]].T
+            apart = (s.x[:, slots] - s.x[:, slots[:, :1]]).reshape(3, -1).T
+            apart = loop.system.box.minimum_image(apart)[0].reshape(*slots.shape, 3)
+            mass = s.mass[slots] * member
+            whole &= self._within(first + np.einsum("ck,ckd->cd", mass, apart) / mass.sum(axis=1)[:, None], loop)
+        allowed[slots[member]] = np.repeat(whole, member.sum(axis=1))
 
     def end_of_step(self, loop) -> None:
         """Scale the velocities and correct the positions."""
+        self._change(loop)
+        if self.constrain:
+            self._holder(loop).hold_again(loop)
+
+    def _change(self, loop) -> None:
         slots, s, ftm2v = self.chosen(loop), loop.state, loop.units.ftm2v
         mass, v, f = s.mass[slots], s.v[:, slots], s.f[:, slots] * ftm2v
         total = mass.sum()

@@ -278,6 +278,15 @@ class Shake(Fix):
         if th.tid == 0:
             p[1] = 1.0
 
+    def hold_again(self, loop) -> None:
+        """Another fix changed positions or velocities at the end of a step: forces that make the next step keep the distances."""
+        if self.minimizing:
+            return
+        s, kept = loop.state, self.a[3].copy()
+        self.p[PART] = 0.5
+        loop._call(loop.fixes.index(self), "post_force", s._replace(virial=np.zeros_like(s.virial)))
+        self.p[PART], self.a[3][:] = self.part, kept        # virials stay those of the step
+
     def end_of_step(self, loop) -> None:
         self._tell(loop, loop.step)
 

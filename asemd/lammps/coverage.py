@@ -43,12 +43,13 @@ PARTIAL = {
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("fix", "adapt"): "no cutoffs",
-    ("fix", "ehex"): "no constrain, com (clusters of fix shake)",
     ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
     ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "shake"): "run_style verlet",
     ("fix", "rattle"): "run_style verlet",
 }
+# words in the place of a style that are no style
+OTHERWISE: dict[str, set[str]] = {"kspace": {"none"}, "region": {"delete"}}
 # names that are read but do nothing useful yet
 REFUSED = registry.REFUSED
 
@@ -80,7 +81,7 @@ def present(category: str) -> frozenset[str]:
         return frozenset(STYLES)
     if category == "granmodel":
         return frozenset()
-    found = set(catalog.names(CATALOG.get(category, category))) if category != "kspace" or catalog.files("kspace") else {"none"}
+    found = set(catalog.names(CATALOG.get(category, category))) | OTHERWISE.get(category, set())
     return frozenset(found - {name for c, name in REFUSED if c == category})
 
 
