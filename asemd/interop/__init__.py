@@ -1,1 +1,2 @@
-"""Doors to other libraries: MDAnalysis (`mdanalysis`, `stream`, `converter`) and spglib (`symmetry`), imported when they are used."""
+"""Doors to other libraries: formats of ASE's files (`formats`), MDAnalysis (`mdanalysis`, `stream`, `converter`) and spglib (`symmetry`),
+imported when they are used."""

@@ -32,6 +32,8 @@ class Frame:
     rows : list of list of str
     where : Where
         The place of its first line.
+    units : str
+        What the file says of its unit style; empty if nothing.
     """
 
     step: int
@@ -40,6 +42,16 @@ class Frame:
     columns: list[str]
     rows: list[list[str]]
     where: Where
+    units: str = ""
+
+    def corners(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Lower and upper corner (3,) of the box without its tilt, and its tilt factors (3,): xy, xz, yz."""
+        lo, hi, tilt = self.bounds[:, 0].copy(), self.bounds[:, 1].copy(), np.zeros(3)
+        if self.bounds.shape[1] == 3:
+            tilt = xy, xz, yz = self.bounds[:, 2]
+            lo[0], hi[0] = lo[0] - min(0.0, xy, xz, xy + xz), hi[0] - max(0.0, xy, xz, xy + xz)
+            lo[1], hi[1] = lo[1] - min(0.0, yz), hi[1] - max(0.0, yz)
+        return lo, hi, tilt
 
     def column(self, name: str) -> np.ndarray:
         """The values of a column.
@@ -126,9 +138,10 @@ class _Lines:
 
 
 def _native(lines: _Lines, k: int) -> Frame | None:
-    text = lines.next()
+    text, units = lines.next(), ""
     while text is not None and text.startswith(("ITEM: UNITS", "ITEM: TIME\n")):
-        lines.must("the value")
+        value = lines.must("the value").strip()
+        units = value if text.startswith("ITEM: UNITS") else units
         text = lines.next()
     if text is None or not text.strip():
         return None
@@ -149,7 +162,7 @@ def _native(lines: _Lines, k: int) -> Frame | None:
             raise InputError("dump file: a line of box bounds is too short").at(lines.where)
         bounds.append([number(v, "dump file: box bounds") for v in values[:2 + tilted]])
     columns = lines.item("ATOMS")
-    return Frame(step, np.array(bounds), tuple(words[3:] if tilted else words), columns, lines.rows(n, len(columns)), where)
+    return Frame(step, np.array(bounds), tuple(words[3:] if tilted else words), columns, lines.rows(n, len(columns)), where, units)
 
 
 def _whole(lines: _Lines, what: str) -> int:

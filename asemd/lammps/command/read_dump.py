@@ -167,11 +167,7 @@ def _box(frame: Frame, system, session) -> Box:
                          f"{theirs.replace('orthogonal', 'ortho')} before").at(frame.where)
     if frame.boundary and frame.boundary != old.boundary:
         session.warn(f"boundaries of the dump file ({' '.join(frame.boundary)}) differ from those of the simulation")
-    lo, hi, tilt = bounds[:, 0].copy(), bounds[:, 1].copy(), bounds[:, 2] if tilted else np.zeros(3)
-    if tilted:
-        xy, xz, yz = tilt
-        lo[0], hi[0] = lo[0] - min(0.0, xy, xz, xy + xz), hi[0] - max(0.0, xy, xz, xy + xz)
-        lo[1], hi[1] = lo[1] - min(0.0, yz), hi[1] - max(0.0, yz)
+    lo, hi, tilt = frame.corners()
     return Box.from_lammps(lo, hi, tilt, old.boundary, tilted)
 
 
