@@ -1,6 +1,8 @@
 """A box that is driven, and momentum or heat that is: positions, velocities, box and outputs as LAMMPS has them."""
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scripted import by_lammps, have_lammps, measure, write_data
@@ -36,6 +38,8 @@ CASES = {
                     "fix 2 all deform 2 xy erate 0.03 yz erate -0.001 remap v"], ["f_1", *(f"f_1[{k}]" for k in range(1, 13))]),
     "sllod stretch": (["fix 1 all nvt/sllod temp 300 400 50", "compute t all temp/deform", "compute_modify t extra/dof 0",
                        "fix 2 all deform 1 y trate 0.001 x volume z volume remap v", "fix_modify 1 temp t"], ["f_1", "c_t"]),
+    "sllod sub-steps": ([TILTED, "fix 2 all deform 1 xy erate 0.002 remap v", "fix 1 all nvt/sllod temp 300 300 50 tloop 3 tchain 2"],
+                        ["f_1", *BOX]),
     "deform levels": ([TILTED, "run_style respa 2 2 bond 1 pair 2", "fix 2 all deform 2 xy erate 0.03 remap v",
                        "fix 1 all nvt/sllod temp 300 300 50"], ["f_1", *BOX]),
     "heat": ([NVE, "fix 2 all heat 1 0.5"], ["f_2", "etotal"]),
@@ -89,9 +93,24 @@ def expected(cases, tmp_path_factory):
 @pytest.mark.parametrize("name", [*CASES, *RELAX])
 def test_like_lammps(name, cases, expected):
     from asemd.lammps import Lammps
-    for ours, theirs in zip(measure(Lammps, cases[name]), expected[name], strict=True):
+    made = partial(start, "-compat", "lammps") if name == "sllod sub-steps" else Lammps
+    for ours, theirs in zip(measure(made, cases[name]), expected[name], strict=True):
         for formula, a, b in zip(cases[name]["values"], ours["values"], theirs["values"], strict=True):
             assert a == pytest.approx(b, rel=1e-10, abs=1e-9), formula
         for key in ("x", "v"):
             a, b = np.array(ours[key]), np.array(theirs[key])
             assert abs(a - b).max() <= 5e-12 * abs(b).max(), key
+
+
+def start(*words, cmdargs):
+    from asemd.lammps import Lammps
+    return Lammps(cmdargs=[*cmdargs, *words])
+
+
+def test_sub_steps_share_the_flow(cases):
+    """Sub-steps of the chain change nothing but its accuracy; with LAMMPS's numbers the flow acts once in each."""
+    case = cases["sllod sub-steps"]
+    one = {**case, "commands": [c.replace("tloop 3", "tloop 1") for c in case["commands"]]}
+    single, several, theirs = (np.array(measure(partial(start, *words), c)[-1]["v"])
+                               for c, words in ((one, ()), (case, ()), (case, ("-compat", "lammps"))))
+    assert abs(several - single).max() < 1e-3 * abs(theirs - single).max() > 0.0

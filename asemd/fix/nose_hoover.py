@@ -45,12 +45,14 @@ def nose_hoover_chain(th, p):
     drag = 1.0 - th.dt * p[7] * p[8] / loops
     push[0] = boltz * (dof * p[11] - p[15] * target) / mass[0] if dof > 0.0 else 0.0
     factor = 1.0
-    for _ in range(loops):
+    for m in range(loops):
         for k in range(n - 1, -1, -1):
             slow = math.exp(-eighth * rate[k + 1])
             rate[k] = (rate[k] * slow + push[k] * quarter) * drag * slow
         scale = math.exp(-half * rate[0])
         factor *= scale
+        if p.size > 17 + 4 * n:
+            p[17 + 4 * n + m] = scale
         p[11] *= scale * scale
         push[0] = boltz * (dof * p[11] - p[15] * target) / mass[0] if dof > 0.0 else 0.0
         for k in range(n):
@@ -196,7 +198,7 @@ class NoseHoover(Thermostat):
         """The chain's masses and accelerations for the temperature at the start of the run."""
         n, p = self.chain, self.p
         p[11:14], p[15] = (self.temp.scalar(loop.snapshot()), 1.0, self.reference(loop)), p[2]
-        rate, push, mass = p[HEADER + n:HEADER + 2 * n], p[HEADER + 2 * n + 1:HEADER + 3 * n + 1], p[HEADER + 3 * n + 1:]
+        rate, push, mass = p[HEADER + n:HEADER + 2 * n], p[HEADER + 2 * n + 1:HEADER + 3 * n + 1], p[HEADER + 3 * n + 1:HEADER + 4 * n + 1]
         mass[:] = p[3] * p[13] * self.damping**2
         mass[0] *= p[2]
         if n > 1:
@@ -210,7 +212,7 @@ class NoseHoover(Thermostat):
     def chain_energies(self) -> tuple[np.ndarray, np.ndarray]:
         """Potential and kinetic energies of the links of the chain."""
         n, p = self.chain, self.p
-        eta, rate, mass = p[HEADER:HEADER + n], p[HEADER + n:HEADER + 2 * n], p[HEADER + 3 * n + 1:]
+        eta, rate, mass = p[HEADER:HEADER + n], p[HEADER + n:HEADER + 2 * n], p[HEADER + 3 * n + 1:HEADER + 4 * n + 1]
         potential = p[3] * p[13] * eta
         potential[0] *= p[15]
         return potential, 0.5 * mass * rate * rate

@@ -6,6 +6,9 @@ with the flow :math:`u(r) = \dot h\, h^{-1} (r - r_0) + \dot r_0` of the box. Th
 (compute temp/deform) it measures. With ``psllod yes`` the term of the gradient takes :math:`v` in place of :math:`v'`. The box must be
 deformed with ``remap v``. The chain has one link unless ``tchain`` says otherwise.
 
+Each of the M sub-steps of ``tloop M`` takes its part of the term of the gradient. LAMMPS takes the whole term in each, M times the flow's
+gradient: ``-compat lammps`` does so too.
+
 Source: D. J. Evans, G. P. Morriss, Phys. Rev. A 30, 1528 (1984); M. E. Tuckerman, C. J. Mundy, S. Balasubramanian, M. L. Klein,
 J. Chem. Phys. 106, 5615 (1997); P. J. Daivis, B. D. Todd, J. Chem. Phys. 124, 194103 (2006) for psllod; LAMMPS manual, fix nvt/sllod.
 """
@@ -54,27 +57,28 @@ def thermal_temperature(th, s, p, rates):
     return p[4] * twice / (p[2] * p[3]) if p[2] > 0.0 else 0.0
 
 
-def thermostat(th, s, p, rates, peculiar):
-    """Half a step of the chain on the thermal velocities, and of the term of the gradient."""
+def thermostat(th, s, p, rates, peculiar, share):
+    """Half a step of the chain on the thermal velocities, and in each of its sub-steps `share` of the term of the gradient."""
     m = np.empty(6)
     gradient(s.box, rates, m)
     barrier(th)                 # others may still read the factor of the last step
     if th.tid == 0:
         nose_hoover_chain(th, p)
     barrier(th)
-    bit, factor, half, mine, o = np.int32(np.int64(p[0])), p[12], 0.5 * th.dt, slice(th.lo, th.hi), s.box.origin
+    bit, half, mine, o = np.int32(np.int64(p[0])), 0.5 * th.dt * share, slice(th.lo, th.hi), s.box.origin
     mask, x, y, z, vx, vy, vz = s.mask[mine], s.x[0, mine], s.x[1, mine], s.x[2, mine], s.v[0, mine], s.v[1, mine], s.v[2, mine]
-    for i in range(mask.size):
-        if mask[i] & bit != 0:
-            dx, dy, dz = x[i] - o[0], y[i] - o[1], z[i] - o[2]
-            u = m[0] * dx + m[3] * dy + m[4] * dz + rates[9]
-            v = m[1] * dy + m[5] * dz + rates[10]
-            w = m[2] * dz + rates[11]
-            a, b, c = vx[i] - u, vy[i] - v, vz[i] - w
-            p_x, p_y, p_z = (vx[i], vy[i], vz[i]) if peculiar != 0.0 else (a, b, c)
-            vx[i] = a * factor - half * (m[0] * p_x + m[3] * p_y + m[4] * p_z) + u
-            vy[i] = b * factor - half * (m[1] * p_y + m[5] * p_z) + v
-            vz[i] = c * factor - half * m[2] * p_z + w
+    for factor in p[17 + 4 * int(p[9]):]:
+        for i in range(mask.size):
+            if mask[i] & bit != 0:
+                dx, dy, dz = x[i] - o[0], y[i] - o[1], z[i] - o[2]
+                u = m[0] * dx + m[3] * dy + m[4] * dz + rates[9]
+                v = m[1] * dy + m[5] * dz + rates[10]
+                w = m[2] * dz + rates[11]
+                a, b, c = vx[i] - u, vy[i] - v, vz[i] - w
+                p_x, p_y, p_z = (vx[i], vy[i], vz[i]) if peculiar != 0.0 else (a, b, c)
+                vx[i] = a * factor - half * (m[0] * p_x + m[3] * p_y + m[4] * p_z) + u
+                vy[i] = b * factor - half * (m[1] * p_y + m[5] * p_z) + v
+                vz[i] = c * factor - half * m[2] * p_z + w
 
 
 class NVTSllod(NVT):
@@ -90,6 +94,8 @@ class NVTSllod(NVT):
         Relaxation time, in time units of the scene.
     chain : int
         Length of the chain.
+    loops : int
+        Sub-steps of the chain.
     drag : float
         Damps oscillations of the chain.
     psllod : bool
@@ -107,9 +113,10 @@ class NVTSllod(NVT):
     size = 12
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 1, drag: float = 0.0,
-                 psllod: bool = False):
-        super().__init__(group, temperature, damping, chain, 1, drag)
+                 psllod: bool = False, loops: int = 1):
+        super().__init__(group, temperature, damping, chain, loops, drag)
         self.temp, self.psllod = TempDeform(group), psllod
+        self.p = np.append(self.p, np.ones(loops))      # the factors of the sub-steps
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -119,9 +126,8 @@ class NVTSllod(NVT):
             psllod = yes_no(take(words[at + 1:], 1, "fix nvt/sllod psllod")[0], "fix nvt/sllod psllod")
             del words[at:at + 2]
         plain = NVT.from_lammps(group, words, session)
-        if plain.loops != 1:
-            raise InputError("fix nvt/sllod: tloop must be 1")
-        return cls(group, (plain.start, plain.stop), plain.damping, plain.chain if "tchain" in words else 1, plain.drag, psllod)
+        return cls(group, (plain.start, plain.stop), plain.damping, plain.chain if "tchain" in words else 1, plain.drag, psllod,
+                   plain.loops)
 
     def to_lammps(self) -> list[str]:
         return [*super().to_lammps(), "psllod", "yes" if self.psllod else "no"]
@@ -133,21 +139,21 @@ class NVTSllod(NVT):
             raise InputError(f"fix {self.id} (style {self.style}) needs a fix deform")
         if deform.remap != "v":
             raise InputError(f"fix {self.id} (style {self.style}) needs a fix deform with remap v, it has remap {deform.remap}")
-        return (deform.p, np.array([float(self.psllod)]))
+        return (deform.p, np.array([float(self.psllod), 1.0 if loop.interactions.compat == "lammps" else 1.0 / self.loops]))
 
     def vector(self, i: int) -> float:
         """Positions and velocities of the chain, its potential and its kinetic energies; 12 values, the last ones 0 for a short chain."""
         n, p = self.chain, self.p
         if not 1 <= i <= max(12, 4 * n):
             raise InputError(f"fix {self.id} (style {self.style}): the vector has {max(12, 4 * n)} elements, there is no element {i}")
-        eta, rate, mass = p[HEADER:HEADER + n], p[HEADER + n:HEADER + 2 * n], p[HEADER + 3 * n + 1:]
+        eta, rate, mass = p[HEADER:HEADER + n], p[HEADER + n:HEADER + 2 * n], p[HEADER + 3 * n + 1:HEADER + 4 * n + 1]
         weight = np.where(np.arange(n) == 0, p[2], 1.0)
         values = np.concatenate([eta, rate, p[3] * p[13] * weight * eta, 0.5 * mass * rate * rate])
         return float(values[i - 1]) if i <= 4 * n else 0.0
 
     @hook(uses=[nose_hoover_chain, gradient, thermostat])
     def initial_integrate(th, s, p, a):
-        thermostat(th, s, p, a[0], a[1][0])
+        thermostat(th, s, p, a[0], a[1][0], a[1][1])
         bit, half, mine = np.int32(np.int64(p[0])), 0.5 * th.dt, slice(th.lo, th.hi)
         mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
         for d in range(3):
@@ -159,7 +165,7 @@ class NVTSllod(NVT):
 
     @hook(uses=[nose_hoover_chain, gradient, thermostat])
     def outer_initial(th, s, p, a):
-        thermostat(th, s, p, a[0], a[1][0])
+        thermostat(th, s, p, a[0], a[1][0], a[1][1])
         bit, half, mine = np.int32(np.int64(p[0])), 0.5 * th.dt, slice(th.lo, th.hi)
         mask, inverse_mass = s.mask[mine], s.inverse_mass[mine]
         for d in range(3):
@@ -180,4 +186,4 @@ class NVTSllod(NVT):
         now = thermal_temperature(th, s, p, a[0])
         if th.tid == 0:
             p[11] = now
-        thermostat(th, s, p, a[0], a[1][0])
+        thermostat(th, s, p, a[0], a[1][0], a[1][1])

@@ -43,7 +43,7 @@ PARTIAL = {
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("fix", "adapt"): "no cutoffs",
-    ("fix", "nvt/sllod"): "tloop 1 only; fix_modify temp takes compute temp/deform",
+    ("fix", "nvt/sllod"): "fix_modify temp takes compute temp/deform",
     ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "shake"): "run_style verlet",
     ("fix", "rattle"): "run_style verlet",
