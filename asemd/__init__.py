@@ -23,6 +23,7 @@ _LAZY = {
     "to_mdanalysis": "asemd.interop.mdanalysis",
     "from_mdanalysis": "asemd.interop.mdanalysis",
     "Stream": "asemd.interop.stream",
+    "Symmetry": "asemd.interop.symmetry",
     "Atoms": "asemd.system",
     "System": "asemd.system",
     "Box": "asemd.box",

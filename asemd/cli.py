@@ -22,6 +22,7 @@ COMMANDS: dict[str, str] = {
     "run": "asemd.cli:run",
     "validate": "asemd.cli_inspect:validate",
     "plan": "asemd.cli_inspect:plan",
+    "symmetry": "asemd.cli_inspect:symmetry",
     "styles": "asemd.cli_inspect:styles",
     "doctor": "asemd.cli_inspect:doctor",
     "convert": "asemd.cli_convert:convert",

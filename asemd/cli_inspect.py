@@ -1,4 +1,4 @@
-"""The commands ``asemd validate``, ``plan``, ``styles`` and ``doctor``: they look at things and run no simulation of the user's."""
+"""The commands ``asemd validate plan symmetry styles doctor``: they look at things and run no simulation of the user's."""
 from __future__ import annotations
 
 import json
@@ -70,6 +70,19 @@ def plan(context: typer.Context, script: Script = None, compat: Compat = None, p
         print("Measuring the speed of this machine: some seconds, up to a minute if kernels have to be compiled ...", file=sys.stderr)
         calibration.calibrate(threads, precision, again=True)
         found = of_script(path, switches)
+    print_parts(found.parts(), found.to_dict(), as_json)
+    return 0
+
+
+def symmetry(context: typer.Context, script: Annotated[str | None, typer.Argument(help="LAMMPS input script or data file.")] = None,
+             tolerance: Annotated[float, typer.Option(help="How far an atom may be from its place, Angstrom.")] = 1e-5,
+             as_json: Json = False) -> int:
+    """Print the space group of a script's atoms, by their types and bonds, as they stand before the first run."""
+    from asemd.interop.symmetry import Symmetry
+    from asemd.lammps import convert
+    from asemd.lammps.read import head, is_data, read
+    path, switches = set_up(context, script, "symmetry", None, "double", 1)
+    found = Symmetry(read(path) if is_data(head(path)) else convert.read(path, switches), tolerance)
     print_parts(found.parts(), found.to_dict(), as_json)
     return 0
 

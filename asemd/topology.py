@@ -270,12 +270,7 @@ class Topology:
         grid = np.stack(np.meshgrid(*map(np.arange, times), indexing="ij"), -1).reshape(-1, 3)
         parts = {}
         for kind, atoms, types in self.every():
-            at = np.zeros((*atoms.shape, 3), np.int64)     # the copy of every atom, counted from that of the first
-            chain = {"angle": ((1, 0), (1, 2)), "bond": ((0, 1),)}.get(kind, ((1, 0), (1, 2), (2, 3), (3, 4))[:WIDTHS[kind] - 1])
-            for known, new in chain:
-                _, shift = box.minimum_image(x[atoms[:, new]] - x[atoms[:, known]])
-                at[:, new] = at[:, known] + shift
-            copy = (grid[:, None, None] + at[None]) % times
+            copy = (grid[:, None, None] + cells_apart(kind, atoms, box, x)[None]) % times
             number = (copy[..., 0] * times[1] + copy[..., 1]) * times[2] + copy[..., 2]
             parts[kind] = (number * n + atoms).reshape(-1, atoms.shape[1]), np.tile(types, len(grid))
         return Topology._made(parts, self.frozen and self.frozen.repeat_periodic(n, times, box, x))
@@ -332,6 +327,16 @@ class Topology:
         key, index = np.unique(np.concatenate(keys), return_index=True)     # the first occurrence is the nearest
         kind = np.repeat(np.array([1, 2, 3], np.int8), [len(k) for k in keys])[index]
         return np.column_stack(np.divmod(key, max(n, 1))).astype(np.int32), kind
+
+
+def cells_apart(kind: str, atoms: np.ndarray, box, x: np.ndarray) -> np.ndarray:
+    """Cells (m, k, 3) between the atoms (m, k) of periodic items, counted from one of them; every bond is its shortest image."""
+    at = np.zeros((*atoms.shape, 3), np.int64)
+    chain = {"angle": ((1, 0), (1, 2)), "bond": ((0, 1),)}.get(kind, ((1, 0), (1, 2), (2, 3), (3, 4))[:WIDTHS[kind] - 1])
+    for known, new in chain:
+        _, shift = box.minimum_image(x[atoms[:, new]] - x[atoms[:, known]])
+        at[:, new] = at[:, known] + shift
+    return at
 
 
 def _whole(values, what: str) -> np.ndarray:

@@ -53,7 +53,7 @@ class Live(Frames):
 
     @property
     def source(self):
-        from asemd.interop.mdanalysis import remembered
+        from asemd.interop.sources import remembered
         return remembered(self.sources[0])
 
     def copy(self):

@@ -2,15 +2,13 @@
 from __future__ import annotations
 
 import numpy as np
-from ase import Atoms as PlainAtoms
 from ase.calculators.singlepoint import SinglePointCalculator
 
 from asemd.atoms import Atoms
-from asemd.calculator import ForceField
 from asemd.errors import InputError
 from asemd.interop.attributes import attributes, connections, new_atoms, same_items, topology_of, update
-from asemd.interop.frames import FORCE, SPEED, Frame, frame_of, is_reduced, known_forces
-from asemd.scene import Scene
+from asemd.interop.frames import FORCE, SPEED, Frame, frame_of
+from asemd.interop.sources import frames_of, remembered
 
 
 def to_mdanalysis(source, dt: float = 1.0):
@@ -42,7 +40,7 @@ def to_mdanalysis(source, dt: float = 1.0):
     the atoms it was made of, and `from_mdanalysis` gives what was not changed back to the last bit.
     """
     mda = library()
-    frames, reduced = _frames_of(source)
+    frames, reduced = frames_of(source, "to_mdanalysis")
     sources = [remembered(atoms) for atoms in frames]
     _share(sources)
     universe = mda.Universe(topology_of(sources[0]), to_guess=())
@@ -100,51 +98,6 @@ def from_mdanalysis(group) -> Atoms:
 
 
 # ---- there ------------------------------------------------------------------------------------------------------------------------------
-def _frames_of(source) -> tuple[list[Atoms], bool]:
-    """The frames of whatever was given, and whether their numbers are in units lj."""
-    source = getattr(source, "session", source)             # asemd.Lammps
-    scene = getattr(source, "scene", source)                # a session
-    if isinstance(scene, Scene):
-        return [_of_scene(scene)], scene.units == "lj"
-    if isinstance(source, PlainAtoms):
-        source = [source]
-    try:
-        frames = list(source) if not isinstance(source, (str, bytes)) else []
-    except TypeError:
-        frames = [None]
-    if not frames or not all(isinstance(atoms, PlainAtoms) for atoms in frames):
-        raise InputError("to_mdanalysis needs atoms, a scene, or frames that are atoms (ase.io.read(file, ':')), got "
-                         f"{source if isinstance(source, str) else type(source).__name__}{'' if frames else ' without frames'}")
-    for k, atoms in enumerate(frames):
-        if not np.array_equal(atoms.numbers, frames[0].numbers):
-            raise InputError(f"to_mdanalysis: frame {k} has other atoms than the first ({len(atoms)} and {len(frames[0])}): the atoms of a "
-                             "universe stay the same")
-    return frames, is_reduced(frames[0])
-
-
-def _of_scene(scene: Scene) -> Atoms:
-    """The atoms of a scene; type labels become their names."""
-    atoms = scene.need_system("to_mdanalysis").to_ase()
-    labels = scene.system.labels["atom"]
-    if labels:
-        atoms.set_array("atomtypes", np.array([labels.get(int(t), str(t)) for t in atoms.arrays["type"]]))
-    return atoms
-
-
-def remembered(atoms) -> Atoms:
-    """A copy with its bonds, also where only `info` or the calculator has them, and with the forces that are known."""
-    if isinstance(atoms, Atoms):
-        copied = atoms.copy()
-    else:
-        copied = Atoms(atoms, topology=atoms.calc.topology if isinstance(atoms.calc, ForceField) else None)
-        for name, array in atoms.arrays.items():
-            if name not in copied.arrays:
-                copied.set_array(name, array)
-    forces = known_forces(atoms)
-    copied.calc = None if forces is None else SinglePointCalculator(copied, forces=forces)
-    return copied
-
-
 def _share(sources: list[Atoms]) -> None:
     """Keep once what is the same in all frames."""
     first = sources[0]

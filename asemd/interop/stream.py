@@ -7,7 +7,8 @@ from ase.units import fs
 from asemd.errors import InputError
 from asemd.interop.attributes import topology_of
 from asemd.interop.frames import frame_of, is_reduced
-from asemd.interop.mdanalysis import in_memory, library, remembered
+from asemd.interop.mdanalysis import in_memory, library
+from asemd.interop.sources import remembered
 
 
 class Stream:
