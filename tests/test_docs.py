@@ -34,7 +34,7 @@ def python(*arguments: str, cwd: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/tutorial.md", "docs/ase.md", "docs/kspace.md", "docs/symmetry.md"])
+@pytest.mark.parametrize("name", ["README.md", *(f"docs/{page}.md" for page in ("tutorial", "ase", "kspace", "mdanalysis", "symmetry"))])
 def test_python_blocks_run(name, tmp_path):
     page = ROOT / name
     for library in NEEDED.get(name, ()):
