@@ -1,6 +1,7 @@
 """LAMMPS's own force tests, from the folder that the environment variable ASEMD_CONFORMANCE names; skipped without it.
 
-A case that passed before must pass: their names stand in ``conformance_passed.txt``. To record what passes now::
+A case that passed before must pass: their names stand in ``conformance_passed.txt``, of which every fourth is run, all with ``-m slow``.
+To record what passes now::
 
     ASEMD_CONFORMANCE=folder python tests/test_conformance.py
 """
@@ -55,8 +56,9 @@ def passed(record: dict) -> bool:
 
 
 @pytest.mark.skipif(folder() is None, reason="ASEMD_CONFORMANCE names no folder")
-def test_what_passed_before_passes():
-    names = recorded()
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.slow)])
+def test_what_passed_before_passes(every):
+    names = recorded()[::every]
     now = results(names)
     failed = {n: now.get(n, {}).get("reason") or now.get(n, {}).get("status_block", "not run") for n in names if not passed(now.get(n, {}))}
     assert not failed, failed

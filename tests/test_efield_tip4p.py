@@ -44,11 +44,12 @@ def script(path, commands, *, run: str = "run 8") -> str:
         "thermo_style", "compute r all reduce sum c_s[1] c_s[4]\nthermo 1\nthermo_style").replace("run 0", run)
 
 
-def test_against_lammps(tmp_path):
+@pytest.mark.parametrize("names", [("constant", "variables and region"), pytest.param(tuple(CASES), marks=pytest.mark.slow)])
+def test_against_lammps(names, tmp_path):
     """Molecules that no side of the box cuts."""
     path = water.data(tmp_path / "water.data", cut=False)
-    scripts = [script(path, commands) for commands in CASES.values()]
-    for name, text, theirs in zip(CASES, scripts, wheel.ask(ASK, scripts=scripts, columns=COLUMNS), strict=True):
+    scripts = [script(path, CASES[name]) for name in names]
+    for name, text, theirs in zip(names, scripts, wheel.ask(ASK, scripts=scripts, columns=COLUMNS), strict=True):
         mine = Lammps(cmdargs=QUIET)
         mine.commands_string(text)
         ours = ([mine.get_thermo(c) for c in COLUMNS], [mine.extract_fix("2", 0, 0), *(mine.extract_fix("2", 0, 1, k) for k in range(3))],
