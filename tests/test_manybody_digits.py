@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import pytest
-from test_manybody import CASES, COEFF, FOLDER, uncompiled, write_tables
+from test_manybody import CASES, COEFF, FOLDER, uncompiled, write_densities, write_tables
 from wheel import ask
 
 pytest.importorskip("mpmath")
@@ -57,11 +57,12 @@ def cluster(name: str, folder) -> list[str]:
     return ["units metal", "boundary f f f", f"lattice diamond {a}", "region box block -5 7 -5 7 -5 7", f"create_box {n} box",
             "region some block 0 0.9 0 0.9 0 0.9", "create_atoms 1 region some " + " ".join(f"basis {k + 1} {k % n + 1}" for k in range(8)),
             "mass * 28", "displace_atoms all random 0.2 0.2 0.2 4711", f"pair_style {name}",
-            *(f"pair_coeff {c}" for c in COEFF.get(name, [f"* * {file.replace('HERE', str(folder))} {elements}"])), "run 0 post no"]
+            *(f"pair_coeff {c}".replace("HERE", str(folder)) for c in COEFF.get(name, [f"* * {file} {elements}"])), "run 0 post no"]
 
 
 def test_digits(tmp_path):
     write_tables(tmp_path)
+    write_densities(tmp_path)
     found = uncompiled(DIGITS, {name: cluster(name, tmp_path) for name in CASES}, ask(FOLDER + "answer = P"))
     for name, errors in found.items():
         assert max(errors) < 1e-13, (name, errors)
