@@ -65,7 +65,7 @@ class Loop:
         self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
         self._control, self._numbers = np.zeros(tl.CONTROLS, np.int64), np.zeros(tl.NUMBERS)
         self._chunk, self.halted, self._in_sync = 100, False, None       # whether the system has what the slots have; None: not known
-        self._relist, self.watchdog = Relist(), Watchdog(self)
+        self._relist, self.watchdog, self.trial_step = Relist(), Watchdog(self), 0      # the step that a minimisation evaluates
 
     def group_bit(self, name: str) -> int:
         """The bit value of a group: 1 for ``all``, 2, 4, ...

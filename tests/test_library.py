@@ -165,6 +165,63 @@ def test_external_forces(lmp):
             l.fix_external_get_force("1")
 
 
+SHARES = """
+def callback(caller, step, nlocal, ids, x, f):
+    places = np.array(x[:nlocal])
+    f[:nlocal] = -0.3 * (places - 5.0)
+    l.fix_external_set_energy_global('e', float(0.15 * ((places - 5.0)**2).sum()))
+    l.fix_external_set_virial_global('e', [1.0 + step, 2.0, 3.0, 4.0, 5.0, 6.0])
+    l.fix_external_set_energy_peratom('e', [float(v) for v in places[:, 0]])
+    l.fix_external_set_virial_peratom('e', [[float(v) * k for k in range(6)] for v in places[:, 1]])
+
+def total(of, columns):
+    return [float(v) for v in np.array(l.gather(of, 1, columns)).reshape(-1, columns).sum(axis=0)]
+
+answer = []
+for mode, words, run in (('pf/callback 1 1', '', 'run 2'), ('pf/callback 2 3', '', 'run 1'),
+                         ('pf/callback 1 1', 'energy no virial yes', 'run 1'),
+                         ('pf/callback 1 1', 'energy yes virial no', 'run 1'), ('pf/callback 2 1', '', 'minimize 0 0 3 20'),
+                         ('pf/array 1', '', 'run 1')):
+    l.command('clear')
+    l.commands_string(scene)
+    l.command('fix e two external ' + mode)
+    for pair in ('p pe/atom', 's stress/atom NULL virial', 'pf pe/atom fix', 'sf stress/atom NULL fix', 'vf pressure NULL fix'):
+        l.command('compute ' + pair.split()[0] + ' all ' + pair.split(None, 1)[1])
+    l.command('compute q all reduce sum c_p c_s[1] c_pf c_sf[4]')
+    l.command('thermo_style custom step pe press pxy c_vf c_q[1] c_q[2] c_q[3] c_q[4]')
+    l.command('thermo 1')
+    if words:
+        l.command('fix_modify e ' + words)
+    if 'callback' in mode:
+        l.set_fix_external_callback('e', callback, 'me')
+    else:
+        l.fix_external_set_virial_global('e', [1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    for line in ('run 0', run):
+        l.command(line)
+        answer.append([float(v) for v in l.last_thermo().values()])
+        answer.append(total('c_p', 1) + total('c_s', 6) + total('c_pf', 1) + total('c_sf', 6))
+"""
+
+
+def test_external_energies_and_virials():
+    """What the callback sets counts as in LAMMPS: in all, and by atom."""
+    scene = SCENE.rsplit("\n", 1)[0]
+    theirs = ask(f"scene = given['scene']\nl = start()\n{SHARES}\nl.close()", scene=scene)
+    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
+        names = {"l": l, "np": np, "scene": scene}
+        exec(SHARES, names)
+        close(names["answer"], theirs, "external")
+        with pytest.warns(UserWarning, match="unless its callback sets them"):
+            l.fix_external_set_energy_peratom("e", [0.0])
+        for values, words in (([1.0], r"shape \(6,\), got \(1,\)"), (["a"] * 6, "must be numbers")):
+            with pytest.raises(InputError, match=words):
+                l.fix_external_set_virial_global("e", values)
+        l.command("fix e two external pf/callback 1 1")
+        l.set_fix_external_callback("e", lambda *words: l.fix_external_set_virial_peratom("e", [[0.0] * 6]))
+        with pytest.raises(InputError, match="shape"):
+            l.command("run 0")
+
+
 def test_neighbor_list_has_every_pair_once(lmp):
     pairs = {frozenset((i, int(j))) for i, js in lmp.get_neighlist(0) for j in js}
     assert len(pairs) >= len({p for p in pairs if len(p) == 2}) > 10

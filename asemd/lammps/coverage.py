@@ -44,7 +44,6 @@ PARTIAL = {
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("fix", "adapt"): "no cutoffs",
     ("fix", "nvt/sllod"): "fix_modify temp takes compute temp/deform",
-    ("fix", "external"): "no energies or virials by atom, no virial",
     ("fix", "shake"): "run_style verlet",
     ("fix", "rattle"): "run_style verlet",
 }

@@ -37,8 +37,9 @@ class Landscape:
             loop.step = self.session.scene.step = system.step = self.step
             self.session.moment.forget()
             fix.update(loop)
-            self.step = self.next_step
+        loop.trial_step = self.step
         result = loop.evaluate()
+        self.step = self.next_step
         fixes = sum(f.scalar() for f in loop.fixes if f.thermo_energy)
         return result.potential + fixes, system.f
 

@@ -208,12 +208,20 @@ class Library:
         values[idx - 1] = val
 
     def fix_external_set_energy_peratom(self, fix_id: str, eatom: Sequence[float]) -> None:
-        """Refused: energies by atom of fix external are not counted here."""
-        raise InputError(f"fix {fix_id}: energies by atom are not supported, use fix_external_set_energy_global")
+        """Energies by row, set by the callback for its step; they count in compute pe/atom."""
+        if self._asked(fix_id, "energies"):
+            self._external(fix_id).set_energies(eatom)
 
-    def fix_external_set_virial_peratom(self, fix_id: str, vatom) -> None:
-        """Refused: virials by atom of fix external are not counted here."""
-        raise InputError(f"fix {fix_id}: virials by atom are not supported, use fix_external_set_virial_global")
+    def fix_external_set_virial_peratom(self, fix_id: str, vatom: Sequence[Sequence[float]]) -> None:
+        """Virials by row (xx yy zz xy xz yz, pressure times volume), set by the callback for its step, for compute stress/atom."""
+        if self._asked(fix_id, "virials"):
+            self._external(fix_id).set_virials(vatom)
+
+    def _asked(self, fix_id: str, what: str) -> bool:
+        """Whether the callback is at work."""
+        if not self._external(fix_id).asking:
+            self.session.warn(f"fix {fix_id} (style external): {what} by atom have no effect unless its callback sets them")
+        return self._external(fix_id).asking
 
 
 class Commands:
