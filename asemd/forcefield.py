@@ -242,9 +242,9 @@ class Interactions:
         """
         return make_terms(self, ntypes, units)
 
-    def tail_correction(self, system, units) -> tuple[float, float]:
-        """Energy and pressure of ``pair_modify tail yes``, in units of the scene."""
-        parts = [term.tail(system, units) for term in self.pair_terms(system.counts["ntypes"], units)]
+    def tail_correction(self, system, units, types: range | None = None) -> tuple[float, float]:
+        """Energy and pressure of ``pair_modify tail yes``, in units of the scene; with `types` of the pairs with an atom of these."""
+        parts = [term.tail(system, units, types) for term in self.pair_terms(system.counts["ntypes"], units)]
         return sum(e for e, _ in parts), sum(p for _, p in parts)
 
     def cutoff(self, ntypes: int, units) -> float:

@@ -75,8 +75,11 @@ class PairTerm:
         """Take a pair of types out."""
         self.tables.rows[self.cut_rows, i, j] = self.tables.rows[self.cut_rows, j, i] = 0.0
 
-    def tail(self, system, units) -> tuple[float, float]:
-        """Long-range correction of this term: energy, and pressure in the pressure units of the scene; zero without ``tail yes``."""
+    def tail(self, system, units, types: range | None = None) -> tuple[float, float]:
+        """Long-range correction of this term: energy, and pressure in the pressure units of the scene; zero without ``tail yes``.
+
+        With `types` that of pairs one of whose atoms, or both, are of these.
+        """
         if not self.has_tail or self.style.tail is None:
             return 0.0, 0.0
         count = np.bincount(system.type, minlength=system.counts["ntypes"] + 1)
@@ -84,7 +87,7 @@ class PairTerm:
         for (i, j), c in self.filled.items():
             cut = self.style.cutoffs(c, self.use.settings)[0]
             pairs = float(count[i]) * float(count[j]) * (1.0 if i == j else 2.0)
-            if cut > 0.0 and pairs:
+            if cut > 0.0 and pairs and (types is None or i in types or j in types):
                 e, p = self.style.tail(c, cut)
                 energy, pressure = energy + pairs * e, pressure + pairs * p
         volume = system.box.volume

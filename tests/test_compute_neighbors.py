@@ -149,7 +149,8 @@ def prepare(name: str) -> tuple[list[str], dict[str, str]]:
 @pytest.fixture(scope="module")
 def theirs():
     return ask(THEIRS, scenes={name: prepare(name) for name in SCENES} | {
-        "running": (running(), {"c": "A"}), "occupied": (occupied(), {"c": "B", "h": "B", "g": "B"})})
+        "running": (running(), {"c": "A"}), "tails": (tails(), {"c": "S", "d": "S"}),
+        "occupied": (occupied(), {"c": "B", "h": "B", "g": "B"})})
 
 
 def occupied() -> list[str]:
@@ -184,6 +185,22 @@ def test_density_of_entropy_in_a_run(theirs):
     lmp = ours(running())
     value = lmp.extract_compute("c", 1, 1)[np.argsort(lmp.scene.system.id)]
     np.testing.assert_allclose(value, theirs["running"]["c"], rtol=1e-9)
+    lmp.close()
+
+
+def tails() -> list[str]:
+    """Tail corrections of some types; each pair of types has its own coefficients, without which LAMMPS counts others."""
+    lines = [line for line in SCENES["crystal"].splitlines() if line]
+    return [*lines, "pair_coeff 1 2 0.7 0.95", "pair_modify tail yes", "variable f equal 0.7", "variable g equal 1.3",
+            "compute c all ti tail * v_f v_g", "compute d all ti tail 2 v_f v_g", "thermo_style custom step etail c_c c_d",
+            "thermo_modify norm no", "run 0"]
+
+
+def test_tail_of_some_types(theirs):
+    lmp = ours(tails())
+    for k in "cd":
+        assert lmp.extract_compute(k, 0, 0) == pytest.approx(float(theirs["tails"][k]), rel=1e-13)
+    assert abs(lmp.extract_compute("d", 0, 0)) < 0.99 * abs(lmp.extract_compute("c", 0, 0))
     lmp.close()
 
 
@@ -255,7 +272,7 @@ def ours(lines) -> Lammps:
     ("fep 1.0 pair lj/cut epsilon 1 1 v_f tail", "needs 1 value"), ("fep 1.0 pair lj/cut epsilon 1 1 v_f tale no", "did you mean tail"),
     ("fep/ta 1.0 xy", "needs 3 values"), ("fep/ta 1.0 zz 1.1", "one of xy xz yz"), ("fep/ta 1.0 xy -1", "must be positive"),
     ("fep/ta 1.0 xy 1.1 volume yes", "unknown keyword"),
-    ("ti tail 1 v_f v_g", "for all types"), ("ti", "at least one"), ("contact/atom c", "unknown group"),
+    ("ti tail 9 v_f v_g", "outside the valid range"), ("ti", "at least one"), ("contact/atom c", "unknown group"),
 ])
 def test_mistakes(crystal, line, message):
     with pytest.raises(InputError, match=message):

@@ -3,7 +3,11 @@ r"""Derivative of the energy by a coupling parameter, for thermodynamic integrat
 .. math:: \frac{dU}{d\lambda} = \sum \frac{U_s}{f(\lambda)} \frac{df}{d\lambda}
 
 summed over terms: pair styles whose energy :math:`U_s` is scaled by :math:`f(\lambda)` (as with fix adapt), the long-range solver, and the
-tail correction. Of pair styles and solver count the shares of the atoms of some types. A term whose f is zero counts as zero.
+tail correction. Of pair styles and solver count the shares of the atoms of some types, of the tail correction all pairs with an atom of
+these types. A term whose f is zero counts as zero.
+
+LAMMPS has the same tail correction for types up to the last one (``tail 2*``) if all pairs of types have a pair_coeff of their own; for
+others it adds what was left over from another pair of types.
 
 Source: LAMMPS manual, compute ti; Eike and Maginn, J. Chem. Phys. 124, 164503 (2006). Units: energy.
 """
@@ -64,9 +68,7 @@ class TI(Compute):
         for name, types, *_ in out.terms:
             if name not in ("tail", "kspace"):
                 _chosen(session.scene.interactions, name)
-            low, high = _types(session.scene.need_system("compute ti"), types)
-            if name == "tail" and (low, high) != (1, session.scene.system.counts["ntypes"]):
-                raise InputError("compute ti tail: the tail correction is one number for all types: use tail *")
+            _types(session.scene.need_system("compute ti"), types)
         return out
 
     def to_lammps(self) -> list[str]:
@@ -88,7 +90,7 @@ class TI(Compute):
                 continue
             low, high = _types(state.system, types)
             if name == "tail":
-                energy = state.result.energy["etail"]
+                energy = state.engine.interactions.tail_correction(state.system, state.units, range(low, high + 1))[0]
             elif name == "kspace":
                 inside = (low <= state.system.type) & (state.system.type <= high)
                 energy = state.result.energy["elong"] if inside.all() else float(state.result.energies_of["kspace"][inside].sum())
