@@ -28,6 +28,8 @@ _LAZY = {
     "System": "asemd.system",
     "Box": "asemd.box",
     "Topology": "asemd.topology",
+    "find_bonds": "asemd.interop.bonds",
+    "topology_from_bonds": "asemd.interop.bonds",
     "AsemdError": "asemd.errors",
     "InputError": "asemd.errors",
     "SimulationError": "asemd.errors",
