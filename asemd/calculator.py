@@ -22,7 +22,7 @@ from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.forcefield import Interactions
-from asemd.loads import Load, Maps, constraints_of, loads_of, together
+from asemd.loads import Field, Load, Maps, Potential, constraints_of, loads_of, together
 from asemd.native import coefficients, with_keys
 from asemd.result import with_masks
 from asemd.seen import GROUPS, same, topology_of, typed, uses_charges, view
@@ -99,7 +99,7 @@ class ForceField(Calculator):
         self.like: System | None = None
         self.settings = Settings(skin=skin, threads=threads, precision=precision)
         self.bits: dict[str, int] = {}           # group -> bit in the atoms' array "groups"
-        self.loads: list[Load | Maps] = []
+        self.loads: list[Load | Field | Potential | Maps] = []
         self.left_out: list[str] = []
         self._engine: Engine | None = None
         self._seen: dict[str, np.ndarray | None] = {}
@@ -117,16 +117,16 @@ class ForceField(Calculator):
     def from_scene(cls, scene) -> ForceField:
         """The calculator of a scene that a script has built; `attach` also gives the atoms what it needs.
 
-        Conservative forces of fixes (addforce with constant components) are part of it; those that are not are listed in `left_out`.
+        Forces of fixes that are functions of positions (`asemd.loads`) are part of it; others are listed in `left_out`.
         """
         self = cls(threads=scene.threads, precision=scene.precision)
-        self.arguments = {}
-        self.interactions, self.units = copy.deepcopy(scene.interactions), scene.system.units
+        self.arguments, self.interactions, self.units = {}, copy.deepcopy(scene.interactions), scene.system.units
         self.topology, self.like = scene.system.topology.copy(), scene.system.select(slice(0, 0))
         self.natoms = scene.system.n
         self.settings = replace(scene.neighbor, threads=scene.threads, precision=scene.precision)
-        self.loads, self.left_out = loads_of(scene.fixes.values())
-        names = {load.group for load in self.loads} | {w for kind, *words in self.settings.exclude if kind != "type" for w in words}
+        self.loads, self.left_out = loads_of(scene.fixes.values(), scene.system.n)
+        names = {w for kind, *words in self.settings.exclude if kind != "type" for w in words}
+        names |= {name for load in self.loads for name in load.groups}
         self.bits = {name: 1 << k for k, name in enumerate(sorted(names - {"all"}))}
         return self
 
@@ -254,7 +254,8 @@ class ForceField(Calculator):
 
     # ---- what has changed ---------------------------------------------------------------------------------------------------------------
     def _view(self, atoms) -> dict[str, np.ndarray | None]:
-        return view(atoms, uses_charges(self.interactions, self.loads))
+        masses = {"masses": atoms.arrays.get("masses")} if self.loads else {}       # springs share their force by mass
+        return view(atoms, uses_charges(self.interactions, self.loads)) | masses
 
     def check_state(self, atoms, tol: float = 0.0) -> list[str]:
         """Names of what is not as it was at the last evaluation; besides ASE's: type, origin, image, groups, topology."""
@@ -306,7 +307,7 @@ class ForceField(Calculator):
             result = self._engine.collect()
             if properties and ("energies" in properties or "stresses" in properties):
                 self._engine.per_atom(result)
-            self.results = self.convert(result, atoms)
+            self.results = self.convert(result, atoms, self._engine.system)
         except Exception:
             self._seen = {}
             raise
@@ -343,14 +344,14 @@ class ForceField(Calculator):
         topology = self.topology if (own := getattr(atoms, "topology", None)) is None else own
         self._seen_topology = None if topology is None else topology.copy()
 
-    def convert(self, result: Result, atoms, of_loop: bool = False) -> dict[str, Any]:
+    def convert(self, result: Result, atoms, system: System, of_loop: bool = False) -> dict[str, Any]:
         """A result of an engine for these atoms as ASE's properties, with the forces of fixes added.
 
         Parameters
         ----------
         result : Result
             In the units of the force field, without the loads.
-        atoms : ase.Atoms
+        atoms, system : ase.Atoms, System
         of_loop : bool
             The loads acted as fixes when the result was made, and its virial has what they count there.
 
@@ -364,7 +365,7 @@ class ForceField(Calculator):
         virial = result.virial + result.virial_of.get("tail", 0.0)
         shares, strains = np.zeros(len(atoms)), np.zeros((len(atoms), 6))
         if self.loads:
-            shares, added, strains, of_fixes = together(self.loads, atoms, u["distance"], self.mask, self._topology_of(atoms))
+            shares, added, strains, of_fixes = together(self.loads, atoms, system, u["distance"], self.mask)
             energy, forces = energy + float(shares.sum()), forces + added
             virial = virial + strains.sum(axis=0) - (of_fixes if of_loop else 0.0)
         energy *= u["energy"]

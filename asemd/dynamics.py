@@ -89,8 +89,9 @@ class MolecularDynamics(ASEMolecularDynamics):
         groups = {"all": np.ones(len(atoms), bool)} | {name: np.asarray(mask, bool) for name, mask in self.groups.items()}
         fixes = list(self.fixes)
         for k, load in enumerate(calc.loads):
-            groups[f"load {k}"] = calc.mask(atoms, load.group)
-            fixes.append(load.fix(f"load {k}"))
+            masks = {f"load {k} {m}": calc.mask(atoms, name) for m, name in enumerate(load.groups)}
+            groups |= masks
+            fixes.append(load.fix(*masks))
         held = self._held(atoms)
         for pattern in np.unique(held, axis=0) if len(held) else ():
             if pattern.any():
@@ -153,7 +154,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         atoms, calc = self.atoms, self.atoms.calc
         self._move(atoms, self._loop.system)
         if result is not None:
-            results = calc.convert(result, atoms, of_loop=True)
+            results = calc.convert(result, atoms, self._loop.system, of_loop=True)
             if not self._forces_are_own:     # the loop's forces hold those of thermostats too: the calculator computes its own when asked
                 del results["forces"]
             calc.adopt(atoms, results)

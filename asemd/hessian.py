@@ -15,7 +15,7 @@ from asemd.curvatures import SHIFT, STEP, bonded_items, of_list
 from asemd.embedded_curvature import of_embedded
 from asemd.engine import Engine
 from asemd.errors import InputError
-from asemd.loads import Maps
+from asemd.loads import Maps, Potential
 from asemd.manybody_term import ManyBodyTerm
 from asemd.own_term import OwnTerm
 from asemd.term import BondedTerm, PairListTerm
@@ -137,6 +137,8 @@ def of_calculator(calculator, atoms, numerical: bool = False):
     calculator.interactions.check_complete(system)
     matrix = hessian_of(system, calculator.interactions, calculator.neighbor_settings(atoms), numerical)
     for load in calculator.loads:
+        if isinstance(load, Potential):
+            raise InputError(f"no second derivatives of fix {load}")
         if isinstance(load, Maps) and len(system.topology.crossterms):
             if not numerical:
                 raise InputError("no second derivatives of fix cmap: numerical=True takes differences instead")
@@ -154,7 +156,7 @@ def _of_maps(load: Maps, system):
             here = x[at]
             for count, weight in SHIFT:
                 x[at] = here + count * STEP
-                inner[a] -= weight / STEP * load.items(x, system.box, system.topology, slice(m, m + 1))[1][0, 7:]
+                inner[a] -= weight / STEP * load.items(x, system, slice(m, m + 1))[1][0, 7:]
             x[at] = here
         index = (3 * atoms[:, None].astype(np.int64) + np.arange(3)).ravel()
         blocks.append((np.repeat(index, 15), np.tile(index, 15), 0.5 * (inner + inner.T).ravel()))

@@ -483,6 +483,72 @@ def test_added_forces_are_part_of_the_calculator(tmp_path):
     assert atoms.get_potential_energy() - energy == pytest.approx(jump, rel=1e-9)
 
 
+LOADS = {
+    "efield": "efield 0.1 0.2 -0.3", "spring": "spring tether 5 3 NULL 4 1.5", "spring couple": "spring couple low 5.0 1 2 3 0.5",
+    "spring/self": "spring/self 4.0 xy", "indent": "indent 10 sphere 5 5 5 6 units box",
+    "walls": "wall/harmonic zlo EDGE 1 1 4 zhi EDGE 1 1 3",
+    "restrain": "restrain bond 1 2 5 5 2.5 angle 1 2 3 5 5 100 dihedral 1 2 3 4 5 5 30 mult 2",
+}
+
+
+@pytest.mark.parametrize("name", LOADS)
+def test_forces_of_fixes_that_go_by_positions_are_part_of_the_calculator(tmp_path, name):
+    away, kcal = "displace_atoms all move 0 0 1.2 units box\n", units.kcal / units.mol
+    fix, then = f"fix 1 two {LOADS[name]}\nfix_modify 1 energy yes\n", "displace_atoms two move 0.2 0.1 0 units box\n"
+    text = script("real", away + fix + then, "f")
+    atoms, free = read(tmp_path, text), read(tmp_path, script("real", away + then, "f"))
+    virial = "fix_modify 1 virial yes\n" if name in ("efield", "walls") else ""
+    session = both.asemd(text + virial + "thermo_style custom step pe pxx pyy pzz\nthermo_modify norm no\nrun 0\n")
+    forces, energy = session.scene.system.f[np.argsort(session.scene.system.id)], atoms.get_potential_energy()
+    assert abs(forces - free.get_forces() / kcal).max() > 1e-3
+    assert energy == pytest.approx(session.last_thermo["PotEng"] * kcal, rel=1e-12)
+    assert np.allclose(atoms.get_forces() / kcal, forces, rtol=0, atol=1e-11 * abs(forces).max())
+    pressure = [session.last_thermo[word] * 101325 * units.Pascal for word in ("Pxx", "Pyy", "Pzz")]
+    assert np.allclose(atoms.get_stress()[:3], -np.array(pressure), rtol=1e-5)      # an atmosphere has five digits in units real
+    index = [0, 3, 40]
+    assert np.allclose(calculate_numerical_forces(atoms, 1e-4, iatoms=index), atoms.get_forces()[index], atol=1e-5)
+    if name == "efield":
+        assert np.allclose(calculate_numerical_stress(atoms, 1e-5), atoms.get_stress(), atol=1e-7)
+    assert atoms.get_potential_energies().sum() == pytest.approx(energy, rel=1e-10)
+    assert np.allclose(atoms.get_stresses().sum(0), atoms.get_stress(), atol=1e-12)
+    assert f"{LOADS[name].split()[0]} " in repr(atoms.calc)
+    for other in (copy.deepcopy(atoms), pickle.loads(pickle.dumps(atoms))):
+        assert other.get_potential_energy() == pytest.approx(energy, rel=1e-12)
+    asemd.MolecularDynamics(atoms, 0.2 * units.fs, fixes=[asemd.fix.NVE()]).run(5)
+    here = atoms.get_potential_energy(), atoms.get_forces()
+    atoms.calc.reset()
+    assert np.allclose(atoms.get_forces(), here[1], atol=1e-9) and atoms.get_potential_energy() == pytest.approx(here[0], rel=1e-10)
+
+
+def test_a_field_turns_with_charges_and_dipoles(tmp_path):
+    atoms = read(tmp_path, script("real", "fix 1 two efield 0.1 0.2 -0.3"))
+    energy, q = atoms.get_potential_energy(), atoms.get_initial_charges()
+    two = atoms.arrays["type"] == 2
+    unwrapped = atoms.positions + atoms.arrays["image"] @ atoms.cell.array
+    free = read_free(tmp_path)
+    added = -(q[:, None] * unwrapped)[two].sum(0) @ [0.1, 0.2, -0.3]
+    assert energy - free.get_potential_energy() == pytest.approx(added, rel=1e-6)       # of a volt and an elementary charge in units real
+    atoms.set_array("mu", np.tile([0.0, 0.0, 0.5], (len(atoms), 1)))
+    assert atoms.get_potential_energy() - energy == pytest.approx(0.15 * two.sum(), rel=1e-6)
+    del atoms.arrays["mu"], atoms.arrays["initial_charges"]
+    with pytest.raises(InputError, match="needs charges"):
+        atoms.get_potential_energy()
+
+
+def test_loads_say_what_they_cannot_do(tmp_path):
+    atoms = read(tmp_path, script("real", "fix 1 two spring/self 4.0"))
+    with pytest.raises(InputError, match="no second derivatives of fix spring/self"):
+        atoms.calc.get_hessian(atoms)
+    part = atoms[:10]
+    part.calc = atoms.calc
+    with pytest.raises(InputError, match="spring/self of the calculator is for"):
+        part.get_potential_energy()
+    atoms = read(tmp_path, script("real", "displace_atoms all move 0 0 1.2 units box\nfix 1 all wall/lj93 zlo -3 1 1 2.5 units box", "f"))
+    atoms.positions[3, 2] = -3.5
+    with pytest.raises(SimulationError, match="wall/lj93: atom 4 is on the wall or behind it"):
+        atoms.get_potential_energy()
+
+
 def test_forces_set_to_zero_are_constraints(tmp_path):
     more = "fix 1 low setforce 0 0 0\nfix 2 mid setforce NULL 0.0 NULL\nfix 3 all nve"
     atoms = read(tmp_path, script("real", more))
@@ -494,10 +560,11 @@ def test_forces_set_to_zero_are_constraints(tmp_path):
 
 
 def test_forces_without_an_energy_are_left_out_and_named(tmp_path):
-    more = "variable f atom -x\nfix 1 low setforce 1.0 0 0\nfix 2 two addforce v_f 0 0"
+    more = ("variable f atom -x\nfix 1 low setforce 1.0 0 0\nfix 2 two addforce v_f 0 0\nfix 3 two efield v_f 0 0\n"
+            "fix 4 all restrain bond 1 2 5 6 2.5\nfix 5 all gravity 1 vector 0 0 -1\nfix 6 all viscous 1.0")
     with pytest.warns(InputWarning, match="is not part of the calculator") as caught:
         atoms = read(tmp_path, script("real", more))
-    assert {str(w.message)[:5] for w in caught} == {"fix 1", "fix 2"}
+    assert {str(w.message)[:5] for w in caught} == {f"fix {k}" for k in range(1, 6)}
     assert not atoms.constraints and "fix 2 (addforce)" in repr(atoms.calc)
     assert atoms.get_potential_energy() == pytest.approx(read_free(tmp_path).get_potential_energy(), rel=1e-12)
 

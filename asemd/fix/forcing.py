@@ -41,6 +41,7 @@ class Forcing(Fix):
     first: ClassVar[int] = 3            # where the vector begins in ``p``
     modifies: ClassVar[tuple[str, ...]] = ()    # of fix_modify: energy, virial
     by_atom: ClassVar[bool] = False     # whether a variable may be of style atom
+    conservative: ClassVar[bool] = False    # forces are minus the gradient of `scalar`, unless numbers change
 
     def __init__(self, group: str = "all", values: tuple[Value | None, ...] = (), region=None):
         super().__init__(group)
@@ -129,6 +130,10 @@ class Forcing(Fix):
                     raise InputError(f"fix {self.id} (style {self.style}): variable {write(value)} must be of style equal")
                 else:
                     self.p[3 + self.told + k] = now
+
+    def has_potential(self) -> bool:
+        """Whether its forces are minus the gradient of `scalar`, a function of positions alone."""
+        return self.conservative and not self.follows
 
     # ---- outputs ---------------------------------------------------------------------------------------------------------------------
     @property

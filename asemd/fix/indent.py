@@ -86,6 +86,7 @@ class Indent(Forcing):
     style = "indent"
     told, size, first = 4, 3, 4
     modifies = ("energy",)
+    conservative = True
 
     def __init__(self, group: str = "all", k: float = 1.0, kind: str = "sphere", geometry=(0.0, 0.0, 0.0, 1.0), dim: str = "z",
                  side: str = "out"):

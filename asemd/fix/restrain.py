@@ -121,6 +121,7 @@ class Restrain(Forcing):
     style = "restrain"
     told, size, first = 4, 3, 4
     modifies = ("energy",)
+    conservative = True
 
     def __init__(self, group: str = "all", restraints=()):
         super().__init__(group)
@@ -179,6 +180,10 @@ class Restrain(Forcing):
                 block[7], block[9] = math.radians(value), 1.0 if last is None else last
             out += block.tolist()
         return out
+
+    def has_potential(self) -> bool:
+        """Strengths and distances that change during a run are no function of positions."""
+        return all(k0 == k1 and (kind == "dihedral" or last in (None, value)) for kind, _, k0, k1, value, last in self.restraints)
 
     def resize(self, loop) -> None:
         self.p[FIRST:] = self.numbers(loop)

@@ -46,6 +46,7 @@ class Spring(Forcing):
     minimizes = True
     told, size, first = 5, 4, 4
     modifies = ("energy",)
+    conservative = True
 
     def __init__(self, group: str = "all", k: float = 1.0, point=(0.0, 0.0, 0.0), length: float = 0.0, couple: str = ""):
         super().__init__(group, point)

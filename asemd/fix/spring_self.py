@@ -42,6 +42,7 @@ class SpringSelf(Forcing):
     restarts = ("peratom",)
     told = 1
     modifies = ("energy",)
+    conservative = True
     by_atom = True
 
     def __init__(self, group: str = "all", k: Value = 1.0, directions: str = "xyz"):

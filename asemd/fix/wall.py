@@ -120,6 +120,7 @@ class Wall(Forcing):
     told = 8
     first = 4
     modifies = ("energy", "virial")
+    conservative = True
     names: ClassVar[tuple[str, ...]] = ("epsilon", "sigma")
     constants: ClassVar[int] = 0        # how many of the coefficients, from the last on, must be numbers
     kind: ClassVar[int] = LJ93
