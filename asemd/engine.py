@@ -228,12 +228,15 @@ class Engine:
         if self.mode == "cluster":
             bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
             if self.list.gaps:      # where atoms fill a box that stays, once in a run
-                bins.squeeze(s, self.ns, self.system.n, self.periodic, self.reach, self.ortho, self.list.marked, not self.sparse)
+                bins.squeeze(s, self.ns, self.system.n, self.reach, self.ortho, self.list.marked, not self.sparse)
                 self.list.gaps = bins.k is not None or bool(self.box_moves) or not self.periodic.all()
-            if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
-                self._allocate(self.list.capacity)
-                s = self.state
-            self.ns = self.list.sort(k, s, self.ns, bins)
+            found = -1
+            while found < 0:
+                if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
+                    self._allocate(self.list.capacity)
+                    s = self.state
+                found = self.list.sort(k, s, self.ns, bins)
+            self.ns = found
         k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row,
                  s.type, s.mass, s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":

@@ -17,6 +17,8 @@ SMALL = 32             # below this many atoms a plain list: clusters would save
 MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
 MOST_PAIRS = 2e9
 WORTH = 0.5            # of the space: what may be left for empty stretches to be left out
+APART = 2.0            # times reach: what is left of an empty stretch
+VOID = 1.5             # times reach: an empty stretch of a column that no cluster extends over; less than what is left of one
 EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
 
@@ -103,13 +105,12 @@ class BinCell:
         self.far = self.origin + (self.vectors + np.abs(self.vectors)).sum(axis=0)      # no atom is near
         self.places, self.k = EVERYWHERE, None
 
-    def squeeze(self, state, ns: int, n: int, periodic: np.ndarray, reach: float, ortho: bool, mark: bool,
-                order: bool) -> None:
+    def squeeze(self, state, ns: int, n: int, reach: float, ortho: bool, mark: bool, order: bool) -> None:
         """Leave out empty stretches where few atoms (`n`) are in much space, so that cells are small where the atoms are."""
         if CLUSTER * self.volume <= n * reach**3:
             return
         k, low, high, places = squeezed_kernels(ortho, mark, order), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
-        k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, periodic, reach / self.widths, low, high, places)
+        k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, APART * reach / self.widths, low, high, places)
         left = 1.0 / places[:, 1]
         if left.prod() < WORTH:
             self.places, self.k, self.widths, self.volume = places, k, self.widths * left, self.volume * float(left.prod())
@@ -176,6 +177,7 @@ class ClusterList:
         self.threads, self.reach, self.width, self.marked = threads, reach, width, marked
         self.hide = np.zeros((threads, 1), np.uint8)
         self.capacity, self.gaps = 0, True      # whether to look for empty stretches before the next list
+        self.slots = 0      # that are needed at least
         self.bounds, self.lengths = np.zeros(threads + 1, np.int64), np.zeros(threads, np.int64)
         self.ranges = [self.bounds[t:t + 2] for t in range(threads)]      # where the clusters of each thread begin and end
         self.nx = self.ny = self.nz = 0
@@ -194,6 +196,8 @@ class ClusterList:
         # edge of the cube that holds one cluster; in layers and rows that are thinner than that, of the square or the line
         h = max((share * self.bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))),
                 share * max(wa, wb, wc))
+        if self.bins.k is not None:     # no column has atoms of both sides of what has been left out
+            h = min(h, 0.65 * APART * self.reach)
         nx, ny = max(1, round(wa / h)), max(1, round(wb / h))
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
@@ -204,7 +208,8 @@ class ClusterList:
         """Choose the grid, unless it is given; True if arrays had to be made anew (their slots' arrays too)."""
         self.bins, self.n = bins, n
         self.nx, self.ny, self.nz = nx, ny, nz = grid or self._grid()
-        columns, slots = nx * ny, n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER
+        self.void = int(min(VOID * self.reach * nz / max(bins.widths[2], 1e-300), nz))
+        columns, slots = nx * ny, max(n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER, self.slots)
         if len(self._cells) < columns * (nz + 1):
             self._cells = np.zeros(columns * (nz + 1) * 9 // 8, np.int32)
         if len(self.column_start) < columns + 1:
@@ -241,10 +246,13 @@ class ClusterList:
         self.bits = np.zeros((self.threads, self.candidates + 64), np.uint8)
 
     def sort(self, k, state, ns: int, bins: BinCell) -> int:
-        """Sort the slots; returns their number."""
+        """Sort the slots; returns their number, or a negative one if there are too few: `shape` then makes more."""
         k, self.far = bins.k or k, bins.far + 10 * self.reach
-        return k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
-                      self.cell_start, self.column_start, self.column_of, self.key, self.far, 4 * self.reach, bins.places)
+        found = k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
+                      self.cell_start, self.column_start, self.column_of, self.key, self.far, 4 * self.reach, self.void,
+                      bins.places)
+        self.slots = max(self.slots, -found * 17 // 16)
+        return found
 
     def _see(self, cell: Cell, periodic: np.ndarray) -> None:
         """Take the images of a cell, unless they are known."""

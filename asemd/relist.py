@@ -72,7 +72,7 @@ def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple, bool]] | None
                          engine.moved)
     reduced, close = c.near
     space = relist.Space(engine.origin, engine.vectors, engine.inverse, engine.periodic, c.bins.origin, c.bins.inverse, c.bins.widths,
-                         c.far, c.bins.places, c.shifts, reduced, c.nx, c.ny, c.nz, c.width, int(close), float(c.reach))
+                         c.far, c.bins.places, c.shifts, reduced, c.nx, c.ny, c.nz, c.void, c.width, int(close), float(c.reach))
     arrays = relist.Arrays(c.x2, c.v2, c.row2, c.cell_start, c.column_start, c.column_of, c.key, c.first, c.entries, c.own, c.span,
                            c.unshifted, c.work, c.work_codes, c.row_length, c.hide, c.excluded_first, c.excluded, c.where, c.earlier,
                            c.bits, COUNTERS, c.bounds, c.shares, c.lengths)

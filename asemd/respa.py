@@ -126,6 +126,7 @@ class ShortClusterTerm(PairTerm):
         if self.near is None:
             self.near = ClusterList(engine.threads, self.within, whole.width, whole.marked)
         near = self.near
+        near.slots = whole.slots
         near.shape(whole.bins, engine.system.n, (whole.nx, whole.ny, whole.nz))
         near.cell_start, near.column_start, near.column_of = whole.cell_start, whole.column_start, whole.column_of     # same slots
         near.build(engine.k, engine.state, engine.ns, engine.cell, engine.periodic, engine.exclusions.partners, engine.slot_of,

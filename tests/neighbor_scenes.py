@@ -61,7 +61,27 @@ def scenes() -> dict[str, tuple]:
     for word, cell in narrow.items():      # two images of an atom in reach of another
         for periodic in (ALL, (True, True, False)):
             out[f"narrow{word}{'' if all(periodic) else ', mixed'}"] = (anywhere(130, cell, rng, periodic, 2), cell, periodic, 2.7)
+    out |= apart(np.random.default_rng(5))
     out["cutoff a hair above lattice distances"] = (lattice((6, 6, 6), np.eye(3) * 5.4), np.eye(3) * 5.4, ALL, 1.8 * (1 + 1e-12))
+    return out
+
+
+def apart(rng) -> dict[str, tuple]:
+    """Atoms with much empty space between, along each direction and along all."""
+    drop, line, far = rng.normal(0, 1, (4, 70, 3)), np.array([60.0, 3.0, -5.0]), np.array([300.0, -200.0, 150.0])
+    places = (rng.random((5, 1, 3)) @ WIDE) * 6
+    out = {
+        "drops on a line": (np.concatenate([d + k * line for k, d in enumerate(drop)]), np.diag([240.0, 40, 40]), (True, True, False), 2.0),
+        "drops in a tilted cell": ((places + rng.normal(0, 0.8, (5, 60, 3))).reshape(-1, 3), WIDE * 6, ALL, 2.0),
+        "drop and gas far from it": (np.concatenate([*drop[:2], anywhere(60, np.eye(3) * 25.0, rng) + far]), np.eye(3), (False,) * 3, 3.0),
+    }
+    pairs = np.repeat(9.0 * np.arange(40), 2) + np.tile([0.0, 1.1], 40)
+    out["pairs on a line"] = (np.column_stack([np.full((80, 2), 3.0), pairs]), np.diag([6.0, 6.0, 360.0]), ALL, 2.0)
+    for axis, word in enumerate("xyz"):
+        thick, away = np.full(3, 13.0), np.eye(3)[axis] * 70.0
+        thick[axis] = 3.5
+        slabs = [anywhere(count, np.diag(thick), rng) + at * away for count, at in ((100, 0.0), (100, 1.0), (3, 0.4))]
+        out[f"slabs apart along {word}"] = (np.concatenate(slabs), np.diag(thick + 1.5 * away), ALL, 2.0)
     return out
 
 

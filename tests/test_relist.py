@@ -104,6 +104,24 @@ def test_arrays_that_are_too_small_grow():
     assert 0 < made[0] < loop.engine.builds
 
 
+def test_slots_that_are_too_few_become_more():
+    """Atoms of a line that rush into groups: clusters end with each group."""
+    z = np.arange(400) + 0.5
+    v = np.zeros((400, 3))
+    v[:, 2] = 4.5 - z % 9
+    system = System(box=Box(np.zeros(3), np.diag([6.0, 6.0, 400.0])), x=np.column_stack([np.full((400, 2), 3.0), z]), type=1, v=v,
+                    units="lj", mass=np.array([np.nan, 1.0]))
+    loop = loop_of(system, interactions=Interactions.build(pair={"soft 1.7": {(1, 1): (1e-9,)}}), dt=0.01)
+    loop.watchdog.on = False
+    loop.setup()
+    before, builds = loop.engine.list.capacity, loop.engine.builds
+    loop.advance(80)
+    assert loop.engine.builds > builds + 4 and loop.engine.list.capacity > before + 100
+    made = loop.engine.pairs
+    loop.engine.load()
+    assert loop.engine.pairs == made
+
+
 def test_fixes_that_have_to_do_with_lists_keep_them_in_python():
     class Looks(NVE):
         seen = 0

@@ -1,9 +1,10 @@
 """Sorting atoms into clusters and listing which clusters' atoms come near each other.
 
 Atoms stand in columns along the third cell vector, ordered along it by fine cells; `CLUSTER` consecutive ones form a cluster; empty
-slots pad the last cluster of a column. The list is half: cluster i holds single atoms j of later clusters (all images), and of its own
-cluster the images on the positive side. An entry is slot number + (shift code << 26); the code counts image -1, 0, 1 in base three, 13 is
-no shift, so no ghost atoms exist.
+slots pad the last cluster of a column, and the last one before an empty stretch: kernels in single precision take positions from the first
+atom of a cluster, and lose digits where the others are far. The list is half: cluster i holds single atoms j of later clusters (all
+images), and of its own cluster the images on the positive side. An entry is slot number + (shift code << 26); the code counts image
+-1, 0, 1 in base three, 13 is no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
 generated module, and so are MARK (which atoms are beyond reach is wanted), SORTED (rows are), TRACK, see `arrange`. What follows from
@@ -56,10 +57,11 @@ def wrap(x, image, row, ns, origin, vectors, inverse, periodic):
     return -1
 
 
-def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step, places):
-    """Counting sort into columns and cells, in place; returns the new number of slots. Empty slots stand at `far` plus steps, at rest.
+def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step, void, places):
+    """Counting sort into columns and cells, in place; returns the new number of slots, or minus that if there is no room for so many, and
+    nothing has changed. Empty slots stand at `far` plus steps, at rest.
 
-    `places`: see `asemd.kernels.gaps`.
+    A cluster ends before more than `void` empty cells. `places`: see `asemd.kernels.gaps`.
     """
     ncol = nx * ny
     for c in range(ncol):
@@ -90,26 +92,22 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
     p = 0
     for c in range(ncol):
         column_start[c] = p
+        last = nz
         for z in range(nz):
             t = cell_start[c, z]
+            p += (-p) % CLUSTER if t > 0 and z - last > void + 1 else 0
+            last = z if t > 0 else last
             cell_start[c, z] = p
             p += t
         cell_start[c, nz] = p
-        q = ((p + CLUSTER - 1) // CLUSTER) * CLUSTER
-        for k in range(p, q):
-            for d in range(3):
-                x[d, k] = far[d]
-                v[d, k] = 0.0
-            x[0, k] += (k % CLUSTER) * far_step
-            row[k] = -1
-        for k in range(column_start[c] // CLUSTER, q // CLUSTER):
-            column_of[k] = c
-        p = q
+        p += (-p) % CLUSTER
+    if p + CLUSTER > row2.shape[0]:
+        return -p - CLUSTER
     column_start[ncol] = p
-    for k in range(p, p + CLUSTER):      # one empty cluster behind: the target of padding entries
-        for d in range(3):
-            x[d, k] = far[d]
-            v[d, k] = 0.0
+    for c in range(ncol):
+        for k in range(column_start[c] // CLUSTER, column_start[c + 1] // CLUSTER):
+            column_of[k] = c
+    for k in range(p + CLUSTER):      # one empty cluster behind: the target of padding entries
         row[k] = -1
     for i in range(n):
         at = np.uint64(key[i])
@@ -119,6 +117,12 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
             x[d, k] = x2[d, i]
             v[d, k] = v2[d, i]
         row[k] = row2[i]
+    for k in range(p + CLUSTER):
+        if row[k] < 0:
+            for d in range(3):
+                x[d, k] = far[d]
+                v[d, k] = 0.0
+            x[0, k] += (k % CLUSTER) * far_step
     for c in range(ncol):            # the starts have moved to the ends: shift back
         for z in range(nz - 1, 0, -1):
             cell_start[c, z] = cell_start[c, z - 1]

@@ -9,7 +9,7 @@ import numpy as np
 SQUEEZED = True
 
 
-def find_gaps(x, row, ns, origin, inverse, periodic, reach, low, high, places):
+def find_gaps(x, row, ns, origin, inverse, reach, low, high, places):
     """Where stretches without atoms can be left out between atoms that do not reach each other, for `squeeze`.
 
     Parameters
@@ -42,7 +42,7 @@ def find_gaps(x, row, ns, origin, inverse, periodic, reach, low, high, places):
                 last = high[k]
             places[a, 2 + k] = out
         length = 1.0 - out
-        if periodic[a] and first < np.inf and first + 1.0 - last > reach[a]:      # across the face, too
+        if first < np.inf and first + 1.0 - last > reach[a]:      # across or at the faces, too
             length = last - first - out + reach[a]
             for k in range(m):
                 places[a, 2 + k] += first

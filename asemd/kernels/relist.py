@@ -62,6 +62,7 @@ class Space(NamedTuple):
     nx: int
     ny: int
     nz: int
+    void: int
     width: int
     close: int
     reach: float
@@ -134,8 +135,11 @@ def relist(th, live, a, g, c, p):
     if th.tid == 0:
         live[FINE] = wrap(a.x, a.image, a.row, live[NS], g.origin, g.vectors, g.inverse, g.periodic) < 0
         if live[FINE] != 0:
-            live[NS] = sort(a.x, a.v, a.row, live[NS], g.bin_origin, g.bin_inverse, g.nx, g.ny, g.nz, c.x2, c.v2, c.row2, c.cell_start,
-                            c.column_start, c.column_of, c.key, g.far, 4.0 * g.reach, g.places)
+            found = sort(a.x, a.v, a.row, live[NS], g.bin_origin, g.bin_inverse, g.nx, g.ny, g.nz, c.x2, c.v2, c.row2, c.cell_start,
+                         c.column_start, c.column_of, c.key, g.far, 4.0 * g.reach, g.void, g.places)
+            live[FINE] = found >= 0
+        if live[FINE] != 0:
+            live[NS] = found
             gather(live[NS], a.row, a.slot_of, a.varies, a.type_row, a.mass_row, a.inverse_row, a.q_row, a.mask_row, a.type, a.mass,
                    a.inverse_mass, a.q, a.mask, a.x, a.held)
             split(c.shares, c.bounds, live[NS] // CLUSTER)
