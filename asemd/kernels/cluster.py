@@ -8,8 +8,7 @@ images), and of its own cluster the images on the positive side. An entry is slo
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
 generated module, and so are MARK (which atoms are beyond reach is wanted), SORTED (rows are), TRACK, see `arrange`. What follows from
-a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in
-`asemd.kernels.prune`.
+a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in `.prune`.
 """
 from __future__ import annotations
 
@@ -59,10 +58,7 @@ def wrap(x, image, row, ns, origin, vectors, inverse, periodic):
 
 def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step, void, places):
     """Counting sort into columns and cells, in place; returns the new number of slots, or minus that if there is no room for so many, and
-    nothing has changed. Empty slots stand at `far` plus steps, at rest.
-
-    A cluster ends before more than `void` empty cells. `places`: see `asemd.kernels.gaps`.
-    """
+    nothing has changed. A cluster ends before more than `void` empty cells. Empty slots stand at `far` plus steps, at rest."""
     ncol = nx * ny
     for c in range(ncol):
         for z in range(nz + 1):
