@@ -60,12 +60,17 @@ class EmbeddedTerm(FactorTerm):
         if getattr(self, "ends", np.zeros(0)).shape != (len(clusters.own),):
             self.ends = np.zeros(len(clusters.own), np.int64)
 
+    def relisted(self, engine):
+        c = engine.list
+        return [("look_at_rows", (c.row_length, self.longest)), ("look_at_pairs", (c.bounds, c.first, self.room)),
+                ("place_classes", (engine.state.type, self.class_of_type, self.class_of))]
+
     def arguments(self, engine, tid):
         s, c = engine.state, engine.list
         f, acc = self._sums(engine, tid)
         return self._with_factor(engine, tid, (
-            s.x, f, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, int(c.bounds[tid]),
-            int(c.bounds[tid + 1]), self.tables.constants, self.table, self.classes, self.class_of, self.cut, c.reach, self.functions,
+            s.x, f, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, c.ranges[tid],
+            self.tables.constants, self.table, self.classes, self.class_of, self.cut, c.reach, self.functions,
             self.flat, self.function_of, self.share, self.rho, self.slope, self.b[tid], self.row, self.local[tid], self.sums[tid],
             self.kinds[tid], self.kept[tid], self.owners[tid], self.ends, self.work[tid], self.there[tid], self.back[tid], self.lanes[tid],
             *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], tid, engine.meeting,

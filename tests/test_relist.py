@@ -5,6 +5,7 @@ import os
 
 import numpy as np
 import pytest
+from test_embedded import small
 from test_loop import CHAIN, PRISM, chains, crystal, loop_of
 
 from asemd import relist
@@ -18,8 +19,26 @@ from asemd.system import System
 pytestmark = pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
 FULL = {"lj/cut 2.5": {(1, 1): (1.0, 1.0)}}
 WEIGHTS = (0.0, 0.5, 1.0)
+
+
+def embedded(folder, system):
+    """The invented elements of `test_embedded`, both of them."""
+    forces = Interactions()
+    forces.set_style("pair", ["eam/alloy"])
+    forces.set_coeff("pair", ["*", "*", str(small(folder)), "A", "B"], system)
+    return forces
+
+
+def alloy():
+    """A warm crystal of two elements."""
+    atoms = crystal(temperature=0.4, density=0.06)
+    return System(box=atoms.box, x=atoms.x, type=1 + np.arange(atoms.n) % 2, v=0.1 * atoms.v, units="metal",
+                  mass=np.array([np.nan, 10.0, 20.0]))
+
+
 SCENES = {
     "atoms": (crystal, {}, {}),
+    "embedded atoms": (alloy, embedded, dict(skin=0.3)),
     "tilted": (lambda: crystal(6, PRISM), {}, {}),
     "outdated": (crystal, {}, dict(every=20, check=False)),
     "mixed precision": (crystal, {}, dict(precision="mixed")),
@@ -29,11 +48,12 @@ SCENES = {
 }
 
 
-def moved(name: str, threads: int):
+def moved(name: str, threads: int, folder):
     """A loop after some steps of a scene, and how many of its lists Python made."""
     make, interactions, options = SCENES[name]
-    forces = Interactions.build(**interactions) if interactions else None
-    loop = loop_of(make(), [NVE(), Langevin("all", 1.0, 2.0, 77)], interactions=forces, threads=threads, **options)
+    system = make()
+    forces = interactions(folder, system) if callable(interactions) else Interactions.build(**interactions) if interactions else None
+    loop = loop_of(system, [NVE(), Langevin("all", 1.0, 2.0, 77)], interactions=forces, threads=threads, **options)
     loop.watchdog.on = False
     loop.setup()
     count, rebuild = [0], loop.engine.rebuild
@@ -49,10 +69,10 @@ def moved(name: str, threads: int):
 
 @pytest.mark.parametrize("threads", [1, 3])
 @pytest.mark.parametrize("name", SCENES)
-def test_motion_has_the_same_digits(name, threads, monkeypatch):
-    loop, made = moved(name, threads)
+def test_motion_has_the_same_digits(name, threads, monkeypatch, tmp_path):
+    loop, made = moved(name, threads, tmp_path)
     monkeypatch.setattr(relist.Relist, "table", lambda *_: relist.NO_CALLS)
-    other, all_made = moved(name, threads)
+    other, all_made = moved(name, threads, tmp_path)
     assert loop.engine.builds == other.engine.builds == all_made > 4
     assert made <= 1        # where arrays must grow
     for field in ("x", "v", "f", "image"):
@@ -169,8 +189,8 @@ def test_a_position_that_is_not_a_number_is_found():
         loop.advance(50)
 
 
-def test_rows_have_room_for_all_slots():
+def test_rows_have_room_for_all_slots(tmp_path):
     """Lists that follow may have more slots than the first one: atoms that leave a column make another one longer."""
-    loop, _ = moved("chains", 1)
+    loop, _ = moved("chains", 1, tmp_path)
     engine = loop.engine
     assert engine.rows and all(rows.start.shape[1] > engine.state.x.shape[1] >= engine.list.capacity for rows in engine.rows.values())

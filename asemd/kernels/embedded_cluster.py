@@ -158,15 +158,16 @@ def embed(c0, c1, rho, type_of, functions, flat, function_of, share, constants, 
                 acc[0] += share[type_of[j]] * e
 
 
-def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shifts, c0, c1, constants, table, classes, class_of, cut, reach,
-                      functions, flat, function_of, share, rho, slope, b, row, local, sums, kinds, kept, owner, ends, work, there, back,
-                      lanes, near, push, acc, hide, skin, moved, farthest, tid, meeting, bad):
-    """Forces of clusters c0..c1-1 added to `f (3, cap)`; energy and virial to `acc (8,)`.
+def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shifts, clusters, constants, table, classes, class_of, cut,
+                      reach, functions, flat, function_of, share, rho, slope, b, row, local, sums, kinds, kept, owner, ends, work, there,
+                      back, lanes, near, push, acc, hide, skin, moved, farthest, tid, meeting, bad):
+    """Forces of `clusters (2,)`, from the first one to before the second, added to `f (3, cap)`; energy and virial to `acc (8,)`.
 
     `class_of (cap,)` is each slot's class of `classes`, as a double; `flat` is `functions (n, 4)` as one row. `rho (threads, cap)` and
     `slope (cap,)` are of all threads; `b`, `local`, `sums`, `kinds`, `work`, `there` and `back` room for the neighbours of one cluster,
     `kept`, `owner` and `ends` for all of them.
     """
+    c0, c1 = clusters[0], clusters[1]
     cap = x.shape[1]
     stage = np.int64(there.shape[0])
     rdr = all8(constants[0])

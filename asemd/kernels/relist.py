@@ -193,6 +193,19 @@ def look_at_rows(live, longest, most):
             live[FINE] = 0
 
 
+def look_at_pairs(live, bounds, first, most):
+    """Python is needed where the pairs of a thread's clusters might not fit into the arrays of `asemd.embedded_term`."""
+    for t in range(first.shape[0]):
+        if 8 * first[t, bounds[t + 1]] + 64 * (bounds[t + 1] - bounds[t]) > most:
+            live[FINE] = 0
+
+
+def place_classes(live, type_s, class_of_type, class_of):
+    """The class of each slot's type."""
+    for i in range(class_of.shape[0]):
+        class_of[i] = class_of_type[type_s[i]]
+
+
 @cache
 def module(lists: ModuleType, excludes: bool, has_rows: bool) -> ModuleType:
     """The compiled functions; `lists` are those of `asemd.neighbor.kernels`."""
@@ -202,6 +215,6 @@ def module(lists: ModuleType, excludes: bool, has_rows: bool) -> ModuleType:
         b.use(lists, name)
     for name, value in dict(CLUSTER=CLUSTER, NS=NS, FINE=FINE, EXCLUDE=excludes, ROWS=has_rows).items():
         b.constant(name, value)
-    for function in (relist, place_items, place_pairs, look_at_rows):
+    for function in (relist, place_items, place_pairs, look_at_rows, look_at_pairs, place_classes):
         b.text(plain_source(function, constants=b.constants), INNER)
     return b.build()
