@@ -32,13 +32,13 @@ def embedded(folder, system):
 def alloy():
     """A warm crystal of two elements."""
     atoms = crystal(temperature=0.4, density=0.06)
-    return System(box=atoms.box, x=atoms.x, type=1 + np.arange(atoms.n) % 2, v=0.1 * atoms.v, units="metal",
+    return System(box=atoms.box, x=atoms.x, type=1 + np.arange(atoms.n) % 2, v=5.0 * atoms.v, units="metal",
                   mass=np.array([np.nan, 10.0, 20.0]))
 
 
 SCENES = {
     "atoms": (crystal, {}, {}),
-    "embedded atoms": (alloy, embedded, dict(skin=0.3)),
+    "embedded atoms": (alloy, embedded, dict(skin=0.2)),
     "tilted": (lambda: crystal(6, PRISM), {}, {}),
     "outdated": (crystal, {}, dict(every=20, check=False)),
     "mixed precision": (crystal, {}, dict(precision="mixed")),
