@@ -94,3 +94,25 @@ def test_kinetic_tensor_is_per_atom_where_energies_are():
     """)
     step, ke, *tensor, temperature = session.last_thermo.values()
     assert sum(tensor) == pytest.approx(2.0 * ke) and temperature == pytest.approx(1.0)
+
+
+def test_columns_of_vectors_that_are_not_known_yet(tmp_path):
+    """``[*]`` before the first run: how many elements there are is known without their values."""
+    from asemd.lammps import Lammps
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", str(tmp_path / "log")])
+    lmp.commands_string("""units lj
+region box block 0 4 0 4 0 4
+create_box 1 box
+create_atoms 1 single 1 1 1
+create_atoms 1 single 2 1 1
+mass 1 1.0
+pair_style lj/cut 1.9
+pair_coeff 1 1 1.0 1.0
+compute s all stress/atom NULL
+compute sum all reduce sum c_s[*]
+compute some all slice 1 5 2 c_thermo_press
+thermo_style custom step c_sum[*] c_some[*]
+fix 1 all nve
+run 0""")
+    header = next(line for line in (tmp_path / "log").read_text().splitlines() if line.split()[:1] == ["Step"])
+    assert header.split() == ["Step", *(f"c_sum[{k}]" for k in range(1, 7)), "c_some[1]", "c_some[2]"]

@@ -105,6 +105,11 @@ class Reduce(Compute):
             out += ["replace", str(old), str(new)]
         return out + (["inputs", {v: k for k, v in INPUTS.items()}[self.kind]] if self.kind else [])
 
+    @property
+    def size(self) -> int:
+        """Elements of the vector."""
+        return len(self.inputs)
+
     def chosen(self, state) -> np.ndarray:
         """(n,) the atoms that count."""
         return state.mask(self.group)

@@ -62,6 +62,11 @@ class Slice(Compute):
         """Of the array."""
         return len(self.inputs)
 
+    @property
+    def size(self) -> int:
+        """Elements of the vector."""
+        return (self.last - self.first) // self.every
+
     def to_lammps(self) -> list[str]:
         return [str(self.first), str(self.last), str(self.every), *map(str, self.inputs)]
 
