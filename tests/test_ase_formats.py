@@ -183,6 +183,6 @@ def test_formats_cost_nothing_until_they_are_used():
 def test_blocks_of_the_documentation(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     section = re.search(r"^## Files\n(.*?)^## ", (ROOT / "docs" / "ase.md").read_text(), re.S | re.M)[1]
-    found = re.findall(r"^```python no-test\n(.*?)^```", section, re.S | re.M)
+    found = re.findall(r"^```python\n(.*?)^```", section, re.S | re.M)
     assert len(found) >= 2
     exec("\n".join(found), {"__name__": "page", "ase": ase})
