@@ -19,6 +19,7 @@ _LAZY = {
     "check": "asemd.check",
     "report": "asemd.report",
     "validate": "asemd.testing.validate",
+    "run_lammps": "asemd.lammps_run",
     "MolecularDynamics": "asemd.dynamics",
     "to_mdanalysis": "asemd.interop.mdanalysis",
     "from_mdanalysis": "asemd.interop.mdanalysis",

@@ -114,6 +114,9 @@ def run(context: typer.Context,
         safe: Annotated[bool, typer.Option("--safe", help="For scripts from strangers: no shell, no python, no writing outside.")] = False,
         import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
         html: Annotated[str | None, typer.Option(help="Write a page to look at: curves, timing, plan and a molecule that turns.")] = None,
+        engine: Annotated[str, typer.Option(help="asemd, or lammps: hand the script to real LAMMPS if the first step agrees.")] = "asemd",
+        ranks: Annotated[int, typer.Option(help="MPI ranks of --engine lammps.", min=1)] = 1,
+        no_check: Annotated[bool, typer.Option("--no-check", help="With --engine lammps: do not compare the first step before.")] = False,
         ) -> int:
     """Run a LAMMPS input script (- is standard input; LAMMPS's switches such as -var -in -log -echo -screen -sf are accepted)."""
     from asemd.lammps.session import Session, Stop
@@ -129,6 +132,13 @@ def run(context: typer.Context,
     if path is None and not options.convert:
         raise InputError("asemd run needs a script: asemd run in.file, or - for standard input (before -var, which takes all words behind "
                          "it that are no file, or with -in)")
+    if lammps_switches.one_of(engine, ("asemd", "lammps"), "--engine") == "lammps":
+        from asemd.cli_engine import run_lammps
+        return run_lammps(path, options, ranks, not no_check, quiet,
+                          {"--dry": dry, "--safe": safe, "--html": html, "--steps-cap": options.cap is not None, "--import": import_,
+                           "--threads": threads > 1, "--precision": precision != "double", "--no-watchdog": no_watchdog})
+    if ranks > 1 or no_check:
+        raise InputError("--ranks and --no-check belong to --engine lammps: asemd itself runs in one process, see --threads")
     options.safe = safe
     options.watchdog = options.watchdog and not no_watchdog
     if safe:

@@ -17,6 +17,7 @@ from asemd.forcefield import CATEGORIES, Interactions
 from asemd.lammps import export
 from asemd.lammps.session import Stop
 from asemd.lammps.switches import Switches
+from asemd.scene import Scene
 from asemd.system import System
 from asemd.testing.lammps_side import ROWS, ZERO_STEP
 from asemd.testing.oracle import OracleError, ask, lammps_available, lammps_version, why_not
@@ -175,22 +176,20 @@ class Report:
 
 
 def _shown(cell: Cell | None, name: str) -> str:
-    if cell is None:
-        return ""
-    return f"{cell.error:.0e}" if name == "relative" else f"{getattr(cell, name.lower()):.10g}"
+    return "" if cell is None else f"{cell.error:.0e}" if name == "relative" else f"{getattr(cell, name.lower()):.10g}"
 
 
-def validate(source, *, steps: int = 20, tolerance: float | None = None, compat: str = "", precision: str = "double", threads: int = 1,
-             switches: Switches | None = None) -> Report:
+def validate(source, *, steps: int | None = 20, tolerance: float | None = None, compat: str = "", precision: str = "double",
+             threads: int = 1, switches: Switches | None = None) -> Report:
     """Compare asemd with LAMMPS, which runs in a process of its own.
 
     Parameters
     ----------
-    source : path or ase.Atoms
-        A LAMMPS script, executed up to its first run for energies and forces, and then with runs of at most `steps` steps for the thermo
-        rows; or atoms whose calculator is `asemd.ForceField`, in any frame: LAMMPS gets them rotated, its forces are rotated back.
-    steps : int
-        Limit on every run and minimisation of the script; 0 compares first rows only.
+    source : path, ase.Atoms or Scene
+        A LAMMPS script, executed up to its first run for energies and forces, then with runs of at most `steps` steps for the thermo rows;
+        atoms whose calculator is `asemd.ForceField`, or a scene, in any frame: LAMMPS gets them rotated, its forces are rotated back.
+    steps : int or None
+        Limit on every run and minimisation of the script; 0 compares first rows only, None energies, forces and virials only.
     tolerance : float, optional
         Largest relative difference of energies, forces, virials and thermo rows that counts as agreement; 1e-9 in double precision.
     compat : str
@@ -217,6 +216,8 @@ def validate(source, *, steps: int = 20, tolerance: float | None = None, compat:
         switches = copy.deepcopy(switches) if switches else Switches()
         switches.compat, switches.precision, switches.threads, switches.cap = compat or switches.compat, precision, threads, steps
         return _script(os.fspath(source), switches, tolerance)
+    if isinstance(source, Scene):
+        return _exported("scene", source.need_system("validate"), source.interactions, source.settings(), tolerance, compat)
     return _atoms(source, tolerance, compat)
 
 
@@ -252,15 +253,18 @@ def _atoms(atoms, tolerance: float | None, compat: str) -> Report:
     from asemd.calculator import ForceField
     calc = getattr(atoms, "calc", None)
     if not isinstance(calc, ForceField):
-        raise InputError("validate needs the path of a LAMMPS script, or atoms whose calculator is asemd.ForceField")
-    system = calc._system(atoms)
-    interactions = copy.deepcopy(calc.interactions)
+        raise InputError("validate needs the path of a LAMMPS script, a scene, or atoms whose calculator is asemd.ForceField")
+    return _exported(repr(calc), calc._system(atoms), calc.interactions, calc.settings, tolerance, compat)
+
+
+def _exported(name: str, system: System, interactions: Interactions, settings: Settings, tolerance: float | None, compat: str) -> Report:
+    interactions = copy.deepcopy(interactions)
     interactions.compat = compat or interactions.compat
     interactions.check_complete(system)
     with tempfile.TemporaryDirectory(prefix="asemd-validate-") as folder:
-        setup = export.commands(system, interactions, calc.settings, Path(folder) / "data.scene")
-        return _zero_step(repr(calc), system, interactions, calc.settings, setup, [],
-                          TOLERANCE[calc.settings.precision] if tolerance is None else tolerance)
+        setup = export.commands(system, interactions, settings, Path(folder) / "data.scene")
+        limit = TOLERANCE[settings.precision] if tolerance is None else tolerance
+        return _zero_step(name, system, interactions, settings, setup, [], limit)
 
 
 # --------------------------------------------------------------------------------------------- energies, forces, virials ---
