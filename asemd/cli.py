@@ -28,6 +28,8 @@ COMMANDS: dict[str, str] = {
     "convert": "asemd.cli_convert:convert",
     "check": "asemd.cli_check:check",
     "report": "asemd.cli_report:report",
+    "cite": "asemd.cli_cache:cite",
+    "cache": "asemd.cli_cache:cache",
 }
 INTERRUPTED = 130
 

@@ -1,13 +1,11 @@
 """Facts about this installation that decide whether asemd runs, and how fast."""
 from __future__ import annotations
 
-import contextlib
 import importlib.metadata
 import os
 import platform
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 from asemd import __version__
 from asemd.text_table import Table
@@ -77,20 +75,12 @@ def _compiler() -> Fact:
 
 
 def _cache() -> Fact:
+    from asemd.cache import MB, contents
     from asemd.kernels.generate import cache_dir
-    folder = cache_dir()
-    sizes: list[int] = []
-    modules = 0
-    for f in Path(folder).rglob("*"):
-        with contextlib.suppress(OSError):      # another process may just have dropped it
-            if f.is_file():
-                sizes.append(f.stat().st_size)
-                modules += f.suffix == ".py"
-    size = sum(sizes) / 2**20
+    found = contents()
     wanted = "ASEMD_CACHE_DIR" if os.environ.get("ASEMD_CACHE_DIR") else "the cache folder of the user"
-    kept = not Path(folder).parent.name.startswith("asemd-")       # the name of the temporary folder
-    return Fact("kernel cache", f"{folder}: {modules} kernel modules, {size:.1f} MB", kept, "" if kept else
-                f"{wanted} is not writable: kernels are compiled in every process; set ASEMD_CACHE_DIR to a folder that is")
+    return Fact("kernel cache", f"{cache_dir()}: {found.modules} kernel modules, {found.size / MB:.1f} MB", found.kept, "" if found.kept
+                else f"{wanted} is not writable: kernels are compiled in every process; set ASEMD_CACHE_DIR to a folder that is")
 
 
 def _lammps() -> Fact:
