@@ -105,20 +105,6 @@ def test_momentum_is_taken_from_bodies(tmp_path):
     assert lmp.session.scene.system.v == pytest.approx(0.0, abs=1e-15)
 
 
-def test_bodies_from_a_file(tmp_path):
-    """Mass, centre, inertia and motion of a body come from the file; others have theirs from their atoms and stand still."""
-    lmp = scene(tmp_path)
-    numbers = [50.0, 3.0, 4.0, 5.0, 10.0, 11.0, 12.0, 0.0, 0.0, 0.0, 0.001, 0.0, 0.0, 0.0, 0.01, 0.0, 0, 0, 0]
-    (tmp_path / "bodies").write_text("# bodies\n\n1\n2 " + " ".join(map(str, numbers)) + "\n")
-    lmp.commands_string(f"fix 1 all rigid molecule infile {tmp_path / 'bodies'}\nrun 0")
-    b = lmp.session.scene.fixes["1"].bodies
-    assert b.mass[1] == 50.0
-    assert b.x[1] == pytest.approx([3.0, 4.0, 5.0])
-    assert b.moments[1] == pytest.approx([10.0, 11.0, 12.0])
-    assert b.v[:3] == pytest.approx(np.array([[0.0, 0.0, 0.0], [0.001, 0.0, 0.0], [0.0, 0.0, 0.0]]))
-    assert b.omega[1] == pytest.approx([0.0, 0.01 / 11.0, 0.0])
-
-
 def test_chains_go_on_after_a_restart(tmp_path):
     """A run in two pieces with a restart file between them is one run."""
     line = "fix 1 all rigid/nvt molecule temp 300 300 20"

@@ -273,6 +273,13 @@ class Fix:
         if state:
             raise InputError(f"fix {self.id} (style {self.style}) cannot go on from a restart file")
 
+    def goes_on(self, words: list[str], numbers: list[np.ndarray]) -> bool:
+        """Whether this fix is the one that had these `words` and, in the midst of a run, these `numbers` ``a`` when they were kept."""
+        return [str(w) for w in self.to_lammps()] == words
+
+    def write_beside(self, path: str, system, step: int) -> None:
+        """Write files of its own beside the restart file `path`."""
+
 
 def find(name: str) -> type[Fix]:
     """The class of a LAMMPS fix style; raises `InputError` with the nearest match."""

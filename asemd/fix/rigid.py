@@ -22,8 +22,9 @@ from typing import ClassVar
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.fix import Fix, hook
+from asemd.fix import hook, rigid_file
 from asemd.fix import rigid_bodies as rb
+from asemd.fix.rigid_outputs import BodyOutputs
 from asemd.fix.rigid_words import bodies_from_words, options_from_words, words_of
 from asemd.kernels.rigid import (
     angular_velocity,
@@ -47,7 +48,7 @@ MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, g
         turn_solid, langevin_bath]
 
 
-class Rigid(Fix):
+class Rigid(BodyOutputs):
     """Rigid bodies.
 
     Parameters
@@ -62,9 +63,10 @@ class Rigid(Fix):
     langevin : (float, float, float, int), optional
         A heat bath: temperature at the start and at the end of a run, relaxation time, seed; temperature and time units.
     infile : str, optional
-        File with mass, centre, inertia, velocity and angular momentum of bodies.
-    reinit : bool
-        Take the bodies from their atoms anew at each run.
+        File with mass, centre, inertia, velocity and angular momentum of bodies, see `asemd.fix.rigid_file`. Such a file, with ``.rigid``
+        after its name, is then written beside each restart file.
+    reinit : bool, optional
+        Take the bodies from their atoms, or the file, anew at each run; by default unless there is a file.
     gravity : str, optional
         Id of a fix gravity whose field acts on the centres of mass.
 
@@ -86,11 +88,12 @@ class Rigid(Fix):
     barostats: ClassVar[bool] = False
 
     def __init__(self, group: str = "all", bodies="single", force=(), torque=(), langevin=None, infile: str | None = None,
-                 reinit: bool = True, gravity: str | None = None):
+                 reinit: bool | None = None, gravity: str | None = None):
         super().__init__(group)
         self.kind = bodies
         self.force, self.torque = list(force), list(torque)
-        self.langevin, self.infile, self.reinit, self.gravity = langevin, infile, reinit, gravity
+        self.langevin, self.infile, self.gravity = langevin, infile, gravity
+        self.reinit = infile is None if reinit is None else reinit
         if langevin is not None:
             start, stop, damping, seed = langevin
             if min(start, stop) < 0.0:
@@ -193,9 +196,8 @@ class Rigid(Fix):
             rb.follow(self.kept, loop.system.box.origin, loop.system.box.cell)
             self._wrap(loop)
             return
-        file = rb.read_file(self.infile, self.style) if self.infile else None
         bath = self.kept.bath if self.kept is not None else None
-        self.kept = rb.build(loop.system, self.members, self.style, file)
+        self.kept = self._made(loop.system)
         if bath is not None:        # the last force of the bath begins the next run, too
             self.kept.bath[:] = bath
         for column, settings in ((0, self.force), (3, self.torque)):
@@ -206,6 +208,27 @@ class Rigid(Fix):
             self.kept.moves[:, 2:5] = 0.0
             if any(fix.style == "enforce2d" for fix in loop.fixes):     # spheres may turn about another axis before the run
                 self.kept.v[:, 2] = self.kept.momentum[:, :2] = 0.0
+
+    def _made(self, system) -> rb.Bodies:
+        """The bodies by their atoms and the file."""
+        file = rigid_file.read(self.infile, self.style, self.members.label) if self.infile else None
+        return rb.build(system, self.members, self.style, file)
+
+    def write_beside(self, path: str, system, step: int) -> None:
+        """The file of bodies beside a restart file, of a fix that has read one."""
+        if self.infile and self.members is not None:
+            bodies = self._made(system) if self.kept is None else self.bodies
+            rigid_file.write(f"{path}.rigid", bodies, self.members, f"rigid bodies of fix {self.id} (style {self.style}) on step {step}")
+
+    def goes_on(self, words: list[str], numbers) -> bool:
+        """With another file too, if it has the same bodies; a file with other ones counts."""
+        if not self.infile:
+            return super().goes_on(words, numbers)
+        mine = [str(w) for w in self.to_lammps()]
+        if "infile" in words:
+            words = [*words]
+            words[words.index("infile") + 1] = self.infile
+        return mine == words and len(numbers) == len(self.kept) and rigid_file.same(self.kept, rb.Bodies(*numbers))
 
     def _check_order(self, loop) -> None:
         at = loop.fixes.index(self)
@@ -287,15 +310,6 @@ class Rigid(Fix):
         loop.system.box.wrap(b.x, image)
         b.image[:] += image
 
-    @property
-    def bodies(self) -> rb.Bodies:
-        """The bodies now, in the box as it is now."""
-        if self.kept is None:
-            raise InputError(f"fix {self.id} (style {self.style}): its bodies are not known before the first run: use run 0")
-        if self.p[2] != 0.0:
-            rb.follow(self.kept, self._loop.state.box.origin, self._loop.state.box.vectors)
-        return self.kept
-
     # ---- the motion
     @hook(uses=MOVE)
     def initial_integrate(th, s, p, b):
@@ -351,50 +365,3 @@ class Rigid(Fix):
                 for c in range(6):
                     s.virial[th.tid, c] += sums[c]
         barrier(th)
-
-    # ---- what others see
-    def removed_dof(self, mask: np.ndarray) -> float:
-        """Of bodies all of whose atoms are in `mask`."""
-        b = self.kept
-        if b is None:
-            if self._warn is not None and b"" not in self.warned:
-                self._warn("Cannot count rigid body degrees-of-freedom before bodies are initialized")
-                self.warned.add(b"")
-            return 0.0
-        inside, size = np.add.reduceat(mask[b.rows].astype(np.int64), b.first[:-1]), np.diff(b.first)
-        key = np.packbits(mask).tobytes()
-        if ((inside > 0) & (inside != size)).any() and key not in self.warned:
-            self.warned.add(key)
-            self._warn("Computing temperature of portions of rigid bodies")
-        finite = np.add.reduceat(rb.finite(b).astype(np.int64), b.first[:-1])      # their rotation, too
-        if int(self.p[11]) == 2:
-            return float((2 * size + finite - 3)[inside == size].sum())
-        return float((3 * (size + finite) - 6 + (b.moments == 0.0).any(axis=1))[inside == size].sum())
-
-    def bodies_energies(self) -> tuple[np.ndarray, np.ndarray]:
-        """Energy of translation and of rotation of each body, in energy units, without components that do not act."""
-        b = self.bodies
-        w = np.einsum("nka,na->nk", b.axes, b.omega)
-        return (0.5 * self.p[12] * b.mass * (b.moves[:, :3] * b.v**2).sum(axis=1),
-                0.5 * self.p[12] * (b.moves[:, 3:] * b.moments * w**2).sum(axis=1))
-
-    def scalar(self) -> float:
-        """Temperature of the bodies."""
-        b = self.bodies
-        dof = b.moves.sum() - (np.count_nonzero((b.moments == 0.0).any(axis=1)) if self.p[11] == 3.0 else 0)
-        return float(2.0 * sum(e.sum() for e in self.bodies_energies()) / (dof * self._loop.units.boltz)) if dof > 0.0 else 0.0
-
-    def array(self, i: int, j: int) -> float:
-        """Number `j` (1 to 15) of body `i`, counted from 1."""
-        if self.small:
-            raise InputError(f"fix {self.id} (style {self.style}) has no global array; fix {self.style.removesuffix('/small')} has")
-        b = self.bodies
-        if not 1 <= i <= len(b.mass) or not 1 <= j <= 15:
-            raise InputError(f"fix {self.id} (style {self.style}) has {len(b.mass)} rows of 15 numbers, there is no [{i}][{j}]")
-        return float((b.x, b.v, b.force, b.torque, b.image)[(j - 1) // 3][i - 1, (j - 1) % 3])
-
-    def virials(self, state) -> np.ndarray:
-        """(n, 6) each atom's virial of the constraint, xx yy zz xy xz yz, energy units."""
-        out = np.zeros((state.system.n, 6))
-        out[self.kept.rows] = self.kept.virial
-        return out

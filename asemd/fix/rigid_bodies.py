@@ -11,7 +11,6 @@ from asemd.compute import erotate_asphere
 from asemd.compute.erotate_sphere import INERTIA
 from asemd.errors import InputError
 from asemd.kernels.rigid import Bodies
-from asemd.words import number, whole
 
 BY_BODY = Bodies._fields[:Bodies._fields.index("first")]
 NO_INERTIA = 1e-7       # a principal moment below this times the largest is none
@@ -44,29 +43,6 @@ def by_groups(ids: np.ndarray, masks: list[np.ndarray], style: str) -> Members:
         raise InputError(f"fix {style}: atom {twice} belongs to more than one rigid body")
     first = np.cumsum([0, *(np.count_nonzero(m) for m in masks)]).astype(np.int64)
     return Members(np.concatenate([ids[m] for m in masks]), first, np.arange(1, len(masks) + 1))
-
-
-def read_file(path: str, style: str) -> dict[int, np.ndarray]:
-    """Body number -> its 20 numbers in the format of ``infile``: mass, centre (3), inertia (6), velocity (3), angular
-    momentum (3), image flags (3)."""
-    try:
-        with open(path) as file:
-            lines = [(k, line.split("#")[0].split()) for k, line in enumerate(file, 1)]
-    except OSError as error:
-        raise InputError(f"fix {style} infile: cannot open {path}: {error.strerror}") from None
-    lines = [(k, words) for k, words in lines if words]
-    if not lines or len(lines[0][1]) != 1:
-        raise InputError(f"fix {style} infile: the first line of {path} must be the number of lines that follow")
-    count = whole(lines[0][1][0], f"fix {style} infile {path}")
-    if len(lines) - 1 < count:
-        raise InputError(f"fix {style} infile: {path} announces {count} bodies and has {len(lines) - 1}")
-    out = {}
-    for k, words in lines[1:1 + count]:
-        if len(words) != 20:
-            raise InputError(f"fix {style} infile: line {k} of {path} has {len(words)} values, not 20 (ID mass x y z ixx iyy izz ixy ixz "
-                             "iyz vx vy vz lx ly lz ix iy iz)")
-        out[whole(words[0], f"fix {style} infile {path} line {k}")] = np.array([number(w, f"{path} line {k}") for w in words[1:]])
-    return out
 
 
 def principal(tensors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -170,10 +146,8 @@ def build(system, members: Members, style: str, file: dict[int, np.ndarray] | No
     velocity = total(m[:, None] * v) / mass[:, None]
     momentum = total(m[:, None] * np.cross(d, v) + (own[:, None] * spin[rows] if own.any() else 0.0)
                      + (np.where(solids[:, :1] > 0.0, momenta[rows], 0.0) if solids.any() else 0.0))
-    if file:        # LAMMPS takes no motion from the atoms then
-        velocity, momentum = np.zeros((nb, 3)), np.zeros((nb, 3))
-        for k, values in given.items():
-            velocity[k], momentum[k] = values[10:13], values[13:16]
+    for k, values in given.items():
+        velocity[k], momentum[k] = values[10:13], values[13:16]
     moves = np.ones((nb, 6))
     if system.dimension == 2:
         moves[:, 2:5] = 0.0

@@ -113,6 +113,8 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
             out["dilate"], used = name, 1
         elif keyword in ("infile", "gravity"):
             out[keyword], used = take(words[1:], 1, what)[0], 1
+            if keyword == "infile":     # what was said of reinit before does not count
+                out.pop("reinit", None)
         else:
             out[keyword], used = yes_no(take(words[1:], 1, what)[0], what), 1
         words = words[1 + used:]
@@ -139,4 +141,5 @@ def words_of(fix: Rigid) -> list[str]:
         words += ["infile", fix.infile]
     if fix.gravity:
         words += ["gravity", fix.gravity]
-    return words + ([] if fix.reinit else ["reinit", "no"]) + fix.own_words()
+    reinit = [] if fix.reinit == (fix.infile is None) else ["reinit", "yes" if fix.reinit else "no"]
+    return words + reinit + fix.own_words()

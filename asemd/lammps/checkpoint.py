@@ -81,13 +81,16 @@ def take(loop: Loop, alone: np.ndarray) -> dict[str, Any] | None:
         return None
     numbers = [{"p": p.copy(), "a": [array.copy() for array in arrays_of(a)]} for p, a in loop.fix_data]
     return {"forces": loop.system.f.copy(), "alone": alone, "dt": loop.dt, "atoms": digest(loop.system), "fixes": describe(loop.fixes),
-            "numbers": numbers}
+            "numbers": numbers, "velocities": loop.system.v.copy()}
 
 
 def resume(loop: Loop, kept: dict[str, Any]) -> bool:
     """After ``loop.setup``: go on from the state `kept` if interactions and fixes are those of that run."""
-    if loop.dt != kept["dt"] or describe(loop.fixes) != kept["fixes"]:
+    if loop.dt != kept["dt"] or len(loop.fixes) != len(kept["fixes"]):
         return False
+    for fix, (*name, words), numbers in zip(loop.fixes, kept["fixes"], kept["numbers"], strict=True):
+        if [fix.id, fix.style, fix.group] != name or not fix.goes_on(words, numbers["a"]):
+            return False
     alone = renew(loop)
     largest = float(np.abs(kept["alone"]).max(initial=0.0))
     if alone.shape != kept["alone"].shape or not np.abs(alone - kept["alone"]).max(initial=0.0) <= CLOSE * largest:
@@ -100,4 +103,7 @@ def resume(loop: Loop, kept: dict[str, Any]) -> bool:
             for array, before in zip(arrays_of(a), kept_arrays, strict=True):
                 array[:] = before
     set_forces(loop, kept["forces"])
+    v = kept.get("velocities", loop.system.v)       # the set-up of fixes may have changed them
+    loop.system.v[:] = v
+    loop.state.v[:, loop.engine.slot_of] = v.T
     return True

@@ -138,6 +138,8 @@ def force_field(interactions: Interactions) -> dict[str, Any]:
 def write(session, path: str, state: dict[str, Any] | None = None) -> None:
     """Write a restart file of the session."""
     restart_file.save(path, contents(session, state))
+    for fix in session.scene.fixes.values():
+        fix.write_beside(path, session.scene.system, session.scene.step)
 
 
 def write_due(session, step: int, alone: np.ndarray | None = None, all_of_them: bool = False) -> None:
