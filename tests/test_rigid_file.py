@@ -22,6 +22,8 @@ CASES = {
 }
 RUNS = "run 10\nrun 10\nwrite_restart r"
 SCRIPT = ATOMS + """
+import os
+os.chdir(given["folder"])
 answer = {}
 for name, lines in given["cases"].items():
     lmp = start()
@@ -50,7 +52,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def theirs(folder):
-    return ask(SCRIPT, cases={name: lines_of(scene(folder, fix)) for name, fix in CASES.items()})
+    return ask(SCRIPT, folder=str(folder), cases={name: lines_of(scene(folder, fix)) for name, fix in CASES.items()})
 
 
 def table(text: str) -> np.ndarray:
