@@ -116,6 +116,7 @@ def atoms_of(session):
     return rows[np.argsort(rows[:, 0])]
 
 
+@pytest.mark.part(6)
 @pytest.mark.parametrize("name", CASES)
 def test_trajectory_like_lammps(theirs, name):
     expected = theirs[name]

@@ -48,6 +48,7 @@ def lammps(tmp_path_factory):
     return lammps_of(CASES, tmp_path_factory.mktemp("msm"))
 
 
+@pytest.mark.part(5)
 @pytest.mark.parametrize("name", CASES)
 def test_against_lammps(name, lammps):
     compare(name, CASES[name], lammps[name])

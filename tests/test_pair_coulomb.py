@@ -120,6 +120,7 @@ def theirs():
                columns=COLUMNS)
 
 
+@pytest.mark.part(10)
 @pytest.mark.parametrize("special", ["", HALF], ids=["weights", "left out"])
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(theirs, name, special):

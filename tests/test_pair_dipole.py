@@ -71,6 +71,7 @@ def theirs():
     return lammps({name: script(name) for name in CASES}, COLUMNS)
 
 
+@pytest.mark.part(5)
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(theirs, name):
     expected = theirs[name]
@@ -93,6 +94,7 @@ def exact_erfc(monkeypatch):
     dipole_kernel.cache_clear()
 
 
+@pytest.mark.part(3)
 @pytest.mark.parametrize("name", ["lj/cut/dipole/cut", "lj/sf/dipole/sf", "lj/cut/dipole/long g", "lj/cut/dipole/long slab",
                                   "lj/long/dipole/long", "lj/long/dipole/long slab"])
 def test_forces_and_torques_are_the_gradient(name, exact_erfc):

@@ -78,6 +78,7 @@ def theirs():
     return lammps({name: script(name) for name in CASES}, COLUMNS)
 
 
+@pytest.mark.part(4)
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(theirs, name):
     expected = theirs[name]
@@ -86,6 +87,7 @@ def test_like_lammps(theirs, name):
     assert_same(session, expected, COLUMNS, 1e-13)
 
 
+@pytest.mark.part(4)
 @pytest.mark.parametrize("name", ["gayberne", "gayberne, depths", "gayberne, mu", "gayberne, all long", "resquared", "resquared, points",
                                   "ylz"])
 def test_forces_and_torques_are_the_gradient(name):

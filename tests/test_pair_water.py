@@ -77,18 +77,25 @@ CASES = [
 ]
 
 
-def test_against_lammps(tmp_path):
-    path = data(tmp_path / "water.data")
+@pytest.fixture(scope="module")
+def theirs(tmp_path_factory):
+    path = data(tmp_path_factory.mktemp("water") / "water.data")
     scripts = [script(path, *case) for case in CASES]
-    answers = wheel.ask(ASK, scripts=scripts, columns=COLUMNS)
-    for text, (thermo, forces, energies) in zip(scripts, answers, strict=True):
-        mine = Lammps(cmdargs=["-log", "none", "-screen", "none", "-compat", "lammps"])
-        mine.commands_string(text)
-        for got, want in (([mine.get_thermo(name) for name in COLUMNS], thermo), (mine.gather_atoms("f", 1, 3), forces),
-                          (mine.numpy.extract_compute("e", 1, 1), energies)):
-            np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
+    return list(zip(scripts, wheel.ask(ASK, scripts=scripts, columns=COLUMNS), strict=True))
 
 
+@pytest.mark.part(3)
+@pytest.mark.parametrize("case", range(len(CASES)), ids=[case[0] for case in CASES])
+def test_against_lammps(theirs, case):
+    text, (thermo, forces, energies) = theirs[case]
+    mine = Lammps(cmdargs=["-log", "none", "-screen", "none", "-compat", "lammps"])
+    mine.commands_string(text)
+    for got, want in (([mine.get_thermo(name) for name in COLUMNS], thermo), (mine.gather_atoms("f", 1, 3), forces),
+                      (mine.numpy.extract_compute("e", 1, 1), energies)):
+        np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
+
+
+@pytest.mark.part(3)
 @pytest.mark.parametrize("name", ["dreiding/lj 4", "dreiding/lj/angleoffset", "dreiding/morse/angleoffset"])
 def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path, name):
     """Between the cutoffs and for angles of rest too, where LAMMPS's is not."""
