@@ -105,15 +105,18 @@ class Loop:
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
         self._collect()
-        for n, f in enumerate(self.fixes):
-            f.setup(self)
-            if "post_force" in self._kinds[n] and not self.in_levels:
-                self._call(n, "post_force")
+        self._set_up_fixes()
         self._collect()
-        e.timings = dict.fromkeys(e.timings, 0.0)
-        e.builds = e.dangerous = 0
+        e.timings, e.builds, e.dangerous = dict.fromkeys(e.timings, 0.0), 0, 0
         self.watchdog.begin()
         return self.result
+
+    def _set_up_fixes(self) -> None:
+        """One after the other: `Fix.setup`, and its part in the first forces."""
+        for n, f in enumerate(self.fixes):
+            f.setup(self)
+            if "post_force" in self._kinds[n]:
+                self._call(n, "post_force")
 
     def arrays_of(self, fix: Fix) -> np.ndarray | tuple[np.ndarray, ...]:
         a = fix.atom_arrays(self)
@@ -288,8 +291,7 @@ class Loop:
             status[tid] = run(tid, e.threads, e.state.x, e.state.virial, e.state.box, e.held, e.moved, e.farthest, e.buffers, e.bad,
                               self._sync, self._scratch, c, x, e.acc, terms[tid], calls, starts, live, lists)
         e.parallel(work)
-        self.step = int(c[tl.STEP])
-        self._ago = int(c[tl.AGO])
+        self.step, self._ago = int(c[tl.STEP]), int(c[tl.AGO])
         e.dangerous += int(c[tl.DANGEROUS])
         self._relist.take(e, int(c[tl.BUILDS]))
         self.watchdog.built(int(c[tl.BUILT]))
@@ -305,15 +307,15 @@ class Loop:
         return known.rows
 
     # ---- steps with Python hooks --------------------------------------------------------------------------------------------------------
-    def _thread(self) -> Thread:
-        return Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, self.dt, self._sync, self._scratch)
+    def _thread(self, dt: float | None = None) -> Thread:
+        return Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, dt or self.dt, self._sync, self._scratch)
 
-    def _call(self, n: int, name: str, state=None) -> None:
-        """One hook of one fix, compiled or not, on all slots."""
+    def _call(self, n: int, name: str, state=None, dt: float | None = None) -> None:
+        """One hook of one fix, compiled or not, on all slots; with another step, perhaps, than that of the run."""
         if self._kinds[n][name] and name in tl.COMPILED:
             if self.fixes[n].follows == name:
                 self.fixes[n].follow(self)
-            self._calls.call(n, name, self._thread(), self.engine.state if state is None else state, self.fix_data, state is None)
+            self._calls.call(n, name, self._thread(dt), self.engine.state if state is None else state, self.fix_data, state is None)
         else:
             getattr(self.fixes[n], name)(self)
 
@@ -326,15 +328,13 @@ class Loop:
                 self._call(n, name)
 
     def _python_step(self, energy: bool) -> None:
-        e, s = self.engine, self.settings
-        began = time.perf_counter()
+        e, s, began = self.engine, self.settings, time.perf_counter()
         self.step += 1
         needs = self._needs(self.step)
         energy = energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0
         self._hook("initial_integrate")
         self._hook("post_integrate")
-        self._ago += 1
-        need = False
+        self._ago, need = self._ago + 1, False
         if self._ago >= s.delay and self._ago % s.every == 0:
             limit = max(0.0, 0.5 * (s.skin - corner_moves(e.state.box))) if e.box_moves else 0.5 * s.skin
             need = not s.check or not e.k.moved(e.state.x, e.held, e.ns) <= limit**2

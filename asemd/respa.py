@@ -23,7 +23,7 @@ from asemd.kernels.box import corner_moves
 from asemd.kernels.hooks import Calls
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
-from asemd.neighbor import ClusterList
+from asemd.respa_pieces import ShortClusterTerm, ShortListTerm
 from asemd.term import PairListTerm, PairRowsTerm
 
 FORCES = ("bond", "angle", "dihedral", "improper", "pair", "kspace")
@@ -102,41 +102,6 @@ class Levels:
                                          "1-4 pairs are pair forces")
 
 
-class ShortListTerm(PairListTerm):
-    """A piece of a pair force over those pairs of the list that are closer than `within` when it is built."""
-
-    within = np.inf
-
-    def rebuild(self, engine):
-        super().rebuild(engine)
-        x = engine.state.x
-        d = x[:, self.i] - x[:, self.j] - self.shifts[self.code >> 2].T
-        near = (d * d).sum(axis=0) < self.within**2
-        self.i, self.j, self.code = self.i[near], self.j[near], self.code[near]
-
-
-class ShortClusterTerm(PairTerm):
-    """The same over clusters: a second list with a shorter reach, for the same slots."""
-
-    within = np.inf
-    near = None
-
-    def rebuild(self, engine):
-        whole = engine.list
-        if self.near is None:
-            self.near = ClusterList(engine.threads, self.within, whole.width, whole.marked)
-        near = self.near
-        near.slots = whole.slots
-        near.shape(whole.bins, engine.system.n, (whole.nx, whole.ny, whole.nz))
-        near.cell_start, near.column_start, near.column_of = whole.cell_start, whole.column_start, whole.column_of     # same slots
-        near.build(engine.k, engine.state, engine.ns, engine.cell, engine.periodic, engine.exclusions.partners, engine.slot_of,
-                   engine.parallel)
-        super().rebuild(engine)
-
-    def clusters(self, engine):
-        return self.near
-
-
 class RespaLoop(Loop):
     """A `Loop` whose steps have levels.
 
@@ -165,21 +130,26 @@ class RespaLoop(Loop):
         levels.check(self.interactions, self.engine.pair_terms)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
-    def setup(self, begin=None, end=None, virial: bool = True):
-        super().setup(begin, end, virial)
-        self._times = self.levels.steps(self.dt)
+    def _set_up_fixes(self) -> None:
+        self._times, total = self.levels.steps(self.dt), self.engine.buffers[0].copy()
         self._before = [np.zeros(3) for _ in self.fixes]
         self._new_lists()
-        self._level_forces = [np.zeros_like(self.engine.buffers[0]) for _ in self._times]
+        self._level_forces = [np.zeros_like(total) for _ in self._times]
         self.state.virial[:] = 0.0
         for level in range(1, self.levels.n + 1):
-            self._forces(level, True)
-        self._total()
-        acted = [fix for n, fix in enumerate(self.fixes) if "post_force" in self._kinds[n]]
-        if acted:       # until the first step LAMMPS leaves the forces of the level on which a fix acted last, not their sum
-            last = self.levels.n if hasattr(acted[-1], "elsewhere") else self._own_level(acted[-1])
+            self._forces(level, True, fixes=())
+        self.engine.buffers[0] = total
+        for n, fix in enumerate(self.fixes):
+            fix.setup(self)
+            for level, forces in enumerate(self._level_forces, 1) if n in self._forcing else ():
+                self.engine.buffers[0] = forces
+                self._post_force(n, fix, level)
+                forces[:] = self.engine.buffers[0]
+            self._total()
+        if self._forcing:       # until the first step LAMMPS leaves the forces of the level on which a fix acted last, not their sum
+            acted = self.fixes[self._forcing[-1]]
+            last = self.levels.n if hasattr(acted, "elsewhere") else self._own_level(acted)
             self.engine.buffers[0] = self._level_forces[last - 1]
-        return self._collect()
 
     def _own_level(self, fix) -> int:
         return min(fix.level or self.levels.n, self.levels.n)
@@ -201,6 +171,7 @@ class RespaLoop(Loop):
                 mine |= {"inner_initial": inner.initial_integrate, "inner_final": inner.final_integrate}
                 mine["outer_initial"] = getattr(fix, "outer_initial", fix.final_integrate)
             hooks.append(mine)
+        self._forcing = [n for n, kinds in enumerate(self._kinds) if "post_force" in kinds]
         self._calls = Calls(hooks, [f.every for f in self.fixes], tl.HALVES)
         self._make_levels()
 
@@ -267,7 +238,6 @@ class RespaLoop(Loop):
         self.step += 1
         self._times = self.levels.steps(self.dt)
         needs = self._needs(self.step)
-        self.state.virial[:] = 0.0
         self._recurse(self.levels.n, energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0)
         self._total()
         if needs:
@@ -285,16 +255,17 @@ class RespaLoop(Loop):
             if level == 1:
                 self._hook("post_integrate")
             if level == n:
+                self.state.virial[:] = 0.0      # the first half may ask for that of the last step
                 self._look_at_list()
                 self._hook("pre_force")
             wanted = energy and k == times - 1
             if level > 1:
                 self._recurse(level - 1, wanted)
-            self._forces(level, wanted)
-            self._integrate(level, "final_integrate" if level == n else "inner_final")
+            self._forces(level, wanted, self._forcing)
+            self._integrate(level, "final_integrate" if level == n else "inner_final", True)
 
-    def _integrate(self, level: int, name: str) -> None:
-        """A half step of one level by all fixes that move atoms."""
+    def _integrate(self, level: int, name: str, second: bool = False) -> None:
+        """A half step of one level by all fixes that move atoms; after the second half others may act, too."""
         began = time.perf_counter()
         th = Thread(0, 1, 0, self.engine.ns, self.step, self.begin, self.end, self._times[level - 1], self._sync, self._scratch)
         forces = self._level_forces[level - 1]
@@ -302,6 +273,8 @@ class RespaLoop(Loop):
         for n, fix in enumerate(self.fixes):
             if fix.integrates:
                 self._calls.call(n, name, th, state, self.fix_data, keep=False)
+            elif second and hasattr(fix, "after_kick"):
+                fix.after_kick(self, level)
         self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _look_at_list(self) -> None:
@@ -335,8 +308,15 @@ class RespaLoop(Loop):
         if self._level_forces:
             self._by_row = np.delete(self._by_row, rows, axis=2)
 
-    def _forces(self, level: int, energy: bool) -> None:
-        """The forces of one level, with what fixes do to them; of its terms, energies and virials too."""
+    def next_velocity(self, level: int, part: float) -> np.ndarray:
+        """(3, cap) with which the innermost level moves the atoms next, if no force but those known on this and the inner levels acts:
+        `part` of this level's step is still to come, and the first half of a step of each inner one."""
+        times, forces = self._times, [f[:3] for f in self._level_forces[:level - 1]]
+        push = part * times[level - 1] * self._level_forces[level - 1][:3] + sum(0.5 * dt * f for dt, f in zip(times, forces))
+        return self.state.v + self.state.inverse_mass * push
+
+    def _forces(self, level: int, energy: bool, fixes) -> None:
+        """The forces of one level, with what `fixes` do to them; of its terms, energies and virials too."""
         e, calls = self.engine, self._kernels[level - 1][energy]
         if self.settings.outdated:
             e.farthest[:] = e.k.displacements(e.state.x, e.held, e.ns, e.moved)
@@ -347,9 +327,8 @@ class RespaLoop(Loop):
                 self._compute(self._whole_calls)
         self._compute(calls)
         began, before = time.perf_counter(), self.state.virial.copy()
-        for n, fix in enumerate(self.fixes):
-            if "post_force" in self._kinds[n]:
-                self._post_force(n, fix, level)
+        for n in fixes:
+            self._post_force(n, self.fixes[n], level)
         if not energy:      # of the steps of a level the last one counts
             self.state.virial[:] = before
         self._level_forces[level - 1][:] = self.engine.buffers[0]
@@ -380,6 +359,11 @@ class RespaLoop(Loop):
 
     def _post_force(self, n: int, fix, level: int) -> None:
         """A fix that acts on one level may do something on the others, too; what it counts is the sum over levels."""
+        if hasattr(fix, "on_level"):
+            self._level_forces[level - 1][:] = self.engine.buffers[0]
+            fix.on_level(self, level)
+            self.engine.buffers[0] = self._level_forces[level - 1]
+            return
         own = self._own_level(fix)
         if fix.levels == "every" or level == own:
             self._call(n, "post_force")

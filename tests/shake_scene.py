@@ -93,12 +93,12 @@ def head(data, water: str = "1:500") -> str:
     return SCRIPT.format(data=data, water=water)
 
 
-def measure(*args):
+def measure(*args, words=()):
     """What asemd makes of a case."""
     from asemd.lammps import Lammps
     scope: dict = {"np": np}
     exec(MEASURE, scope)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", *words])
     try:
         return scope["measure"](lmp, *args)
     finally:

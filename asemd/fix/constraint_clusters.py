@@ -106,6 +106,11 @@ def find(system, mask: np.ndarray, chosen: Chosen, what: str) -> Clusters:
     return Clusters(atoms, kind, types)
 
 
+def by_id(clusters: Clusters, system) -> Clusters:
+    """The same with ids for rows."""
+    return Clusters(np.where(clusters.atoms >= 0, system.id[clusters.atoms], -1), clusters.kind, clusters.types)
+
+
 def of_template(molecule, ids: np.ndarray) -> Clusters:
     """The clusters that the file of a molecule says, of copies whose atoms have the ids (copies, n)."""
     shake, atoms, kinds, types = molecule.shake, [], [], []

@@ -7,7 +7,8 @@ bonds of the given types ``b``, of atoms of types ``t`` or masses ``m`` (within 
 types ``a`` if both their bonds are. They are turned off as bonds and angles: their energy does not count. The forces along the old bond
 vectors are iterated until none changes the positions by more than the tolerance (`asemd.fix.constraint_solver`); the method, the number of
 iterations and the stopping rule are LAMMPS's, so trajectories agree at any tolerance. At the start of a run positions are moved onto the
-constraints. Put this fix after those that change forces.
+constraints. Put this fix after those that change forces. Under ``run_style respa`` each level has such forces, for the next step of the
+innermost one.
 
 Each distance takes a degree of freedom from the temperature; the forces count in the virial (``fix_modify virial no``: not). During
 minimisation a distance is held by a spring, :math:`E = K (r - d)^2` with K of the keyword ``kbond`` (default :math:`10^9 k_B`); this energy
@@ -28,16 +29,17 @@ import numpy as np
 from asemd.errors import InputError, SimulationError, nearest
 from asemd.fix import Fix, hook
 from asemd.fix import constraint_clusters as cc
+from asemd.fix.constraint_levels import PART, OnLevels
 from asemd.fix.constraint_solver import POSITIONS, add_virials, hold_positions
 from asemd.words import number, take, whole, yes_no
 
 LISTS = {"b": "bonds", "a": "angles", "t": "atoms", "m": "masses"}
 KEYWORDS = (*LISTS, "kbond", "mol", "settle")
 BROKEN = 0.1        # relative error of a distance that no sound run has
-PART, BELOW, SINGULAR = 1, 6, 7     # places in p: the part of dt^2 the next forces act for; counts of determinants below 0; at 0
+BELOW, SINGULAR = 6, 7     # places in p: counts of determinants below 0; at 0
 
 
-class Shake(Fix):
+class Shake(OnLevels, Fix):
     """Constraints on bonds and angles.
 
     Parameters
@@ -142,7 +144,7 @@ class Shake(Fix):
         fix.template = template
         session.print(f"Finding {cls.verb} clusters ...")
         found = cc.find(system, session.scene.groups.mask(group), fix.chosen, what)
-        fix.clusters, fix.ids, fix.lasting = found, by_id(found, system), True
+        fix.clusters, fix.ids, fix.lasting = found, cc.by_id(found, system), True
         cc.switch(system, found, False)
         for kind, name in ((cc.PAIR, "# of size 2 clusters"), (cc.TWO, "# of size 3 clusters"), (cc.THREE, "# of size 4 clusters"),
                            (cc.ANGLE, "# of frozen angles")):
@@ -168,7 +170,7 @@ class Shake(Fix):
             self.clusters = self._rows(system)
         else:
             self.clusters = cc.find(system, loop.groups[self.group], self.chosen, what)
-            self.ids = by_id(self.clusters, system)
+            self.ids = cc.by_id(self.clusters, system)
             cc.switch(system, self.clusters, False)
         self.distances = cc.lengths(self.clusters, loop.interactions, what)
         if self.settle:
@@ -259,7 +261,7 @@ class Shake(Fix):
             loop.warn("Should not use fix nve/limit with fix shake or fix rattle")
         if self.output:
             self._tell(loop, loop.step)
-        s = loop.state
+        self.starting, s = True, loop.state
         alone = s._replace(v=np.zeros_like(s.v), f=np.zeros_like(s.f), virial=np.zeros_like(s.virial))
         self.p[PART] = self.first_part
         loop._call(loop.fixes.index(self), "post_force", alone)
@@ -281,6 +283,9 @@ class Shake(Fix):
     def hold_again(self, loop) -> None:
         """Another fix changed positions or velocities at the end of a step: forces that make the next step keep the distances."""
         if self.minimizing:
+            return
+        if loop.in_levels:
+            self._hold_again_on_levels(loop)
             return
         s, kept = loop.state, self.a[3].copy()
         self.p[PART] = 0.5
@@ -383,11 +388,6 @@ class Shake(Fix):
             lines.append(_row("Angle:", 3, t, theta[types[end] == t]))
         for line in lines:
             loop.say(line)
-
-
-def by_id(clusters: cc.Clusters, system) -> cc.Clusters:
-    """The same with ids for rows."""
-    return cc.Clusters(np.where(clusters.atoms >= 0, system.id[clusters.atoms], -1), clusters.kind, clusters.types)
 
 
 def _row(name: str, width: int, type_: int, values: np.ndarray) -> str:
