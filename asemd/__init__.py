@@ -20,7 +20,7 @@ _LAZY = {
     "report": "asemd.report",
     "validate": "asemd.testing.validate",
     "run_lammps": "asemd.lammps_run",
-    "campaign": "asemd.campaign",
+    "campaign": "asemd.campaigns",
     "MolecularDynamics": "asemd.dynamics",
     "to_mdanalysis": "asemd.interop.mdanalysis",
     "from_mdanalysis": "asemd.interop.mdanalysis",

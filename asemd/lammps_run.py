@@ -109,7 +109,12 @@ def run_lammps(source, ranks: int = 1, *, steps: int | None = None, folder: str 
     switches = switches or Switches()
     found = LammpsRun(ranks)
     if check:
-        found.agreement = agreement(validate(source, steps=None, tolerance=tolerance, compat=compat, switches=switches))
+        try:
+            report = validate(source, steps=None, tolerance=tolerance, compat=compat, switches=switches)
+        except InputError as e:
+            e.message += "; --no-check (check=False) hands the script over unread"
+            raise
+        found.agreement = agreement(report)
         if watcher is not None:
             watcher.write(found.agreement + "\n")
     return _carry_out(found, os.fspath(source), switches, None, atoms, watcher)

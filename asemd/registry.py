@@ -21,12 +21,29 @@ REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "
 # styles of LAMMPS that its manual, from which the inventory is, does not have
 NEWER = [("bond", "bpm/spring/plastic"), ("angle", "amoeba"), ("angle", "cosine/buck6d"), ("angle", "mwlc"), ("improper", "amoeba")]
 known: dict[tuple[str, str], Style] = {}      # by category and name
+own: dict[tuple[str, str], type] = {}         # fixes and computes of the user
 
 
 def register(style: Style) -> Style:
     """Make a force-field style known by its name."""
     known[style.category, style.name] = style
     return style
+
+
+def remember(category: str, found: type) -> None:
+    """Make a fix or compute of the user known by its name; those of asemd are found by their files.
+
+    Raises
+    ------
+    InputError
+        asemd has one of that name.
+    """
+    name = found.__dict__.get("style", "")
+    if not name or found.__module__.startswith("asemd."):
+        return
+    if importlib.util.find_spec(module_of(category, name)) is not None:
+        raise InputError(f"asemd has a {category} {name} already: give yours another name")
+    own[category, name] = found
 
 
 def file_of(name: str) -> str:
@@ -104,6 +121,8 @@ def class_of(category: str, name: str, base: type) -> type:
         Unknown style; the message offers the nearest match.
     """
     name = plain_name(name)
+    if (category, name) in own:
+        return own[category, name]
     module = module_of(category, name)
     try:
         found = _styled(importlib.import_module(module), base)

@@ -12,10 +12,17 @@ from asemd import __version__  # noqa: E402
 project = "asemd"
 author = copyright = "asemd developers"
 version = release = __version__
-extensions = ["myst_parser", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+autosummary_generate = True
+autosummary_ignore_module_all = False
+autodoc_default_options = {"members": True}
+autodoc_typehints = "none"          # signatures have them; the text says units and shapes
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+default_role = "literal"
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
-source_suffix = {".md": "markdown"}
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = f"asemd {__version__}"

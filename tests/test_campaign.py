@@ -76,10 +76,14 @@ def test_scripts_in_other_processes(tmp_path, monkeypatch):
 
 
 def test_anything_with_submit(tmp_path):
-    """As Parsl's executors: an object of another kind whose futures are those of `concurrent.futures`."""
+    """As Parsl's executors: an object of another kind whose futures are those of `concurrent.futures`, but cannot be cancelled."""
+    class Held(Future):
+        def cancel(self):
+            raise NotImplementedError
+
     class Own:
         def submit(self, function, *arguments):
-            future: Future = Future()
+            future = Held()
             future.set_result(function(*arguments))
             return future
     for k, executor in enumerate((Own(), ThreadPoolExecutor(2))):

@@ -18,7 +18,8 @@ PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md
 PAGES = sorted(p for p in PAGES if "_build" not in p.parts and p.parent != ROOT / "docs" / "styles")      # those are made by Sphinx
 # page -> what it is about
 NEEDED = {"docs/symmetry.md": ["spglib"], "docs/mdanalysis.md": ["MDAnalysis"], "docs/lammps.md": ["lammps"]}
-EXECUTED = ("tutorial", "ase", "campaigns", "kspace", "lammps", "mdanalysis", "symmetry")
+EXECUTED = ("tutorial", "ase", "campaigns", "custom-compute", "custom-fix", "data-files", "kspace", "lammps", "mdanalysis", "migration",
+            "symmetry", "units")
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
 
 
@@ -29,6 +30,16 @@ def blocks(page: Path, language: str) -> list[str]:
 def scripts(page: Path) -> dict[str, str]:
     """LAMMPS scripts of a page by the file name that the line above gives them."""
     return dict(re.findall(r"`(in\.\w+)`:\n+```lammps\n(.*?)^```", page.read_text(), re.S | re.M))
+
+
+def modules_of(page: Path) -> dict[str, str]:
+    """Python files of a page that the line above calls `my_...py`."""
+    return dict(re.findall(r"`(my_\w+\.py)`:\n+```python\n(.*?)^```", page.read_text(), re.S | re.M))
+
+
+def files(page: Path) -> dict[str, str]:
+    """Other files of a page: text behind `data.NAME` or `NAME.in.WORD`."""
+    return dict(re.findall(r"`((?:data\.\w+|\w+\.(?:data|in\.\w+)))`:\n+```text\n(.*?)^```", page.read_text(), re.S | re.M))
 
 
 def python(*arguments: str, cwd: Path) -> str:
@@ -43,12 +54,29 @@ def test_python_blocks_run(name, tmp_path):
     for library in NEEDED.get(name, ()):
         if importlib.util.find_spec(library) is None:       # LAMMPS is never loaded into this process
             pytest.skip(f"{library} is not installed")
-    for script, text in scripts(page).items():
-        (tmp_path / script).write_text(text)
-    found = blocks(page, "python")
+    modules = modules_of(page)
+    for file, text in (scripts(page) | modules | files(page)).items():
+        (tmp_path / file).write_text(text)
+    found = [text for text in blocks(page, "python") if text not in modules.values()]
     assert found
     (tmp_path / "page.py").write_text("\n".join(found))
     python("page.py", cwd=tmp_path)
+
+
+@pytest.mark.parametrize("name", ["custom-fix", "custom-compute"])
+def test_commands_with_own_files(name, tmp_path):
+    """The line that brings a page's Python file into `asemd run`; what asemd has already cannot be defined again."""
+    page = ROOT / "docs" / f"{name}.md"
+    for file, text in (scripts(page) | modules_of(page)).items():
+        (tmp_path / file).write_text(text)
+    command, = blocks(page, "sh")
+    assert "Loop time of" in python("-m", "asemd.cli", *command.split()[1:], cwd=tmp_path)
+    script, own = command.split()[2], tmp_path / command.split()[4]
+    done = subprocess.run([sys.executable, "-m", "asemd.cli", "run", script], env=ENV, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1 and "unknown" in done.stderr and f"{script}:" in done.stderr
+    own.write_text(re.sub(r'style = "[^"]*"', 'style = "momentum"', own.read_text()))
+    done = subprocess.run([sys.executable, "-m", "asemd.cli", *command.split()[1:]], env=ENV, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1 and "momentum already: give yours another name" in done.stderr
 
 
 def test_readme_script_runs(tmp_path):

@@ -155,6 +155,7 @@ def test_no_run_where_they_disagree(folder):
 def test_what_asemd_does_not_have(folder, capsys):
     """Without the comparison the script may hold anything; `quit` is no error."""
     (folder / "in.x").write_text(BASE + "fix no all ave/spatial/unheard\n")
+    assert cli.main(["run", "in.x", "--engine", "lammps"]) == 1 and "; --no-check" in capsys.readouterr().err
     assert cli.main(["run", "in.x", "--engine", "lammps", "--no-check", "--quiet"]) == 1
     captured = capsys.readouterr()
     assert captured.out == "" and "in.x:" in captured.err and "ERROR: LAMMPS: " in captured.err

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.registry import class_called, class_of
+from asemd.registry import class_called, class_of, remember
 from asemd.words import number, yes_no
 
 
@@ -41,6 +41,10 @@ class Compute:
     maker: str = ""
     extra_dof: float | None = None
     dynamic: bool = False
+
+    def __init_subclass__(cls, **keywords):
+        super().__init_subclass__(**keywords)
+        remember("compute", cls)
 
     def __init__(self, group: str = "all"):
         self.group = group

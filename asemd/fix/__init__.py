@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.registry import class_called, class_of
+from asemd.registry import class_called, class_of, remember
 from asemd.words import whole, yes_no
 
 if TYPE_CHECKING:
@@ -138,6 +138,10 @@ class Fix:
     thermo_energy: bool = False
     thermo_virial: bool = False
     minimizing: bool = False
+
+    def __init_subclass__(cls, **keywords):
+        super().__init_subclass__(**keywords)
+        remember("fix", cls)
 
     def __init__(self, group: str = "all"):
         self.group = group

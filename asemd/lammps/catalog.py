@@ -47,7 +47,7 @@ def exists(category: str, name: str) -> bool:
         return True
     if category in FORCE_FIELD:
         return registry.exists(category, plain_name(name))      # also one that the user has defined
-    if category == "kspace" and name == "none":
+    if (category == "kspace" and name == "none") or (category, name) in registry.own:
         return True
     if category not in PACKAGES or not name or file_of(plain_name(name)) not in files(category):
         return False
@@ -91,6 +91,8 @@ def load(category: str, name: str) -> type:
     InputError
         Unknown style; offers the nearest match.
     """
+    if (category, name) in registry.own:
+        return registry.own[category, name]
     module = module_of(category, plain_name(name))
     if module.rpartition(".")[2] in files(category):
         for found in _classes(importlib.import_module(module)):

@@ -4,6 +4,7 @@ Only this process writes the database, a row when a run is over; what is there i
 """
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import itertools
 import json
@@ -108,7 +109,8 @@ def campaign(function: Callable[..., Any] | str | os.PathLike, parameters: Mappi
                 tell(count, len(todo))
     finally:
         for future in futures:
-            future.cancel()
+            with contextlib.suppress(NotImplementedError):      # Parsl's futures cannot be taken back
+                future.cancel()
     with connect(os.fspath(database), type="db") as db:
         found = {row.campaign: row.data["campaign"] for row in db.select() if row.get("campaign") in todo}
     return Campaign(Path(database), [found[key] for key in todo if key in found])
