@@ -18,6 +18,9 @@ LIVE = ("temp/ramp", "temp/region", "temp/deform", "viscosity/cos")
 
 def scale(fix, loop, factor: float) -> None:
     """The thermostat's factor: of velocities without their bias, and of what turns."""
+    if hasattr(fix, "scale_thermal"):
+        fix.scale_thermal(loop)
+        return
     scale_thermal(loop, fix.temp, fix.group, factor)
     if fix.turns:
         fix.turning[0][loop.groups[fix.group]] *= factor

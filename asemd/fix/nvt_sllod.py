@@ -6,6 +6,9 @@ with the flow :math:`u(r) = \dot h\, h^{-1} (r - r_0) + \dot r_0` of the box. Th
 (compute temp/deform) it measures. With ``psllod yes`` the term of the gradient takes :math:`v` in place of :math:`v'`. The box must be
 deformed with ``remap v``. The chain has one link unless ``tchain`` says otherwise.
 
+``fix_modify temp`` takes other temperatures with a bias (temp/profile, temp/partial ...): :math:`v'` is then what they leave of the
+velocities, while the term of the gradient stays that of the box.
+
 Each of the M sub-steps of ``tloop M`` takes its part of the term of the gradient. LAMMPS takes the whole term in each, M times the flow's
 gradient: ``-compat lammps`` does so too.
 
@@ -21,6 +24,7 @@ from asemd.errors import InputError
 from asemd.fix import hook
 from asemd.fix.nose_hoover import HEADER, nose_hoover_chain
 from asemd.fix.nvt import NVT
+from asemd.fix.thermostat import thermal_velocities
 from asemd.kernels.threads import barrier, reduce_sum
 from asemd.words import take, yes_no
 
@@ -108,8 +112,7 @@ class NVTSllod(NVT):
     """
 
     style = "nvt/sllod"
-    kinds = ("temp/deform",)
-    all_plain = True        # its compiled hooks measure the temperature of compute temp/deform
+    kinds = tuple(kind for kind in NVT.kinds if kind not in ("temp", "temp/sphere", "temp/asphere"))     # those with a bias
     size = 12
 
     def __init__(self, group: str = "all", temperature=300.0, damping: float = 100.0, chain: int = 1, drag: float = 0.0,
@@ -129,6 +132,10 @@ class NVTSllod(NVT):
         return cls(group, (plain.start, plain.stop), plain.damping, plain.chain if "tchain" in words else 1, plain.drag, psllod,
                    plain.loops)
 
+    @property
+    def all_plain(self) -> bool:
+        return self.temp.style == "temp/deform"
+
     def to_lammps(self) -> list[str]:
         return [*super().to_lammps(), "psllod", "yes" if self.psllod else "no"]
 
@@ -139,7 +146,8 @@ class NVTSllod(NVT):
             raise InputError(f"fix {self.id} (style {self.style}) needs a fix deform")
         if deform.remap != "v":
             raise InputError(f"fix {self.id} (style {self.style}) needs a fix deform with remap v, it has remap {deform.remap}")
-        return (deform.p, np.array([float(self.psllod), 1.0 if loop.interactions.compat == "lammps" else 1.0 / self.loops]))
+        self._arrays = deform.p, np.array([float(self.psllod), 1.0 if loop.interactions.compat == "lammps" else 1.0 / self.loops])
+        return self._arrays
 
     def vector(self, i: int) -> float:
         """Positions and velocities of the chain, its potential and its kinetic energies; 12 values, the last ones 0 for a short chain."""
@@ -150,6 +158,18 @@ class NVTSllod(NVT):
         weight = np.where(np.arange(n) == 0, p[2], 1.0)
         values = np.concatenate([eta, rate, p[3] * p[13] * weight * eta, 0.5 * mass * rate * rate])
         return float(values[i - 1]) if i <= 4 * n else 0.0
+
+    def scale_thermal(self, loop) -> None:
+        """The sub-steps of `thermostat` with another bias than the flow of the box."""
+        rates, (peculiar, share) = self._arrays
+        m, mine = np.empty(6), loop.groups[self.group]
+        gradient(loop.state.box, rates, m)
+        flow = np.array([[m[0], 0.0, 0.0], [m[3], m[1], 0.0], [m[4], m[5], m[2]]])
+        for factor in self.p[HEADER + 4 * self.chain + 1:]:
+            thermal, v = thermal_velocities(loop, self.temp), loop.system.v
+            pulled = (v if peculiar else thermal) @ flow
+            v[mine] += ((factor - 1.0) * thermal - 0.5 * loop.dt * share * pulled)[mine]
+            loop.sync_in()
 
     @hook(uses=[nose_hoover_chain, gradient, thermostat])
     def initial_integrate(th, s, p, a):

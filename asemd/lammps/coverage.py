@@ -42,7 +42,6 @@ PARTIAL = {
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
     ("fix", "adapt"): "no cutoffs; LAMMPS takes cut of harmonic/cut and cut_coul of some styles, which its table does not list",
-    ("fix", "nvt/sllod"): "fix_modify temp takes compute temp/deform",
 }
 # words in the place of a style that are no style
 OTHERWISE: dict[str, set[str]] = {"kspace": {"none"}, "region": {"delete"}}
