@@ -66,6 +66,27 @@ class Molecule:
         return self.x - centre / self.natoms
 
     @property
+    def has_body(self) -> bool:
+        """Whether the file says itself what mass or inertia the molecule has as a rigid body."""
+        return any(value is not None for value in (self.rmass, self.mass, self.com, self.inertia))
+
+    def body(self, masses: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+        """Mass, centre of mass (3,) and moments of inertia (3, 3) about it, in the frame of the molecule.
+
+        `masses` (n,) are those of the atoms where the file has none. What the header gives counts; the centre of mass is the sum of mass
+        times position over the mass of the molecule, also if that is another one than the sum of masses, as in LAMMPS, which takes the last
+        three moments of inertia in the order yz xz xy.
+        """
+        m = masses if self.rmass is None else self.rmass
+        mass = float(m.sum()) if self.mass is None else self.mass
+        com = m @ self.x / mass if self.com is None else self.com
+        if self.inertia is not None:
+            xx, yy, zz, yz, xz, xy = self.inertia
+            return mass, com, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        d = self.x - com
+        return mass, com, (m * (d * d).sum(axis=1)).sum() * np.eye(3) - np.einsum("i,ia,ib->ab", m, d, d)
+
+    @property
     def nmolecules(self) -> int:
         """How many molecules the template has."""
         return 1 if self.molecule is None else int(self.molecule.max(initial=1))

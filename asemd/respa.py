@@ -146,9 +146,9 @@ class RespaLoop(Loop):
                 self._post_force(n, fix, level)
                 forces[:] = self.engine.buffers[0]
             self._total()
-        if self._forcing:       # until the first step LAMMPS leaves the forces of the level on which a fix acted last, not their sum
-            acted = self.fixes[self._forcing[-1]]
-            last = self.levels.n if hasattr(acted, "elsewhere") else self._own_level(acted)
+        acted = [self.fixes[n] for n in self._forcing if not self.fixes[n].integrates]
+        if acted:       # until the first step LAMMPS leaves the forces of the level on which a fix acted last, not their sum
+            last = self.levels.n if hasattr(acted[-1], "elsewhere") else self._own_level(acted[-1])
             self.engine.buffers[0] = self._level_forces[last - 1]
 
     def _own_level(self, fix) -> int:
@@ -168,7 +168,8 @@ class RespaLoop(Loop):
             mine = {name: getattr(fix, name) for name in tl.COMPILED if kinds.get(name)}
             if fix.integrates:
                 inner = fix.inner or fix
-                mine |= {"inner_initial": inner.initial_integrate, "inner_final": inner.final_integrate}
+                final = getattr(fix, "inner_final", inner.final_integrate)
+                mine |= {"inner_initial": inner.initial_integrate, "inner_final": final, "middle": getattr(fix, "middle", final)}
                 mine["outer_initial"] = getattr(fix, "outer_initial", fix.final_integrate)
             hooks.append(mine)
         self._forcing = [n for n, kinds in enumerate(self._kinds) if "post_force" in kinds]
@@ -250,7 +251,7 @@ class RespaLoop(Loop):
         n = self.levels.n
         times = 1 if level == n else self.levels.factors[level - 1]
         for k in range(times):
-            self._integrate(level, "inner_initial" if level == 1 < n else "inner_final" if level < n else
+            self._integrate(level, "inner_initial" if level == 1 < n else "middle" if level < n else
                             "outer_initial" if n > 1 else "initial_integrate")
             if level == 1:
                 self._hook("post_integrate")
@@ -262,7 +263,7 @@ class RespaLoop(Loop):
             if level > 1:
                 self._recurse(level - 1, wanted)
             self._forces(level, wanted, self._forcing)
-            self._integrate(level, "final_integrate" if level == n else "inner_final", True)
+            self._integrate(level, "final_integrate" if level == n else "inner_final" if level == 1 else "middle", True)
 
     def _integrate(self, level: int, name: str, second: bool = False) -> None:
         """A half step of one level by all fixes that move atoms; after the second half others may act, too."""

@@ -1,6 +1,8 @@
 """Molecules that come and go while fix rigid/small or fix shake holds them, against LAMMPS."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from both import ATOMS, asemd, lines_of
@@ -19,6 +21,10 @@ thermo_modify norm no
 {runs}
 """
 BENT = ((0.0, 0.0, 0.0), (0.816497, 0.57735, 0.0), (-0.816497, 0.57735, 0.0))
+MASSES = "\nMasses\n\n1 20.0\n2 3.0\n3 5.0\n"
+GIVEN = "30.0 mass\n0.1 0.2 0.05 com\n3.0 4.0 5.0 0.2 0.1 0.3 inertia"
+HEAVY, OWN = water(BENT) + MASSES, water(BENT).replace("1 angles\n", f"1 angles\n{GIVEN}\n")
+FILES = {"heavy.mol": HEAVY, "own.mol": OWN}        # masses and inertia of bodies that are not those of the atoms
 HELD, BARE = water(BENT, shake=True), water(BENT)
 DEPOSIT = "fix d more deposit 3 0 5 4711 region slab near 2.0 attempt 100 mol water vx -0.01 0.01 vz -0.01 0.01 "
 GCMC = "compute_modify thermo_temp dynamic/dof yes\nfix d more gcmc 2 30 0 0 29494 400.0 -7.0 0.0 mol water tfac_insert 1.6 "
@@ -32,6 +38,8 @@ CASES = {
     "gcmc shake": (GCMC + "shake s" + SHAKE, "run 8"),
     "gcmc shake, full energy": (GCMC + "full_energy shake s" + SHAKE, "run 5"),
     "gcmc rigid": (GCMC + "rigid s" + SMALL, "run 6\nrun 2"),
+    **{f"{what} rigid {name}": (f"molecule {name} {name}.mol\n" + (fix + "rigid s" + SMALL).replace("mol water", f"mol {name}"), run)
+       for name in ("heavy", "own") for what, fix, run in (("deposit", DEPOSIT, "run 12"), ("gcmc", GCMC, "run 4"))},
     "gcmc rigid from nothing": ("delete_atoms group all\n" + GCMC + "rigid s" + SMALL, "run 6"),
     "gcmc rigid/nvt": (GCMC + "rigid s\nfix s all rigid/nvt/small molecule temp 300 300 50 mol water", "run 6"),
 }
@@ -54,15 +62,17 @@ def scene(name: str) -> str:
 
 @pytest.fixture(scope="module")
 def theirs(tmp_path_factory):
-    mol = tmp_path_factory.mktemp("held") / "water.mol"
-    mol.write_text(HELD)
-    return ask(SCRIPT, cases={name: lines_of(scene(name).replace("water.mol", str(mol))) for name in CASES})
+    folder = tmp_path_factory.mktemp("held")
+    for mol, text in (FILES | {"water.mol": HELD}).items():
+        (folder / mol).write_text(text)
+    return ask(SCRIPT, cases={name: lines_of(re.sub(r"(\w+\.mol)", rf"{folder}/\1", scene(name))) for name in CASES})
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(name, theirs, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "water.mol").write_text(HELD)
+    for mol, content in (FILES | {"water.mol": HELD}).items():
+        (tmp_path / mol).write_text(content)
     session, expected = asemd(scene(name)), theirs[name]
     system = session.scene.system
     order = np.argsort(system.id)
@@ -82,6 +92,7 @@ def test_like_lammps(name, theirs, tmp_path, monkeypatch):
     (DEPOSIT + "rigid s\nfix s all rigid/small molecule", "not using the same molecule template"),
     ("fix s all rigid/small molecule mol fire", "there is no molecule fire"),
     ("fix s all rigid molecule mol water", "does not take the keyword mol"),
+    ("fix s all rigid/small molecule mol hollow", "mol: the molecule has a negative principal moment of inertia, -4"),
     ("fix s all shake 1e-4 20 0 b 1 a 1 mol bare", "must have shake info"),
     (GCMC.replace("30 0 0", "30 5 0") + "rigid s", "cannot use rigid with MC moves"),
 ])
@@ -89,5 +100,6 @@ def test_mistakes(fixes, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "water.mol").write_text(HELD)
     (tmp_path / "bare.mol").write_text(BARE)
+    (tmp_path / "hollow.mol").write_text(OWN.replace("3.0 4.0 5.0", "3.0 -4.0 5.0"))
     with pytest.raises(InputError, match=said):
-        asemd(SCENE.format(n=5, fixes="molecule bare bare.mol\n" + fixes, runs="run 0"))
+        asemd(SCENE.format(n=5, fixes="molecule bare bare.mol\nmolecule hollow hollow.mol\n" + fixes, runs="run 0"))

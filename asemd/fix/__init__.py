@@ -87,7 +87,8 @@ class Fix:
         Other hooks: `post_integrate` follows each move of the atoms, `pre_force` comes once in a step.
     inner : type
         The class whose hooks move the atoms on all levels but the outermost, if not its own; ``outer_initial`` is a hook that takes the
-        place of `initial_integrate` on the outermost of several levels and moves no atom (by default `final_integrate`).
+        place of `initial_integrate` on the outermost of several levels and moves no atom (by default `final_integrate`), ``inner_final``
+        one in the place of `final_integrate` on the innermost, ``middle`` one for both halves of steps of those between.
     thermo_energy, thermo_virial : bool
         ``fix_modify energy yes``, ``fix_modify virial yes``: `scalar` counts as potential energy, what hooks
         add to ``s.virial`` as virial (they add it only then), ``virials(state)`` in virials by atom.

@@ -194,7 +194,7 @@ class Deposit(Fix):
             found = self._try(loop, there)
             if found is not None:
                 if self.holds is not None:
-                    self.holds.take_in(loop.system, *found)
+                    self.holds.take_in(loop.system, *found[:2], [found[2]])
                 found = found[0]
                 population.insert(loop, found, [self.group], listed=False)
                 self.inserted += 1
@@ -215,7 +215,7 @@ class Deposit(Fix):
                 return x
 
     def _try(self, loop, there: np.ndarray):
-        """One trial: the new atoms as a system and their molecule, or None if one of those `there` (n, 3) is too near."""
+        """One trial: the new atoms as a system, their molecule and how it is turned, or None if one of those `there` (n, 3) is too near."""
         system = loop.system
         up = system.dimension - 1
         place = self._place(loop)
@@ -247,7 +247,7 @@ class Deposit(Fix):
         numbers = self.last_ids[1] if self.next_ids else int(system.molecule.max(initial=0))
         new.molecule[new.molecule > 0] += numbers
         self.last_ids = [max(self.last_ids[0], int(new.id.max())), max(self.last_ids[1], int(new.molecule.max(initial=0)))]
-        return new, one
+        return new, one, matrix
 
     def _atom(self, system, x: np.ndarray):
         from asemd.atom_style import fresh

@@ -328,7 +328,8 @@ class Moves(Reservoir):
         atoms.id[:], atoms.x[:], atoms.image[:], atoms.v[:] = a.id[new], a.x[new], a.image[new], a.v[new]
         if fix.holds is not None:
             off = fix.molecule.x.mean(axis=0) if fix.as_lammps else np.zeros(3)     # LAMMPS puts bodies beside their atoms by this much
-            fix.holds.take_in(self.system, atoms, fix.molecule, np.array([-self.born[int(k)] @ off for k in numbers]))
+            turns = [self.born[int(k)] for k in numbers]
+            fix.holds.take_in(self.system, atoms, fix.molecule, turns, np.array([-turn @ off for turn in turns]))
         return atoms
 
     def members(self, atoms) -> dict[str, np.ndarray]:

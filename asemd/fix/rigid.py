@@ -31,7 +31,11 @@ from asemd.kernels.rigid import (
     body_turned,
     follow_box,
     gather_forces,
+    kick_body,
+    kick_conjugate,
+    kick_level,
     langevin_bath,
+    momentum_of,
     place_atoms,
     place_moved,
     turn_axes,
@@ -44,8 +48,9 @@ from asemd.words import bounds, yes_no
 
 HEADER = 16     # numbers of every fix of this family before its own
 ORDER = "rigid bodies must be defined before the fix that changes the box"
-MOVE = [turn_axes, angular_velocity, body_turned, turn_richardson, follow_box, gather_forces, place_atoms, place_moved,
-        turn_solid, langevin_bath]
+LEVEL = [turn_axes, angular_velocity, kick_conjugate, momentum_of, follow_box, gather_forces, kick_body, kick_level, place_atoms,
+         place_moved, turn_solid, langevin_bath]
+MOVE = [*LEVEL, body_turned, turn_richardson]
 
 
 class Rigid(BodyOutputs):
@@ -82,7 +87,9 @@ class Rigid(BodyOutputs):
 
     style = "rigid"
     integrates = True
+    levels = "outermost"
     thermo_virial = True
+    symplectic: ClassVar[bool] = False
     small: ClassVar[bool] = False
     thermostats: ClassVar[bool] = False
     barostats: ClassVar[bool] = False
@@ -186,13 +193,13 @@ class Rigid(BodyOutputs):
 
     def prepare(self, loop) -> None:
         """The bodies as they are at the start of a run."""
-        self._loop = loop
+        again, self._loop = loop is self._loop, loop        # in the midst of a run
         self._warn = self._warn or loop.warn
         if self.members is None:
             self.define(loop.system, loop.groups)
         self._check_order(loop)
         self.warned.clear()
-        if self.kept is not None and not self.reinit:
+        if self.kept is not None and (not self.reinit or (again and self.infile)):
             rb.follow(self.kept, loop.system.box.origin, loop.system.box.cell)
             self._wrap(loop)
             return
@@ -237,15 +244,25 @@ class Rigid(BodyOutputs):
                 raise InputError(f"fix {self.id} (style {self.style}): {ORDER} {fix.id} (style {fix.style})")
         if not self.small and sum(isinstance(f, Rigid) and not f.small for f in loop.fixes) > 1:
             loop.warn("More than one fix rigid")
+        if self.early and self._on_levels(loop):
+            raise InputError(f"fix {self.id} (style {self.style}): fix_modify bodyforces early does not work with run_style respa")
         if self.early:
             for fix in loop.fixes[at + 1:]:
                 if "post_force" in fix.hooks() and not isinstance(fix, Rigid):
                     loop.warn(f"Fix {fix.id} with style {fix.style} alters forces after fix {self.id}, which has summed them")
 
+    def _on_levels(self, loop) -> bool:
+        return loop.in_levels and loop.levels.n > 1
+
+    def _as_lammps(self, loop) -> bool:
+        """Whether the first half step of the innermost level takes the forces of another one, as in LAMMPS."""
+        return loop.interactions.compat == "lammps"
+
     def parameters(self, loop) -> np.ndarray:
         u, p = loop.units, self.p
         start, stop, damping, seed = self.langevin or (0.0, 0.0, 1.0, 0)
-        p[:13] = (loop.group_bit(self.group), self.thermo_virial, bool(loop.engine.box_moves), self.early, 0.0, seed, start, stop,
+        forces = 2 + self._as_lammps(loop) if self._on_levels(loop) else int(self.early)
+        p[:13] = (self.symplectic, self.thermo_virial, bool(loop.engine.box_moves), forces, 0.0, seed, start, stop,
                   1.0 / (damping * u.ftm2v), 24.0 * u.boltz / (damping * u.mvv2e) / u.ftm2v**2, u.ftm2v, loop.system.dimension, u.mvv2e)
         p[13:16] = self._field(loop) if self.gravity else 0.0
         return p
@@ -319,6 +336,8 @@ class Rigid(BodyOutputs):
         for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
             if p[2] != 0.0:
                 follow_box(s, b, k)
+            if p[3] == 2.0:
+                gather_forces(s, p, b, k, 0.0)
             for d in range(3):
                 b.v[k, d] += half / b.mass[k] * b.force[k, d] * b.moves[k, d]
                 b.x[k, d] += th.dt * b.v[k, d]
@@ -339,29 +358,40 @@ class Rigid(BodyOutputs):
             for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
                 for c in range(6):
                     s.virial[th.tid, c] += p[1] * b.half_virial[k, c]
-                if p[3] != 0.0:
+                if p[3] == 1.0:
                     if p[2] != 0.0:
                         follow_box(s, b, k)
                     langevin_bath(th, p, b, k)
-                    gather_forces(s, p, b, k)
+                    gather_forces(s, p, b, k, 1.0)
         barrier(th)
 
     @hook(uses=MOVE)
     def final_integrate(th, s, p, b):
         barrier(th)
-        half, count, sums = 0.5 * th.dt * p[10], b.mass.shape[0], np.empty(6)
+        count, sums, slow = b.mass.shape[0], np.empty(6), np.ones(4)
+        share = 1.0 if p[3] == 2.0 else 0.5
         for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
-            if p[3] == 0.0:
+            if p[3] != 1.0:
                 if p[2] != 0.0:
                     follow_box(s, b, k)
                 langevin_bath(th, p, b, k)
-                gather_forces(s, p, b, k)
-            for d in range(3):
-                b.v[k, d] += half / b.mass[k] * b.force[k, d] * b.moves[k, d]
-                b.momentum[k, d] += half * b.torque[k, d] * b.moves[k, 3 + d]
-            angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
-            place_atoms(s, b, k, 0.5 * th.dt * p[1], False, sums)
+                gather_forces(s, p, b, k, 1.0)
+            kick_body(p, b, k, 0.5 * th.dt * p[10], slow)
+            place_atoms(s, b, k, 0.5 * th.dt * p[1], share, False, sums)
             if p[1] != 0.0:
                 for c in range(6):
                     s.virial[th.tid, c] += sums[c]
         barrier(th)
+
+    # ---- under run_style respa, on several levels
+    @hook(uses=MOVE)
+    def inner_final(th, s, p, b):
+        kick_level(th, s, p, b, p[3] - 2.0, 0.5, np.ones(4))
+
+    @hook(uses=MOVE)
+    def middle(th, s, p, b):
+        kick_level(th, s, p, b, p[3] - 2.0, 1.0 if p[3] == 2.0 else 0.5, np.ones(4))
+
+    @hook(uses=MOVE)
+    def outer_initial(th, s, p, b):
+        kick_level(th, s, p, b, 1.0, 1.0, np.ones(4))

@@ -5,6 +5,7 @@ import numpy as np
 
 from asemd.errors import SimulationError
 from asemd.fix import rigid_bodies as rb
+from asemd.result import COMPONENTS
 
 
 class AddedBodies:
@@ -31,16 +32,17 @@ class AddedBodies:
         new[self.kept.rows[np.isin(self.members.ids, self.came)]] = True
         return self.removed_dof(mask & new)
 
-    def take_in(self, system, atoms, molecule, aside=0.0) -> None:
+    def take_in(self, system, atoms, molecule, matrices, aside=0.0) -> None:
         """Copies of a template whose `atoms`, with their ids, are about to join the system become bodies: each copy is one.
 
-        `aside` (copies, 3) is how far beside its centre of mass each body is put, whereto its atoms follow in the next step.
+        `matrices` (copies, 3, 3) have turned them. `aside` (copies, 3) is how far beside its centre of mass each body is put, whereto its
+        atoms follow in the next step.
         """
         atoms.mass, self.came = system.mass, np.append(self.came, atoms.id)
         number = np.repeat(np.arange(atoms.n // molecule.natoms), molecule.natoms)
         new = rb.by_number(atoms.id, number, atoms.molecule[::molecule.natoms])
         old = self.members
-        bodies = rb.build(atoms, new, self.style)
+        bodies = rb.build(atoms, new, self.style, _given(atoms, molecule, matrices) if molecule.has_body else None)
         bodies.x[:] += aside
         self.kept = rb.joined(self.kept, bodies)
         self.members = rb.Members(np.concatenate([old.ids, new.ids]), np.concatenate([old.first, old.first[-1] + new.first[1:]]),
@@ -63,3 +65,16 @@ class AddedBodies:
 
     def own_words(self) -> list[str]:
         return super().own_words() + (["mol", self.template] if self.template else [])
+
+
+def _given(atoms, molecule, matrices) -> dict[int, np.ndarray]:
+    """What the file of the molecule says of each copy, as a file of bodies would: by molecule number."""
+    out, n = {}, molecule.natoms
+    mass, com, inertia = molecule.body(atoms.atom_masses()[:n])
+    off, places = com - molecule.x.mean(axis=0), atoms.box.unwrap(atoms.x, atoms.image)
+    for k, turn in enumerate(matrices):
+        tensor = turn @ inertia @ turn.T
+        centre = places[k * n:(k + 1) * n].mean(axis=0) + turn @ off
+        six = [tensor[i, j] for i, j in COMPONENTS]
+        out[int(atoms.molecule[k * n])] = np.array([mass, *centre, *six, *atoms.v[k * n], 0.0, 0.0, 0.0, 0, 0, 0])
+    return out

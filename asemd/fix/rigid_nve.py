@@ -17,31 +17,28 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.fix import hook
-from asemd.fix.rigid import Rigid
+from asemd.fix.rigid import LEVEL, Rigid
 from asemd.kernels.rigid import (
     angular_velocity,
     follow_box,
     gather_forces,
     kick_conjugate,
-    langevin_bath,
     momentum_of,
-    place_atoms,
     place_moved,
     turn_about,
     turn_axes,
-    turn_solid,
     turn_symplectic,
 )
 from asemd.kernels.threads import barrier
 
-MOVE = [turn_axes, angular_velocity, turn_about, turn_symplectic, kick_conjugate, momentum_of, follow_box, gather_forces, place_atoms,
-        place_moved, turn_solid, langevin_bath]
+MOVE = [*LEVEL, turn_about, turn_symplectic]
 
 
 class RigidNVE(Rigid):
     """Rigid bodies; see `asemd.fix.rigid.Rigid` for the arguments."""
 
     style = "rigid/nve"
+    symplectic = True
 
     def setup(self, loop) -> None:
         """Conjugate momenta of the orientations, besides."""
@@ -59,6 +56,8 @@ class RigidNVE(Rigid):
         for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
             if p[2] != 0.0:
                 follow_box(s, b, k)
+            if p[3] == 2.0:
+                gather_forces(s, p, b, k, 0.0)
             for d in range(3):
                 b.v[k, d] += half / b.mass[k] * b.force[k, d] * b.moves[k, d]
                 b.x[k, d] += th.dt * b.v[k, d]
@@ -69,26 +68,4 @@ class RigidNVE(Rigid):
             momentum_of(b.p[k], b.q[k], b.axes[k], b.momentum[k])
             angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
             place_moved(th, s, p, b, k)
-        barrier(th)
-
-    @hook(uses=MOVE)
-    def final_integrate(th, s, p, b):
-        barrier(th)
-        half, count, sums = 0.5 * th.dt * p[10], b.mass.shape[0], np.empty(6)
-        for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
-            if p[3] == 0.0:
-                if p[2] != 0.0:
-                    follow_box(s, b, k)
-                langevin_bath(th, p, b, k)
-                gather_forces(s, p, b, k)
-            for d in range(3):
-                b.v[k, d] += half / b.mass[k] * b.force[k, d] * b.moves[k, d]
-                b.torque[k, d] *= b.moves[k, 3 + d]
-            kick_conjugate(b.p[k], b.q[k], b.axes[k], b.torque[k], 2.0 * half)
-            momentum_of(b.p[k], b.q[k], b.axes[k], b.momentum[k])
-            angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
-            place_atoms(s, b, k, 0.5 * th.dt * p[1], False, sums)
-            if p[1] != 0.0:
-                for c in range(6):
-                    s.virial[th.tid, c] += sums[c]
         barrier(th)

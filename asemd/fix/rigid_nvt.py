@@ -32,6 +32,7 @@ from asemd.kernels.rigid_bath import (
     body_ramp,
     body_scale_box,
     body_sinh_ratio,
+    body_slowing,
     body_strain,
     body_thermostat_step,
 )
@@ -42,7 +43,7 @@ COUPLE = ("none", "xyz", "xy", "yz", "xz")
 CUBE, FOURTH = 2.0 ** (1.0 / 3.0), 4.0 ** (1.0 / 3.0)
 WEIGHTS = {3: (1.0 / (2.0 - CUBE), 1.0 - 2.0 / (2.0 - CUBE), 1.0 / (2.0 - CUBE)),
            5: (1.0 / (4.0 - FOURTH), 1.0 / (4.0 - FOURTH), 1.0 - 4.0 / (4.0 - FOURTH), 1.0 / (4.0 - FOURTH), 1.0 / (4.0 - FOURTH))}
-ALL = [*MOVE, follow, body_sinh_ratio, body_ramp, body_inward, body_outward, body_thermostat_step,
+ALL = [*MOVE, follow, body_sinh_ratio, body_slowing, body_ramp, body_inward, body_outward, body_thermostat_step,
        body_barostat_step, body_couple_pressure, body_strain, body_push_box, body_scale_box]
 
 
@@ -145,6 +146,9 @@ class RigidNVT(RigidNVE):
                 raise InputError(f"fix {self.style}: there is no pressure in z in two dimensions")
         super().prepare(loop)
 
+    def _as_lammps(self, loop) -> bool:
+        return False        # its chains, too, would take several times their steps
+
     def parameters(self, loop) -> np.ndarray:
         p, b, u, d = super().parameters(loop), self.kept, loop.units, loop.system.dimension
         nf_t = d * len(b.mass)
@@ -207,23 +211,18 @@ class RigidNVT(RigidNVE):
     def initial_integrate(th, s, p, b):
         barrier(th)
         half, quarter, count = 0.5 * th.dt * p[10], 0.5 * th.dt, b.mass.shape[0]
-        slow_t, slow_r, n = 1.0, 1.0, int(p[21])
-        if p[16] != 0.0:
-            slow_t, slow_r = math.exp(-quarter * p[80 + n]), math.exp(-quarter * p[80 + 5 * n])
-        slow, move = np.empty(3), np.empty(3)
+        slow, move, n = np.empty(4), np.empty(3), int(p[21])
+        body_slowing(p, quarter, slow)
         for d in range(3):
-            slow[d], move[d] = slow_t, th.dt
-            if p[17] != 0.0:
-                y = quarter * p[49 + d]
-                slow[d] *= math.exp(-quarter * (p[49 + d] + p[30]))
-                move[d] *= math.exp(y) * body_sinh_ratio(y)
-        if p[17] != 0.0:
-            slow_r *= math.exp(-quarter * p[33] * p[30])
+            y = quarter * p[49 + d]
+            move[d] = th.dt * math.exp(y) * body_sinh_ratio(y) if p[17] != 0.0 else th.dt
         lo, hi = count * th.tid // th.nth, count * (th.tid + 1) // th.nth
         twice_t, twice_r = 0.0, 0.0
         for k in range(lo, hi):
             if p[2] != 0.0:
                 follow_box(s, b, k)
+            if p[3] == 2.0:
+                gather_forces(s, p, b, k, 0.0)
             for d in range(3):
                 b.v[k, d] = (b.v[k, d] + half / b.mass[k] * b.force[k, d] * b.moves[k, d]) * slow[d]
                 twice_t += b.mass[k] * b.v[k, d] * b.v[k, d]
@@ -231,7 +230,7 @@ class RigidNVT(RigidNVE):
                 b.torque[k, d] *= b.moves[k, 3 + d]
             kick_conjugate(b.p[k], b.q[k], b.axes[k], b.torque[k], 2.0 * half)
             for d in range(4):
-                b.p[k, d] *= slow_r
+                b.p[k, d] *= slow[3]
             turn_symplectic(b.p[k], b.q[k], b.moments[k], th.dt)
             turn_axes(b.q[k], b.axes[k])
             momentum_of(b.p[k], b.q[k], b.axes[k], b.momentum[k])
@@ -263,35 +262,22 @@ class RigidNVT(RigidNVE):
     @hook(uses=ALL)
     def final_integrate(th, s, p, b):
         barrier(th)
-        half, quarter, count, sums = 0.5 * th.dt * p[10], 0.5 * th.dt, b.mass.shape[0], np.empty(6)
-        slow_t, slow_r, n = 1.0, 1.0, int(p[21])
-        if p[16] != 0.0:
-            slow_t, slow_r = math.exp(-quarter * p[80 + n]), math.exp(-quarter * p[80 + 5 * n])
-        slow = np.empty(3)
-        for d in range(3):
-            slow[d] = slow_t
-            if p[17] != 0.0:
-                slow[d] *= math.exp(-quarter * (p[49 + d] + p[30]))
-        if p[17] != 0.0:
-            slow_r *= math.exp(-quarter * p[33] * p[30])
-        twice_t, twice_r = 0.0, 0.0
+        quarter, count, sums, slow = 0.5 * th.dt, b.mass.shape[0], np.empty(6), np.ones(4)
+        share, twice_t, twice_r = 0.5, 0.0, 0.0
+        if p[3] < 2.0:
+            body_slowing(p, quarter, slow)
+        else:               # of several levels the innermost one has the baths
+            share = 1.0
         for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
-            if p[3] == 0.0:
+            if p[3] != 1.0:
                 if p[2] != 0.0:
                     follow_box(s, b, k)
-                gather_forces(s, p, b, k)
+                gather_forces(s, p, b, k, 1.0)
+            kick_body(p, b, k, 0.5 * th.dt * p[10], slow)
             for d in range(3):
-                b.v[k, d] = b.v[k, d] * slow[d] + half / b.mass[k] * b.force[k, d] * b.moves[k, d]
                 twice_t += b.mass[k] * b.v[k, d] * b.v[k, d]
-                b.torque[k, d] *= b.moves[k, 3 + d]
-            for d in range(4):
-                b.p[k, d] *= slow_r
-            kick_conjugate(b.p[k], b.q[k], b.axes[k], b.torque[k], 2.0 * half)
-            momentum_of(b.p[k], b.q[k], b.axes[k], b.momentum[k])
-            angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
-            for d in range(3):
                 twice_r += b.momentum[k, d] * b.omega[k, d]
-            place_atoms(s, b, k, 0.5 * th.dt * p[1], False, sums)
+            place_atoms(s, b, k, 0.5 * th.dt * p[1], share, False, sums)
             if p[1] != 0.0:
                 for c in range(6):
                     s.virial[th.tid, c] += sums[c]
@@ -309,6 +295,12 @@ class RigidNVT(RigidNVE):
                 p[28], p[29] = twice_t, twice_r
                 body_push_box(th, s, p, kinetic, quarter)
             barrier(th)
+
+    @hook(uses=ALL)
+    def inner_final(th, s, p, b):
+        slow = np.empty(4)
+        body_slowing(p, 0.5 * th.dt, slow)
+        kick_level(th, s, p, b, 0.0, 0.5, slow)
 
     def _bodies_energy(self) -> float:
         """The part of the scalar that LAMMPS adds to the energy of the chains."""

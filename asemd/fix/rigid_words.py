@@ -75,6 +75,9 @@ def options_from_words(cls: type[Rigid], words: list[str], session) -> dict:
                 raise InputError(f"{what}: there is no molecule {name}{nearest(name, session.scene.molecules)}")
             for one in session.scene.molecules[name]:
                 one.check(session.scene.system, what)
+                least = np.linalg.eigvalsh(one.body(np.ones(one.natoms))[2])[0]
+                if one.inertia is not None and least < 0.0:
+                    raise InputError(f"{what}: the molecule has a negative principal moment of inertia, {least:g}")
             out[keyword], used = name, 1
         elif keyword in ("force", "torque"):
             which, *flags = take(words[1:], 4, what)

@@ -236,7 +236,7 @@ class Shake(OnLevels, Fix):
             self._arrays(loop.system)
         return self.a
 
-    def take_in(self, system, atoms, molecule, aside=0.0) -> None:
+    def take_in(self, system, atoms, molecule, matrices, aside=0.0) -> None:
         """Hold copies of a template whose `atoms`, with their ids, are about to join the system."""
         self.came = np.append(self.came, atoms.id)
         new = cc.of_template(molecule, atoms.id.reshape(-1, molecule.natoms))

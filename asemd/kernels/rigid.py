@@ -164,8 +164,8 @@ def follow_box(s, b, k):
             old[3 + 3 * c + d] = h[c, d]
 
 
-def gather_forces(s, p, b, k):
-    """Force and torque on body k, with those of its bath and of the field ``p[13:16]``."""
+def gather_forces(s, p, b, k, outside):
+    """Force and torque on body k, with `outside` (1 or 0) times those of its bath and of the field ``p[13:16]``."""
     h = s.box.vectors
     cx, cy, cz = b.x[k, 0], b.x[k, 1], b.x[k, 2]
     fx = fy = fz = tx = ty = tz = 0.0
@@ -187,10 +187,43 @@ def gather_forces(s, p, b, k):
             tx += s.torque[0, i]
             ty += s.torque[1, i]
             tz += s.torque[2, i]
-    b.force[k, 0], b.force[k, 1], b.force[k, 2] = fx + b.bath[k, 0], fy + b.bath[k, 1], fz + b.bath[k, 2]
+    b.force[k, 0], b.force[k, 1], b.force[k, 2] = fx, fy, fz
+    b.torque[k, 0], b.torque[k, 1], b.torque[k, 2] = tx, ty, tz
+    if outside != 0.0:
+        for d in range(3):
+            b.force[k, d] = b.force[k, d] + b.bath[k, d] + b.mass[k] * p[13 + d]
+            b.torque[k, d] += b.bath[k, 3 + d]
+
+
+def kick_body(p, b, k, half, slow):
+    """Half a step of force and torque; before it velocity and momentum are multiplied by `slow (4,)`, the latter if they are conjugate
+    to q (``p[0]`` is 1)."""
     for d in range(3):
-        b.force[k, d] += b.mass[k] * p[13 + d]
-    b.torque[k, 0], b.torque[k, 1], b.torque[k, 2] = tx + b.bath[k, 3], ty + b.bath[k, 4], tz + b.bath[k, 5]
+        b.v[k, d] = b.v[k, d] * slow[d] + half / b.mass[k] * b.force[k, d] * b.moves[k, d]
+    if p[0] == 0.0:
+        for d in range(3):
+            b.momentum[k, d] += half * b.torque[k, d] * b.moves[k, 3 + d]
+    else:
+        for d in range(3):
+            b.torque[k, d] *= b.moves[k, 3 + d]
+        for d in range(4):
+            b.p[k, d] *= slow[3]
+        kick_conjugate(b.p[k], b.q[k], b.axes[k], b.torque[k], 2.0 * half)
+        momentum_of(b.p[k], b.q[k], b.axes[k], b.momentum[k])
+    angular_velocity(b.momentum[k], b.axes[k], b.moments[k], b.omega[k])
+
+
+def kick_level(th, s, p, b, outside, share, slow):
+    """Half a step of all bodies by the forces of one of several levels; `share` of the virial of the constraint is kept for the step."""
+    sums, count = np.empty(6), b.mass.shape[0]
+    for k in range(count * th.tid // th.nth, count * (th.tid + 1) // th.nth):
+        if p[2] != 0.0:
+            follow_box(s, b, k)
+        gather_forces(s, p, b, k, outside)
+        kick_body(p, b, k, 0.5 * th.dt * p[10], slow)
+        place_atoms(s, b, k, 0.5 * th.dt * p[1], share, False, sums)
+        for c in range(6):
+            b.half_virial[k, c] += sums[c]
 
 
 def turn_solid(b, k, j, r, moving):
@@ -214,8 +247,9 @@ def turn_solid(b, k, j, r, moving):
             b.momenta[r, c] += w * e[axis, c]
 
 
-def place_atoms(s, b, k, half, moving, sums):
-    """Atoms of body k where the body has them (if `moving`), with its velocities; `sums (6,)` gets the virial of the constraint."""
+def place_atoms(s, b, k, half, share, moving, sums):
+    """Atoms of body k where the body has them (if `moving`), with its velocities; `sums (6,)` gets `share` of the virial of the constraint
+    whose forces act for the time `half`."""
     h, e = s.box.vectors, b.axes[k]
     wx, wy, wz = b.omega[k, 0], b.omega[k, 1], b.omega[k, 2]
     for c in range(6):
@@ -227,7 +261,7 @@ def place_atoms(s, b, k, half, moving, sums):
         ox = m0 * h[0, 0] + m1 * h[1, 0] + m2 * h[2, 0]
         oy = m0 * h[0, 1] + m1 * h[1, 1] + m2 * h[2, 1]
         oz = m0 * h[0, 2] + m1 * h[1, 2] + m2 * h[2, 2]
-        x, y, z = 0.5 * (s.x[0, i] + ox), 0.5 * (s.x[1, i] + oy), 0.5 * (s.x[2, i] + oz)
+        x, y, z = share * (s.x[0, i] + ox), share * (s.x[1, i] + oy), share * (s.x[2, i] + oz)
         dx = e[0, 0] * b.place[j, 0] + e[1, 0] * b.place[j, 1] + e[2, 0] * b.place[j, 2]
         dy = e[0, 1] * b.place[j, 0] + e[1, 1] * b.place[j, 1] + e[2, 1] * b.place[j, 2]
         dz = e[0, 2] * b.place[j, 0] + e[1, 2] * b.place[j, 1] + e[2, 2] * b.place[j, 2]
@@ -267,11 +301,11 @@ def place_atoms(s, b, k, half, moving, sums):
 
 def place_moved(th, s, p, b, k):
     """`place_atoms` of a body that has moved: barostats now see the virial of this half of the step in place of that of the last step."""
-    sums, seen = np.empty(6), p[1] != 0.0 and p[2] != 0.0
+    sums, seen = np.empty(6), p[1] != 0.0 and p[2] != 0.0 and p[3] < 2.0
     for j in range(b.first[k], b.first[k + 1] if seen else b.first[k]):
         for c in range(6):
             s.virial[th.tid, c] -= b.virial[j, c]
-    place_atoms(s, b, k, 0.5 * th.dt * p[1], True, sums)
+    place_atoms(s, b, k, 0.5 * th.dt * p[1], 0.5, True, sums)
     for c in range(6):
         b.half_virial[k, c] = sums[c]
         if seen:

@@ -25,6 +25,18 @@ def body_sinh_ratio(y):
     return 1.0 + y2 / 6.0 * (1.0 + y2 / 20.0 * (1.0 + y2 / 42.0 * (1.0 + y2 / 72.0)))
 
 
+def body_slowing(p, half, slow):
+    """What is left of velocities (3) and of the momentum conjugate to q after the time `half` with the chains and the strain rates."""
+    n = int(p[21])
+    slow[:] = 1.0
+    if p[16] != 0.0:
+        slow[:3], slow[3] = math.exp(-half * p[80 + n]), math.exp(-half * p[80 + 5 * n])
+    if p[17] != 0.0:
+        for d in range(3):
+            slow[d] *= math.exp(-half * (p[49 + d] + p[30]))
+        slow[3] *= math.exp(-half * p[33] * p[30])
+
+
 def body_ramp(th, start, stop):
     """A target of this step."""
     if th.end == th.begin:

@@ -15,10 +15,6 @@ STATES = ("done", "partial", "missing", "extra")
 CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 # what exists in part: what is not there
 PARTIAL = {
-    **dict.fromkeys([("fix", f"rigid{e}") for e in ("", "/nve", "/nvt", "/npt", "/nph")],
-                    "not under run_style respa"),
-    **dict.fromkeys([("fix", f"rigid{e}/small") for e in ("", "/nve", "/nvt", "/npt", "/nph")],
-                    "no mol; not under run_style respa"),
     ("pair", "mliap"): "models linear, quadratic and nn, descriptor sna",
     ("pair", "edip"): "its functions are computed, LAMMPS looks them up in tables: seven digits agree",
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
