@@ -5,9 +5,16 @@ r"""Change the lengths and tilts of the box during a run, as fix deform, so that
 with ``x pressure P k`` (that component of the pressure tensor) or ``x pressure/mean P k`` (the mean pressure); tilts follow the other
 components. ``couple`` moves lengths together, by the mean of their components. ``box pressure P k`` scales the whole box besides what the
 single lengths do, ``box volume`` keeps its volume. ``erate/rescale`` shears by a rate of the present length. ``max/rate`` limits rates,
-``normalize/pressure`` counts differences in parts of the target.
+``normalize/pressure`` counts differences in parts of the target. With ``vol/balance/p yes`` two lengths that keep the volume change by
+rates of their own, :math:`e_1` and :math:`e_2`, such that their pressures become equal to first order; primes denote the step before:
 
-Source: LAMMPS manual, fix deform/pressure. Units: pressure, 1/(time pressure) (gains), 1/time (rates); others as fix deform.
+.. math:: p_1 + \frac{p_1 - p_1'}{e_1'} e_1 = p_2 + \frac{p_2 - p_2'}{e_2'} e_2, \qquad (1 + e_1 \Delta t)(1 + e_2 \Delta t) V_3 = V
+
+Here the third length makes the volume :math:`V_3` of `V`, and the first equation is taken with :math:`e_1 + e_2` of the second to first
+order.
+
+Source: LAMMPS manual, fix deform/pressure; X. Huang, dissertation, Imperial College London (2014) for vol/balance/p. Units: pressure,
+1/(time pressure) (gains), 1/time (rates); others as fix deform.
 """
 from __future__ import annotations
 
@@ -48,6 +55,8 @@ class DeformPressure(Deform):
         Largest rate, 1/time; 0: no limit.
     normalize : bool
         Divide differences of pressure by the target.
+    balance : bool
+        Two lengths that keep the volume change such that their pressures become equal.
 
     Raises
     ------
@@ -60,7 +69,8 @@ class DeformPressure(Deform):
     needs = frozenset({"virial"})
 
     def __init__(self, group: str = "all", every: int = 1, changes: Mapping | None = None, remap: str = "x", flip: bool = True,
-                 controls: Mapping | None = None, box=None, couple: str = "none", max_rate: float = 0.0, normalize: bool = False):
+                 controls: Mapping | None = None, box=None, couple: str = "none", max_rate: float = 0.0, normalize: bool = False,
+                 balance: bool = False):
         what = f"fix {self.style}"
         changes, controls = dict(changes or {}), dict(controls or {})
         for name, (style, *values) in controls.items():
@@ -75,7 +85,8 @@ class DeformPressure(Deform):
             if wrong:
                 raise InputError(f"{what}: box cannot be used with {wrong[0]} {changes[wrong[0]][0]}, only with pressure "
                                  f"{' '.join(SCALABLE)}")
-        self.controls, self.box, self.couple, self.max_rate, self.normalize = controls, box, couple, max_rate, normalize
+        self.controls, self.box, self.couple = controls, box, couple
+        self.max_rate, self.normalize, self.balance, self.before = max_rate, normalize, balance, np.zeros((2, 3))
         formulas = {name: ("variable", self._change(name), self._rate(name)) for name in controls}
         super().__init__(group, every, changes | formulas, remap, flip)
         self.end_of_step = self.by_formulas
@@ -128,14 +139,12 @@ class DeformPressure(Deform):
                 plain, rest = [*plain, *rest[:2]], rest[2:]
             else:
                 raise InputError(f"{what}: unknown keyword {key!r}{nearest(key, (*OWN, 'box', *DIMENSIONS))}")
-        if yes_no(given.get("vol/balance/p", "no"), f"{what} vol/balance/p"):
-            raise InputError(f"{what} vol/balance/p yes is not supported: leave it out, lengths that keep the volume then change alike")
         limit = number(given["max/rate"], f"{what} max/rate") if "max/rate" in given else 0.0
         if "max/rate" in given and limit <= 0.0:
             raise InputError(f"{what} max/rate: the maximum strain rate must be a positive, non-zero value, got {limit:g}")
         changes, remap, flip = cls.read_plain(group, plain, controls, session)
         new = cls(group, whole(words[0], f"{what} N"), changes, remap, flip, controls, box, given.get("couple", "none"), limit,
-                  yes_no(given.get("normalize/pressure", "no"), f"{what} normalize/pressure"))
+                  *(yes_no(given.get(key, "no"), f"{what} {key}") for key in ("normalize/pressure", "vol/balance/p")))
         new.words = list(words)
         new.check_box(session.scene.system.box)
         return new
@@ -203,8 +212,50 @@ class DeformPressure(Deform):
         super().by_formulas(loop)
 
     def adjust(self, loop) -> None:
-        if self.box is None:
+        now = np.diag(loop.state.box.vectors).copy()
+        if self.balance:
+            self._balance(now, loop.dt)
+        if self.box is not None:
+            self._scale_box(loop)
+        self.before = np.stack([((self.p[15:18] - self.p[12:15]) / now - 1.0) / loop.dt, self.tensor[:3]])     # for the next time
+
+    def _balance(self, now: np.ndarray, dt: float) -> None:
+        """The two lengths that keep the volume, from the lengths `now`, the rates and pressures before, and the pressures now."""
+        p, pair = self.p, [d for d, kept in self.kept.items() if kept[0] == 3]
+        if not pair:
             return
+        third = 3 - sum(pair)
+        volume, length, first = np.prod(now), p[15 + third] - p[12 + third], p[41 + 13 * pair[0]]
+        strained = length * np.prod(now[pair])
+        (was1, was2), (p1, p2) = self.before[0, pair], self.tensor[pair]
+        by1, by2 = self.tensor[pair] - self.before[1, pair]
+        if length == now[third]:
+            new = now[pair]
+        elif was1 == 0.0 or was2 == 0.0 or (by1 == 0.0 and by2 == 0.0):      # nothing is known of how pressures answer
+            new = np.sqrt(first * now[pair] / length / now[pair[::-1]])
+        else:
+            below = by2 + was2 * by1 / was1
+            e1 = (by2 * (volume - strained) / (strained * dt) - was2 * (p1 - p2)) / below if below != 0.0 else was2
+            e2 = _other_rate(e1, volume / strained, dt)
+            if self.max_rate and max(abs(e1), abs(e2)) > self.max_rate:
+                e1, e2 = self._capped(e1, e2, length > now[third], volume / strained, dt)
+            new = now[pair] * (1.0 + dt * np.array([e1, e2]))
+        middle = np.array([0.5 * (p[35 + 13 * d] + p[36 + 13 * d]) for d in pair])
+        at = np.array(pair)
+        p[3 + at] = (new / now[pair] - 1.0) / dt
+        p[9 + at] = -0.5 * p[3 + at]
+        p[12 + at], p[15 + at] = middle - 0.5 * new, middle + 0.5 * new
+
+    def _capped(self, e1: float, e2: float, longer: bool, ratio: float, dt: float) -> tuple[float, float]:
+        """Rates within the limit that keep the volume: of the larger one if it goes against the third length, else of the other."""
+        larger = max(e1, e2, key=abs)
+        against = (larger > 0.0) != longer and larger != 0.0
+        sign = 1.0 if (larger > 0.0) == against else -1.0
+        capped = sign * self.max_rate
+        rates = capped, _other_rate(capped, ratio, dt)
+        return rates if against == (abs(e1) > abs(e2)) else rates[::-1]
+
+    def _scale_box(self, loop) -> None:
         p, start = self.p, self.p[34:34 + 39].reshape(3, 13)[:, 1:3]
         length = p[15:18] - p[12:15]
         if self.box[0] == "volume":
@@ -219,6 +270,14 @@ class DeformPressure(Deform):
         p[3:6] = (2.0 * half / np.diag(loop.state.box.vectors) - 1.0) / loop.dt
         p[9:12] = -0.5 * p[3:6]
 
+    def state(self) -> dict:
+        return super().state() | {"before": self.before}
+
+    def restore(self, state: dict) -> None:
+        super().restore(state)
+        if "before" in state:
+            self.before = np.array(state["before"], float).reshape(2, 3)
+
     def modify_option(self, keyword, value, session):
         if keyword == "temp":
             take_temperature(self, find_temperature(value, session, "fix_modify temp"), session)
@@ -227,3 +286,8 @@ class DeformPressure(Deform):
             take_pressure(self, value, session)
             return True
         return super().modify_option(keyword, value, session)
+
+
+def _other_rate(rate: float, ratio: float, dt: float) -> float:
+    """The rate of a length that, with `rate` of another, changes the area of both by `ratio`."""
+    return (ratio / (1.0 + rate * dt) - 1.0) / dt

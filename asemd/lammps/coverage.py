@@ -19,7 +19,6 @@ PARTIAL = {
     ("pair", "edip"): "its functions are computed, LAMMPS looks them up in tables: seven digits agree",
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
-    ("fix", "deform/pressure"): "no vol/balance/p yes",
     ("fix", "msst"): "no dftb",
     ("compute", "voronoi/atom"): "no radius: cells of power diagrams, which scipy does not have",
     ("command", "molecule"): "no bodies",
