@@ -16,7 +16,7 @@ from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
 from asemd.kernels.rows import of_slots
 from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
-from asemd.kernels.target import lanes
+from asemd.kernels.target import vector
 from asemd.kernels.team import Team
 from asemd.kspace import solve
 from asemd.late import Late
@@ -95,7 +95,7 @@ class Engine:
         self.farthest = np.zeros(self.threads)      # largest of `moved`, for each thread to read
         self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
-        self.list = (ClusterList(self.threads, self.reach, lanes(s.precision == "mixed"), s.outdated or self.sparse)
+        self.list = (ClusterList(self.threads, self.reach, vector(s.precision == "mixed"), s.outdated or self.sparse)
                      if self.mode == "cluster" else PlainList(self.reach))
         self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
         self.state, self._offset, self.ns = None, None, 0

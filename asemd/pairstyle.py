@@ -382,11 +382,12 @@ def pair(name: str, **options):
     """Register one function as pair style `name`; its cutoff is the setting or coefficient ``cut``. Options as in `PairStyle`.
 
     `d2`, a function with the same arguments, gives the second derivative of the energy by the function's coordinate (for `asemd.hessian`).
+    `alike`, another one, takes the function's place in kernels of double precision where all pairs of types have the same coefficients.
     """
     cls = options.pop("cls", PairStyle)
 
     def decorate(function):
-        function.d2 = options.pop("d2", None)
+        function.d2, function.alike = options.pop("d2", None), options.pop("alike", None)
         cut = options.pop("cut", "cut")
         register(cls(name, [(function, cut)], doc=inspect.getdoc(inspect.getmodule(function)) or "", **options))
         return function

@@ -239,7 +239,7 @@ def arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, e
         if TRACK:
             hide[np.uint64(e >> 40)] = q
     n = start + kept + CLUSTER
-    while (n - start) % width != 0:
+    while (n - start) % max(width, CLUSTER) != 0:
         entries[n] = np.int32(empty) | np.int32(13 << 26)
         if MARK:
             hide[n] = np.uint8(255)
@@ -257,7 +257,7 @@ def append(ci, codes, kept, start, entries, own, span, width, empty, hide):
         entries[np.uint64(first + t)] = np.int32(codes[np.uint64(t)] & 0xFFFFFFFF)
     for t in range(kept):
         hide[np.uint64(first + t)] = np.uint8(255 - (codes[np.uint64(t)] >> 32))
-    while (n - start) % width != 0:
+    while (n - start) % max(width, CLUSTER) != 0:
         entries[n] = np.int32(empty) | np.int32(13 << 26)
         hide[n] = np.uint8(255)
         n += 1
@@ -275,7 +275,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     With SORTED, a row is sorted so that each of the four pairs of atoms in the cluster needs one stretch of it only, ``span[c, 2 p]`` to
     ``span[c, 2 p + 1]``: by the sum of the first and the last pair (0 to 3) in need of an entry, which is counted as `sorting (3, 256)`
     says for the bits of the atoms that reach it; pair p then needs the sums p to p + 3. The cluster itself stands in the middle, at
-    ``own[c]``. Rows end with copies of the slot `empty`, so that they fill vectors of `width`.
+    ``own[c]``. Stretches begin and end with vectors of `width`; rows end with copies of the slot `empty`, so that they fill such vectors
+    and clusters.
     `unshifted[c]` is set if no entry of cluster c needs a shift; `longest[0]` is the length of the longest row. With MARK each entry gets
     in `hide` the bits of the atoms of the cluster that are beyond reach. With `places` (see `asemd.kernels.gaps`) `widths` are what is
     left of them.
@@ -382,7 +383,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             tz[nt + k] = x[2, ci * CLUSTER + k]
             codes[nt + k] = np.int64(0)
         reached(tx, ty, tz, codes, nt + CLUSTER, x[0], x[1], x[2], ci * CLUSTER, m, r2)
-        if n + nt + CLUSTER + width > entries.shape[0]:
+        if n + nt + 2 * CLUSTER + width > entries.shape[0]:
             return -1
         kept = drop(codes, nt)
         if kept > 0xFFFF - CLUSTER:

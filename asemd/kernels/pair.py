@@ -30,11 +30,15 @@ def most_neighbours(row: int) -> int:
     return row - 2 * pair_cluster.CLUSTER - 16
 
 
-def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
-    names = []
+def _paste_style(b: Builder, parts, real: bool, vector: bool, uniform: Sequence[bool] = ()) -> list[str]:
+    """Paste the formulas of the parts; returns their names. Where all coefficients of a part are `uniform`, its ``alike`` in double
+    precision (single has no room for the powers of lengths in ``units si``)."""
+    names, row = [], 0
     for k, part in enumerate(parts):
-        name = f"part{k}_{re.sub(r'[^0-9a-zA-Z]', '_', part.function.__name__)}"
-        b.function(part.function, name, fast=vector, real=real, vector=vector, inline=vector)
+        same, row = uniform[row:row + 2 + len(part.rows)], row + 2 + len(part.rows)
+        function = (not real and same and all(same[2:]) and getattr(part.function, "alike", None)) or part.function
+        name = f"part{k}_{re.sub(r'[^0-9a-zA-Z]', '_', function.__name__)}"
+        b.function(function, name, fast=vector, real=real, vector=vector, inline=vector)
         names.append(name)
     return names
 
@@ -117,7 +121,7 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
         vector_math.paste_roots(b)
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
         vector_math.paste(b, single)
-    names = _paste_style(b, style.parts, single, True)
+    names = _paste_style(b, style.parts, single, True, uniform)
     b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
     varying = len(uniform) - sum(uniform)
     if varying:

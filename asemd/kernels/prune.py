@@ -119,7 +119,7 @@ def prune(near, shifts, whole, unshifted, c0, c1, reach2, first, entries, own, s
         for k in range(CLUSTER):
             to[mine + k] = own[ci] + k
         if whole.hide.shape[0] > 0:
-            for k in range(n - min(whole.width, n - start), n):      # what pads the row
+            for k in range(n - min(max(whole.width, CLUSTER), n - start), n):      # what pads the row
                 hide[np.uint64(k)] = 255
             for t in range(kept):
                 k = codes[np.uint64(t)] >> 40

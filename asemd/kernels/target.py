@@ -28,3 +28,8 @@ def lanes(single: bool) -> int:
     Sixteen single-precision numbers on a processor whose vectors hold eight take half as long again as they should.
     """
     return 16 if single and many_registers() else 8
+
+
+def vector(single: bool) -> int:
+    """Numbers per vector, at least 4: the stretches of rows that loops run over consist of whole ones."""
+    return lanes(single) if single or many_registers() else 4

@@ -21,8 +21,20 @@ def lj_cut_d2(r2, epsilon, sigma):
     return 24.0 * epsilon * s6 * (7.0 * s6 - 2.0) * r2inv * r2inv
 
 
+def lj_cut_alike(r2, epsilon, sigma):
+    """`lj_cut` for coefficients that all pairs of types share: their powers are taken outside the loop over pairs."""
+    r2inv = 1.0 / r2
+    s3 = sigma * sigma * sigma
+    c6 = 4.0 * epsilon * (s3 * s3)
+    c12 = c6 * (s3 * s3)
+    r4inv = r2inv * r2inv
+    r6inv = r4inv * r2inv
+    return r6inv * (c12 * r6inv - c6), r4inv * r4inv * (3.0 * c6 - 6.0 * c12 * r6inv)
+
+
 @pair("lj/cut", settings="cut", coeff="epsilon sigma [cut]", mix={"epsilon": "sigma", "sigma": "distance"}, tail=tail,
-      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj/cut", d2=lj_cut_d2, splits=True)
+      settings_example="2.5", example="1.0 1.1 2.4", see="LAMMPS manual, pair_style lj/cut", d2=lj_cut_d2, alike=lj_cut_alike,
+      splits=True)
 def lj_cut(r2, epsilon: "energy", sigma: "distance"):
     r2inv = 1.0 / r2
     s2 = sigma * sigma * r2inv

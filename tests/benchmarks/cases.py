@@ -27,12 +27,12 @@ CASES = {
     "lj": Case("LJ melt, 32,000 atoms", scenes.lj, 100, precisions=("double", "mixed")),
     "chain": Case("bead-spring melt, 32,000 atoms", scenes.chain, 100),
     "eam": Case("copper (EAM), 32,000 atoms", scenes.eam, 50),
-    "protein": Case("peptides in water, PPPM and SHAKE, 32,064 atoms", scenes.protein, 40),
-    "water": Case("rigid water, PPPM 1e-4 and SHAKE, 31,944 atoms", scenes.water, 40, precisions=("double", "mixed")),
+    "protein": Case("peptides in water, PPPM and SHAKE, 32,064 atoms", scenes.protein, 25),
+    "water": Case("rigid water, PPPM 1e-4 and SHAKE, 31,944 atoms", scenes.water, 25, precisions=("double", "mixed")),
     "sw": Case("silicon (Stillinger-Weber), 32,768 atoms", lambda: run_silicon.scene("sw"), 50),
     "tersoff": Case("silicon (Tersoff), 32,768 atoms", lambda: run_silicon.scene("tersoff"), 50),
-    "charmm": Case("pair forces of the peptides (lj/charmm/coul/long)", scenes.protein, 40, "Pair"),
-    "pppm": Case("PPPM of the water", scenes.water, 40, "Kspace", ("double", "mixed")),
+    "charmm": Case("pair forces of the peptides (lj/charmm/coul/long)", scenes.protein, 25, "Pair"),
+    "pppm": Case("PPPM of the water", scenes.water, 25, "Kspace", ("double", "mixed")),
     "bonds": Case("bonded forces of the melt (31,680 FENE bonds)", scenes.chain, 100, "Bond"),
     "bonded": Case("bonded forces of peptides in water (37,552 items)", scenes.peptide, 100, "Bond"),
     "small lj": Case("LJ, 500 atoms", lambda: scenes.lj((5, 5, 5), SMALL), 5000),
@@ -54,15 +54,18 @@ def measure(name: str, threads: int = 1, samples: int = 7, quick: bool = False) 
                                                                      "ratio": result["ratio"]}}
     case, out = CASES[name], {}
     steps = max(1, case.steps // 10) if quick else case.steps
-    for precision in case.precisions:
-        who, script = compare.contenders(threads, precision, every=True), case.script()
-        if case.part:
-            values, ratio = compare.from_logs(who, script, steps, samples, lambda log: compare.part_of_log(log, case.part, steps))
-            found = {"unit": "ms", "values": values, "ratio": ratio}
-        else:
-            result = compare.rates(compare.alternate(who, script, steps, samples), steps)
-            found = {"unit": "steps/s", "values": result["steps_per_second"], "ratio": result["ratio"]}
-        out[f"{case.title}, {precision}, {threads}"] = found
+    ours = [compare.contenders(threads, precision)[0] for precision in case.precisions]
+    theirs, script = compare.contenders(threads, every=True)[1:], case.script()
+    if case.part:
+        numbers = compare.from_logs(ours + theirs, script, steps, samples, lambda log: compare.part_of_log(log, case.part, steps))
+    else:
+        numbers = compare.alternate(ours + theirs, script, steps, samples)
+    for precision, one in zip(case.precisions, ours):
+        found = {c.name: numbers[c.name] for c in (one, *theirs)}
+        values, ratio = compare.ratios(found)
+        if not case.part:
+            values = compare.rates(found, steps)["steps_per_second"]
+        out[f"{case.title}, {precision}, {threads}"] = {"unit": "ms" if case.part else "steps/s", "values": values, "ratio": ratio}
     return out
 
 

@@ -17,7 +17,7 @@ def of_log(text: str) -> float:
 
 def measure(samples: int = 7, steps: int = 100, threads: int = 1, precision: str = "double") -> dict:
     """in.lj with its own schedule, a build every 20 steps, engines in turns."""
-    ms, ratio = compare.from_logs(compare.contenders(threads, precision), scenes.lj(), steps, samples, of_log)
+    ms, ratio = compare.ratios(compare.from_logs(compare.contenders(threads, precision), scenes.lj(), steps, samples, of_log))
     return {"ms_per_build": ms, "ratio": ratio}
 
 

@@ -10,8 +10,8 @@ SCENES = {"chain": scenes.chain, "peptide": scenes.peptide}
 
 def measure(samples: int = 7, steps: int = 100, threads: int = 1, precision: str = "double", scene: str = "chain") -> dict:
     """A scene on asemd and on LAMMPS's variants, in turns."""
-    ms, ratio = compare.from_logs(compare.contenders(threads, precision), SCENES[scene](), steps, samples,
-                                  lambda log: compare.part_of_log(log, "Bond", steps))
+    ms, ratio = compare.ratios(compare.from_logs(compare.contenders(threads, precision), SCENES[scene](), steps, samples,
+                                                 lambda log: compare.part_of_log(log, "Bond", steps)))
     return {"ms_per_step": ms, "ratio": ratio}
 
 
