@@ -30,6 +30,7 @@ ABOUT_CELLS = cluster.sort, cluster.near_columns, *PIECES, cluster.build
 def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
     """With the functions that depend on cells."""
     b = Builder("squeezed neighbour lists" if squeezed else "neighbour lists")
+    b.line("from asemd.kernels.candidates import copy8")
     for name, value in (("CLUSTER", CLUSTER), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False), ("SORTED", order), ("SQUEEZED", squeezed),
                         ("SLOT_BITS", cluster.SLOT_BITS)):
         b.constant(name, value)

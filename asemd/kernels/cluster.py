@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 
+from asemd.kernels.candidates import copy8
 from asemd.kernels.gaps import squeeze
 
 CLUSTER = 8
@@ -366,15 +367,8 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             py = shifts[code, 1]
             pz = shifts[code, 2]
             high = np.int64(code << 26)
-            for q in range(0, count, 8):             # whole vectors; what is copied beyond the end is overwritten
-                for k in range(8):
-                    tx[np.uint64(nt + q + k)] = x[0, np.uint64(k0 + q + k)] + px
-                for k in range(8):
-                    ty[np.uint64(nt + q + k)] = x[1, np.uint64(k0 + q + k)] + py
-                for k in range(8):
-                    tz[np.uint64(nt + q + k)] = x[2, np.uint64(k0 + q + k)] + pz
-                for k in range(8):
-                    codes[np.uint64(nt + q + k)] = np.int64(k0 + q + k) | high
+            for q in range(0, count, 8):             # what is copied beyond the end is overwritten
+                copy8(tx, ty, tz, codes, nt + q, x, k0 + q, px, py, pz, high)
             nt += count
         unshifted[ci] = all_in
         for k in range(CLUSTER):     # the cluster itself, for its places in `hide`
