@@ -229,6 +229,7 @@ class ClusterList:
         self.unshifted = np.zeros(ncl, np.bool_)
         self.own, self.span = np.zeros(ncl, np.int32), np.zeros((ncl, CLUSTER), np.int32)
         self.where = np.zeros((self.threads, self.capacity), np.int32)
+        self.marks = np.zeros((self.threads, self.capacity), np.uint8)
         self._room()
         self.shares = None
         if not self.entries.shape[1]:
@@ -317,7 +318,7 @@ class ClusterList:
         def work(t):
             c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
             results[t] = k.rows(state.row, slot_of, self.first[t], self.entries[t], self.hide[t], self.own, c0, c1, *partners, *rules,
-                                self.where[t], self.earlier[t], self.bits[t], rows.start[t], rows.owners[t], rows.neighbors[t])
+                                self.marks[t], self.bits[t], rows.start[t], rows.owners[t], rows.neighbors[t])
         while True:
             parallel(work)
             if -1 not in results:

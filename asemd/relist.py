@@ -75,7 +75,7 @@ def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple, bool]] | None
                          c.far, c.bins.places, c.shifts, reduced, c.nx, c.ny, c.nz, c.void, c.width, int(close), float(c.reach))
     arrays = relist.Arrays(c.x2, c.v2, c.row2, c.cell_start, c.column_start, c.column_of, c.key, c.first, c.entries, c.own, c.span,
                            c.unshifted, c.work, c.work_codes, c.row_length, c.hide, c.excluded_first, c.excluded, c.where, c.earlier,
-                           c.bits, COUNTERS, c.bounds, c.shares, c.lengths)
+                           c.marks, c.bits, COUNTERS, c.bounds, c.shares, c.lengths)
     rows = engine.rows.get("", NO_ROWS)
     special = relist.Special(*rules.left_out, *rules.rule_arrays, rows.start, rows.owners, rows.neighbors, rows.edges)
     module = relist.module(engine.k, not engine.sparse and rules.partners is not None, engine.sparse)

@@ -134,12 +134,12 @@ def expand(x, row, first, entries, c0, c1, shifts, reach2, out_i, out_j, out_cod
     return n
 
 
-def rows(row, slot_of, first, entries, hide, own, c0, c1, partner_start, partners, mask_row, molecule_row, rules, where, earlier, near,
-         start, owners, neighbors):
+def rows(row, slot_of, first, entries, hide, own, c0, c1, partner_start, partners, mask_row, molecule_row, rules, marks, near, start,
+         owners, neighbors):
     """The cluster list as rows of single atoms: slots of clusters c0..c1-1, entries as in the cluster list.
 
     `hide` says which atoms of the cluster each entry is out of reach of. Partners (special pairs) and pairs that `rules` forbid are left
-    out. `where (cap,)`, `earlier (w,)` and `near (w,)` are work space. `start (nslots+1,)`, `neighbors (m,)`, and
+    out. `marks (cap,)`, all zero, and `near (w,)` are work space. `start (nslots+1,)`, `neighbors (m,)`, and
     `owners (m,)`, whose row an entry is in; returns the number of entries, or -1 if `neighbors` is too small.
     """
     n = 0
@@ -152,28 +152,23 @@ def rows(row, slot_of, first, entries, hide, own, c0, c1, partner_start, partner
             return -1
         for k in range(count):      # the bits of the atoms that have a place in their rows
             near[np.uint64(k)] = np.uint8(255) ^ hide[np.uint64(f0 + k)]
-        for a in range(CLUSTER):        # atoms of the cluster before this one have had their turn
-            near[np.uint64(mine + a)] &= np.uint8((1 << a) - 1)
         if partners.shape[0] > 0:
-            for k in range(count):      # where an atom stands in the row, and the place of another image of it
-                j = np.uint32(entries[np.uint64(f0 + k)] & np.int32(SLOT_BITS))
-                w = np.int64(where[j])
-                known = w < k and np.uint32(entries[np.uint64(f0 + w)] & np.int32(SLOT_BITS)) == j
-                earlier[np.uint64(k)] = w if known else -1
-                where[j] = k
             for a in range(CLUSTER):
                 r = row[s + a]
                 if r < 0:
                     break
                 for q in range(partner_start[r], partner_start[r + 1]):
-                    j = np.uint32(slot_of[np.uint32(partners[np.uint64(q)])])
-                    w = min(np.int64(where[j]), count - 1)
-                    met = np.uint32(entries[np.uint64(f0 + w)] & np.int32(SLOT_BITS)) == j
-                    near[np.uint64(w)] &= ~np.uint8(met << a)       # no branch: whether it is listed here or there is hard to guess
-                    w = np.int64(earlier[np.uint64(w)]) | (np.int64(met) - 1)
-                    while w >= 0:
-                        near[np.uint64(w)] &= ~np.uint8(1 << a)
-                        w = np.int64(earlier[np.uint64(w)])
+                    marks[np.uint32(slot_of[np.uint32(partners[np.uint64(q)])])] |= np.uint8(1 << a)
+            for k in range(count):      # no branch: whether a partner is listed here is hard to guess
+                near[np.uint64(k)] &= ~marks[np.uint32(entries[np.uint64(f0 + k)] & np.int32(SLOT_BITS))]
+            for a in range(CLUSTER):
+                r = row[s + a]
+                if r < 0:
+                    break
+                for q in range(partner_start[r], partner_start[r + 1]):
+                    marks[np.uint32(slot_of[np.uint32(partners[np.uint64(q)])])] = np.uint8(0)
+        for a in range(CLUSTER):        # atoms of the cluster before this one have had their turn
+            near[np.uint64(mine + a)] &= np.uint8((1 << a) - 1)
         for a in range(CLUSTER):
             start[s + a] = n
             r = row[s + a]

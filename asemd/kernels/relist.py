@@ -91,6 +91,7 @@ class Arrays(NamedTuple):
     excluded: np.ndarray
     where: np.ndarray
     earlier: np.ndarray
+    marks: np.ndarray
     bits: np.ndarray
     sorting: np.ndarray
     bounds: np.ndarray
@@ -159,8 +160,7 @@ def relist(th, live, a, g, c, p):
     if ROWS:
         if done >= 0:
             done = rows(a.row, a.slot_of, c.first[t], c.entries[t], c.hide[t], c.own, c0, c1, p.partner_start, p.partners, p.mask_row,
-                        p.molecule_row, p.rules, c.where[t], c.earlier[t], c.bits[t], p.start[t], p.owners[t],
-                        p.neighbors[t])
+                        p.molecule_row, p.rules, c.marks[t], c.bits[t], p.start[t], p.owners[t], p.neighbors[t])
     for i in range(CLUSTER * c0, CLUSTER * c1):
         a.moved[np.uint64(i)] = 0.0
     th.scratch[t, 2] = done
