@@ -68,3 +68,19 @@ def test_fit(tmp_path):
     assert result["fits"][0] == pytest.approx(result["expected"], rel=0.01)
     assert abs(np.array(result["off by standard errors"])).max() < 4.5 and result["noise left"] == pytest.approx(0.02, rel=0.15)
     assert result["left"] == sorted(result["left"])
+
+
+def test_diffusion(tmp_path):
+    """A. Rahman, Phys. Rev. 136, A405 (1964): 2.43 in 1e-5 cm^2/s; two routes on one trajectory agree."""
+    result = run("diffusion", tmp_path, cells=4, steps=6000)
+    assert result["D by displacements"] == pytest.approx(2.43, abs=0.5)
+    assert result["D by velocities"] == pytest.approx(result["D by displacements"], rel=0.1)
+    assert result["vacf(0) / 3kT/m"] == pytest.approx(1.0, abs=0.01) and result["temperature"] == pytest.approx(94.4, abs=5)
+
+
+def test_umbrella(tmp_path):
+    """The exact free energy of one bond."""
+    result = run("umbrella", tmp_path, copies=20, steps=4000)
+    assert result["error"] < 0.2 and result["barrier"] == pytest.approx(result["barrier exactly"], abs=0.4)
+    assert result["wells"] == pytest.approx(result["wells exactly"], abs=0.4)
+    assert result["wells exactly"] == pytest.approx(2 * np.log(2 / 3), abs=0.02)
