@@ -4,7 +4,8 @@ r"""Rigid bodies at constant temperature: two Nose-Hoover chains, one for transl
           Q_1 \ddot\eta_1 = \sum M v^2 - f_t k_B T_0 - Q_1\dot\eta_1\dot\eta_2
 
 and the same for :math:`\xi` with the rotational energy and its degrees of freedom. Masses: :math:`Q_1 = f k_B T_0 \tau^2`, :math:`Q_k = k_B
-T_0 \tau^2`. Rotations as in `asemd.fix.rigid_nve`; the chains take Suzuki-Yoshida sub-steps of order 3 or 5.
+T_0 \tau^2`. Rotations as in `asemd.fix.rigid_nve`; the chains take Suzuki-Yoshida sub-steps of order 3 or 5. Under ``run_style respa``
+chains and box move with the innermost level; the pressure pushes the box on the outermost one.
 
 Source: H. Kamberaj, R.-J. Low, M. P. Neal, J. Chem. Phys. 122, 224114 (2005); LAMMPS manual, fix rigid/nvt. Output: the array of fix rigid;
 the scalar is, as in LAMMPS, the energy of the chains (and of the barostat) plus the temperature of the bodies, or for the ``/small`` styles
