@@ -23,7 +23,7 @@ def run_lammps(script: str | None, switches: Switches, ranks: int, check: bool, 
     InputError
         One of them was given, or there is no script.
     """
-    from asemd.cli import make_watcher
+    from asemd.cli import INTERRUPTED, complain, make_watcher
     from asemd.lammps_run import run_lammps as hand_over
     for option, given in ours.items():
         if given:
@@ -39,4 +39,7 @@ def run_lammps(script: str | None, switches: Switches, ranks: int, check: bool, 
         if script == "-":
             script = os.fspath(Path(folder) / "in.standard-input")
             Path(script).write_text(sys.stdin.read(), encoding="utf-8")
-        return hand_over(script, ranks, check=check, switches=switches, atoms=False, watcher=None if watcher.silent else watcher).status
+        try:
+            return hand_over(script, ranks, check=check, switches=switches, atoms=False, watcher=None if watcher.silent else watcher).status
+        except KeyboardInterrupt:
+            return complain("interrupted", INTERRUPTED)

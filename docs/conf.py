@@ -34,6 +34,14 @@ def write_styles(app):
     style_pages.write(HERE / style_pages.FOLDER)
 
 
+def drop_old_reference(app):
+    """Pages of names that api.md does not list any more."""
+    listed = (HERE / "api.md").read_text().split()
+    for page in (HERE / "api").glob("*.rst"):
+        if page.stem not in listed:
+            page.unlink()
+
+
 def link_styles(app, docname, source):
     """The overview of the styles leads to their pages."""
     if docname == "styles":
@@ -42,5 +50,6 @@ def link_styles(app, docname, source):
 
 def setup(app):
     app.connect("builder-inited", write_styles)
+    app.connect("builder-inited", drop_old_reference, priority=400)     # before autosummary writes
     app.connect("source-read", link_styles)
     return {"parallel_read_safe": True}

