@@ -80,11 +80,15 @@ EVERYWHERE |= {
 HERE = {     # rdf 2 1: LAMMPS's coordination numbers of unlike types are wrong in two dimensions
     "crystal": {"all rdf 12 2 1": "G", "all contact/atom": "A", "half contact/atom b": "A", "all entropy/atom 0.15 2.0": "A",
                 "all entropy/atom 0.2 1.5 avg yes 1.1 local yes": "A", "all pair lj/cut": "S", "all voronoi/atom": "B",
-                "a voronoi/atom surface b edge_histo 7": "B", "all voronoi/atom neighbors yes face_threshold 0.1": "M",
+                "a voronoi/atom surface b edge_histo 7": "B",
+                "all voronoi/atom radius v_r": "B", "a voronoi/atom only_group radius v_r surface b": "B",
+                "all voronoi/atom radius v_r neighbors yes": "M", "all voronoi/atom neighbors yes face_threshold 0.1": "M",
                 "all ti lj/cut 1 v_f v_g": "S", "all fep 500 pair lj/cut epsilon 1 * v_f": "V",
                 "half fep 300 pair lj/cut sigma 2 2 v_s pair lj/cut epsilon 1 1 v_f pair lj/cut epsilon 1 1 v_s volume yes": "V",
                 "all fep/ta 200 xy 1.01": "V", "half fep/ta 300 yz 0.98 tail no": "V"},
-    "layer": {"all voronoi/atom edge_histo 7": "V"}, "tilted": {"half voronoi/atom edge_threshold 0.2 face_threshold 0.2 edge_histo 8": "V",
+    "layer": {"all voronoi/atom edge_histo 7": "V", "all voronoi/atom radius v_r": "B"},
+    "tilted": {"half voronoi/atom radius v_r": "B", "all voronoi/atom radius v_r edge_histo 7": "V",
+               "half voronoi/atom edge_threshold 0.2 face_threshold 0.2 edge_histo 8": "V",
                "half voronoi/atom face_threshold 0.2": "B", "half entropy/atom 0.16 2.2 local yes": "A",
                 "all fep/ta 300 xz 1.02": "V"},
     "molecules": {"all nbond/atom": "A", "half nbond/atom bond/type 1": "A", "all nbond/atom bond/type 2": "A",
@@ -117,6 +121,7 @@ for name, (lines, computes) in given["scenes"].items():
 
 VALUES = {"S": "scalar", "V": "vector", "G": "array", "A": "per_atom", "B": "per_atom", "L": "local", "M": "local"}
 HELPERS = ["variable f equal 0.7", "variable g equal 1.3", "variable s equal -0.05", "variable walk atom x",
+           "variable r atom 0.3+0.15*(type==2)+0.05*sin(x)",
            "velocity all create 1.3 87287",
            "compute ke all ke/atom", "compute pe all pe/atom",
            "compute stress all stress/atom NULL virial", "compute centroid all centroid/stress/atom NULL virial"]
@@ -258,8 +263,9 @@ def ours(lines) -> Lammps:
     ("heat/flux thermo_pe thermo_pe thermo_pe", "not a compute ke/atom"), ("heat/flux a b c", "no compute a"),
     ("centroid/stress/atom", "ID of a temperature"), ("centroid/stress/atom NULL per", "did you mean pe|unknown keyword"),
     ("nbond/atom", "with bonds"),
-    ("fragment/atom", "with bonds"), ("voronoi/atom surface nobody", "unknown group"), ("voronoi/atom radius v_x", "not supported"),
-    ("voronoi/atom occupation edge_histo 3", "cannot be used"),
+    ("fragment/atom", "with bonds"), ("voronoi/atom surface nobody", "unknown group"), ("voronoi/atom radius v_x", "v_x"),
+    ("voronoi/atom occupation edge_histo 3", "cannot be used"), ("voronoi/atom radius 0.3", "atom-style variable v_name"),
+    ("voronoi/atom radius v_f", "no per-atom values"), ("voronoi/atom radius", "1 value"),
     ("voronoi/atom face_treshold 1", "did you mean face_threshold"),
     ("voronoi/atom edge_histo 0", "positive"), ("ti lj/cut 1 v_f", "4 words"),
     ("ti lj/cut 1 v_f 3", "expected a variable"), ("ti lj/cutt 1 v_f v_g", "did you mean lj/cut"), ("ti kspace 3 v_f", "4 words"),
@@ -355,5 +361,21 @@ def test_voronoi_cells_fill_the_box():
     for n, boundary in ((1, "pp"), (2, "pp"), (30, "pp"), (30, "ff")):
         box = Box.from_lammps((0, 0, 0), (3.0, 4.0, 5.0), tilt=(0.0, 0.0, 0.0), boundary=("pp", "pp", boundary))
         system = SimpleNamespace(x=rng.uniform(0.0, 1.0, (n, 3)) * [3, 4, 5], box=box, dimension=3)
-        cells = _cells(system, np.arange(n), np.ones(n, bool), 0.0)
+        everything = np.arange(n), np.ones(n, bool), 0.0
+        cells = _cells(system, *everything)
         assert sum(volume for _, volume, _ in cells) == pytest.approx(60.0, rel=1e-12), (n, boundary)
+        for (_, volume, faces), (_, alike, others) in zip(cells, _cells(system, *everything, np.full(n, 0.7)), strict=True):
+            assert (volume, len(faces)) == (pytest.approx(alike, rel=1e-11), len(others)), (n, boundary)
+        cells = _cells(system, *everything, rng.uniform(0.0, 1.0, n))
+        assert sum(volume for _, volume, _ in cells) == pytest.approx(60.0, rel=1e-12), (n, boundary)
+
+
+def test_voronoi_cells_of_two_sizes():
+    """Two atoms between walls share the box where their powers are equal."""
+    from asemd.box import Box
+    from asemd.compute.voronoi_atom import _cells
+    box = Box.from_lammps((0, 0, 0), (10.0, 4.0, 4.0), boundary=("ff", "pp", "pp"))
+    system = SimpleNamespace(x=np.array([[3.0, 1.0, 1.0], [6.0, 1.0, 1.0]]), box=box, dimension=3)
+    volumes = [volume for _, volume, _ in _cells(system, np.arange(2), np.ones(2, bool), 0.0, np.array([1.5, 0.5]))]
+    plane = 3.0 + (3.0**2 + 1.5**2 - 0.5**2) / (2.0 * 3.0)
+    assert volumes == pytest.approx([16.0 * plane, 16.0 * (10.0 - plane)], rel=1e-12)

@@ -1,8 +1,9 @@
 """Voronoi cell of each atom: volume and number of faces; surfaces, histograms of edges and lists of neighbours too.
 
 Cells are those of ``scipy.spatial.Voronoi`` with copies of the atoms around the box; faces that are not periodic end the cells. In two
-dimensions the box is one layer, whose copies give every cell two faces more. Source: LAMMPS manual, compute voronoi/atom. Units: volume,
-area.
+dimensions the box is one layer, whose copies give every cell two faces more. With ``radius v_name``, an atom-style variable, a place
+belongs to the atom with the smallest distance squared minus radius squared (a power diagram): large atoms have larger cells, and a small
+one among them may have none. Source: LAMMPS manual, compute voronoi/atom. Units: volume, area.
 """
 from __future__ import annotations
 
@@ -11,10 +12,12 @@ import itertools
 import numpy as np
 
 from asemd.compute import Compute
+from asemd.compute._inputs import Input
+from asemd.compute._power_diagram import Diagram, power_diagram
 from asemd.errors import InputError, nearest
 from asemd.words import number, take, whole, yes_no
 
-KEYWORDS = ("only_group", "occupation", "surface", "edge_histo", "edge_threshold", "face_threshold", "neighbors", "peratom")
+KEYWORDS = ("only_group", "occupation", "surface", "radius", "edge_histo", "edge_threshold", "face_threshold", "neighbors", "peratom")
 CLOSED = 1e-9       # edges shorter than this, relative to the largest cell width, are points
 
 
@@ -37,18 +40,20 @@ class VoronoiAtom(Compute):
         Local rows: ID of an atom, of its neighbour, area of their face; 0 stands for a wall.
     occupation : bool
         Cells stay as on the first evaluation; per atom: how many atoms are now in the cell that was its own, and in the one where it is.
+    radius : Input, optional
+        Radii of the atoms, distance units.
 
     Raises
     ------
     InputError
-        Negative thresholds.
+        Negative thresholds; a radius that is not a number.
     """
 
     style = "voronoi/atom"
 
     def __init__(self, group: str = "all", only_group: bool = False, surface: str | None = None, edge_histo: int | None = None,
                  edge_threshold: float = 0.0, face_threshold: float = 0.0, neighbors: bool = False, peratom: bool = True,
-                 occupation: bool = False):
+                 occupation: bool = False, radius: Input | None = None):
         super().__init__(group)
         if occupation and (surface or edge_histo is not None):
             raise InputError("compute voronoi/atom: occupation cannot be used with surface or edge_histo")
@@ -56,7 +61,8 @@ class VoronoiAtom(Compute):
             raise InputError("compute voronoi/atom: thresholds must not be negative, and edge_histo must be positive")
         self.only_group, self.surface, self.edge_histo, self.neighbors, self.peratom = only_group, surface, edge_histo, neighbors, peratom
         self.edge_threshold, self.face_threshold = edge_threshold, face_threshold
-        self.occupation, self.sites = occupation, None       # box, ids and wrapped positions of the first evaluation
+        self.occupation, self.sites = occupation, None       # box, ids, positions and radii of the first evaluation
+        self.radius = radius
         self._last: tuple = (None, None)
 
     def __getstate__(self):
@@ -67,8 +73,6 @@ class VoronoiAtom(Compute):
         rest, given, what = list(words), {}, "compute voronoi/atom"
         while rest:
             word = rest.pop(0)
-            if word == "radius":
-                raise InputError(f"{what} {word} is not supported: run this script with LAMMPS")
             if word not in KEYWORDS:
                 raise InputError(f"{what}: unknown keyword {word!r}{nearest(word, KEYWORDS)}")
             if word in ("only_group", "occupation"):
@@ -79,6 +83,11 @@ class VoronoiAtom(Compute):
             if word == "surface":
                 session.scene.groups.mask(value, what)
                 given[word] = value
+            elif word == "radius":
+                if not value.startswith("v_"):
+                    raise InputError(f"{what} radius: needs an atom-style variable v_name, got {value}")
+                given[word] = Input(value, f"{what} radius", session)
+                given[word].must_give("per_atom")
             elif word == "edge_histo":
                 given[word] = whole(value, f"{what} {word}")
             elif word in ("neighbors", "peratom"):
@@ -89,6 +98,7 @@ class VoronoiAtom(Compute):
 
     def to_lammps(self) -> list[str]:
         out = ["only_group"] * self.only_group + ["occupation"] * self.occupation + (["surface", self.surface] if self.surface else [])
+        out += ["radius", str(self.radius)] if self.radius else []
         out += ["edge_histo", str(self.edge_histo)] if self.edge_histo else []
         out += ["edge_threshold", repr(self.edge_threshold), "face_threshold", repr(self.face_threshold)]
         return [*out, "neighbors", "yes" if self.neighbors else "no", "peratom", "yes" if self.peratom else "no"]
@@ -99,13 +109,28 @@ class VoronoiAtom(Compute):
     def local_columns(self):
         return 3 if self.neighbors else None
 
+    @property
+    def needs(self) -> frozenset[str]:
+        return self.radius.needs if self.radius else frozenset()
+
+    def _radii(self, state, rows: np.ndarray) -> np.ndarray | None:
+        """The radii of some atoms."""
+        if self.radius is None:
+            return None
+        radius = self.radius.per_atom(state)[rows]
+        if not np.isfinite(radius).all():
+            bad = rows[np.argmin(np.isfinite(radius))]
+            raise InputError(f"compute {self.id} (voronoi/atom): the radius of atom {state.system.id[bad]} is not a number")
+        return radius
+
     def cells(self, state) -> list[tuple[int, float, list[tuple[int, float, int]]]]:
         """Of each atom of the group: its row, volume, and faces (row of the neighbour or -1, area, number of edges)."""
         if self._last[0] is state:
             return self._last[1]
         mask = state.mask(self.group)
         rows = np.flatnonzero(mask) if self.only_group else np.arange(state.system.n)
-        out = [] if not len(rows) else _cells(state.system, rows, mask[rows], self.edge_threshold)
+        out = [] if not len(rows) else _cells(state.system, rows, mask[rows], self.edge_threshold,
+                                               self._radii(state, rows))
         self._last = (state, out)
         return out
 
@@ -129,12 +154,12 @@ class VoronoiAtom(Compute):
         system = state.system
         if self.sites is None:
             rows = np.flatnonzero(state.mask(self.group)) if self.only_group else np.arange(system.n)
-            self.sites = system.box, system.id[rows].copy(), system.x[rows].copy()
-        box, ids, places = self.sites
+            self.sites = system.box, system.id[rows].copy(), system.x[rows].copy(), self._radii(state, rows)
+        box, ids, places, radius = self.sites
         out = np.zeros((system.n, 2))
         if not len(ids):
             return out
-        at = _nearest(box, system.dimension, places, system.x)
+        at = _nearest(box, system.dimension, places, system.x, radius)
         count = np.bincount(at[at >= 0], minlength=len(ids))
         order = np.argsort(ids)
         mine = order[np.minimum(np.searchsorted(ids[order], system.id), len(ids) - 1)]
@@ -159,7 +184,7 @@ class VoronoiAtom(Compute):
         return np.array(rows, float).reshape(-1, 3)
 
 
-def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float) -> list:
+def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float, radius: np.ndarray | None = None) -> list:
     """Cells among the atoms `rows` of those that are `wanted`; see `VoronoiAtom.cells`."""
     from scipy.spatial import Voronoi
     box, periodic = system.box, np.array(system.box.periodic, bool)
@@ -167,16 +192,17 @@ def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float) -> lis
     if system.dimension == 2:
         periodic[2] = True
     box.wrap(x, image)
-    s = (x - box.origin) @ box.inverse
+    s, weight = (x - box.origin) @ box.inverse, np.zeros(len(rows)) if radius is None else radius**2
     widths = 1.0 / np.linalg.norm(box.inverse, axis=0)
     reach = 2.5 * (box.volume / len(rows)) ** (1 / 3)
     while True:
         points, owner = _surrounded(s, periodic, reach / widths)
-        found = Voronoi(points @ box.cell + box.origin)
-        far = _furthest(found, np.flatnonzero(wanted))
-        if 2.0 * far <= reach:      # no atom beyond can cut a cell
+        places = points @ box.cell + box.origin
+        found = Voronoi(places) if radius is None else power_diagram(places, radius[_original(owner)])
+        needed = _reach(found, np.flatnonzero(wanted), weight)
+        if needed <= reach:      # no atom beyond can cut a cell
             break
-        reach = 2.1 * far if np.isfinite(far) else 2.0 * reach
+        reach = 1.05 * needed if np.isfinite(needed) else 2.0 * reach
     faces: dict[int, list] = {k: [] for k in np.flatnonzero(wanted).tolist()}
     volume = dict.fromkeys(faces, 0.0)
     tiny = max(CLOSED * float(widths.max()), shortest)
@@ -186,17 +212,18 @@ def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float) -> lis
         v = found.vertices[corners]
         area = 0.5 * float(np.linalg.norm(np.cross(v[1:-1] - v[0], v[2:] - v[0]).sum(axis=0)))
         length = np.linalg.norm(v - np.roll(v, 1, axis=0), axis=1)
-        height = 0.5 * float(np.linalg.norm(found.points[a] - found.points[b]))
+        apart = float(np.linalg.norm(found.points[a] - found.points[b]))
         for one, other in ((int(a), int(b)), (int(b), int(a))):
             if one in faces:
+                height = 0.5 * (apart + float(weight[one] - weight[_original(owner[other])]) / apart)
                 volume[one] += area * height / 3.0
                 faces[one].append((int(rows[owner[other]]) if owner[other] >= 0 else -1, area, int((length > tiny).sum())))
     least = (CLOSED * float(widths.max())) ** 2
     return [(int(rows[k]), volume[k], [f for f in faces[k] if f[1] > least]) for k in faces]
 
 
-def _nearest(box, dimension: int, places: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(n,) which of some places is nearest to each position, whose cell it is in; -1 beyond a wall."""
+def _nearest(box, dimension: int, places: np.ndarray, x: np.ndarray, radius: np.ndarray | None) -> np.ndarray:
+    """(n,) which of some places is nearest to each position, whose cell it is in; below 0 beyond a wall."""
     from scipy.spatial import cKDTree
     periodic, at = np.array(box.periodic, bool), []
     if dimension == 2:
@@ -207,18 +234,26 @@ def _nearest(box, dimension: int, places: np.ndarray, x: np.ndarray) -> np.ndarr
         at.append((part - box.origin) @ box.inverse)
     widths = 1.0 / np.linalg.norm(box.inverse, axis=0)
     reach = 2.5 * (box.volume / len(places)) ** (1 / 3)
+    aside = np.zeros(len(places)) if radius is None else np.sqrt((radius**2).max() - radius**2)     # a distance in a fourth direction
     while True:
         points, owner = _surrounded(at[0], periodic, reach / widths)
-        distance, k = cKDTree(points @ box.cell).query(at[1] @ box.cell)
+        tree = cKDTree(np.column_stack([points @ box.cell, aside[_original(owner)]]))
+        distance, k = tree.query(np.column_stack([at[1] @ box.cell, np.zeros(len(at[1]))]))
         if distance.max(initial=0.0) <= reach:
             return owner[k]
         reach = 2.0 * float(distance.max())
 
 
+def _original(owner):
+    """Of which atom a point is a copy or a mirror image."""
+    return np.where(owner < 0, ~owner, owner)
+
+
 def _surrounded(s: np.ndarray, periodic: np.ndarray, margin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fractional positions with copies as far as `margin` around the box, and whose copies they are.
 
-    Walls are mirrors: the cells of an atom and its mirror image meet in the wall; such images belong to nobody (-1).
+    Walls are mirrors: the cells of an atom and its mirror image meet in the wall; such images belong to nobody (below 0: ``~k`` for that
+    of atom `k`).
     """
     points, owner = s, np.arange(len(s))
     for a in range(3):
@@ -232,7 +267,7 @@ def _surrounded(s: np.ndarray, periodic: np.ndarray, margin: np.ndarray) -> tupl
                 mirrored = points.copy()
                 mirrored[:, a] = 2.0 * wall - points[:, a]
                 copies.append(mirrored)
-                owners.append(np.full(len(points), -1))
+                owners.append(~_original(owner))
         points, owner = np.concatenate(copies), np.concatenate(owners)
         near = (points[:, a] > -margin[a]) & (points[:, a] < 1.0 + margin[a])
         near[:len(s)] = True
@@ -240,12 +275,17 @@ def _surrounded(s: np.ndarray, periodic: np.ndarray, margin: np.ndarray) -> tupl
     return points, owner
 
 
-def _furthest(found, atoms: np.ndarray) -> float:
-    """The largest distance of a corner from its atom; infinite for an open cell."""
-    far = 0.0
+def _reach(found, atoms: np.ndarray, weight: np.ndarray) -> float:
+    """How far away an atom may be that cuts a cell: where a corner's power is still larger than that of an atom with the largest weight."""
+    most, needed = float(weight.max()), 0.0
     for k in atoms:
-        region = found.regions[found.point_region[k]]
-        if -1 in region or not region:
+        corners = found.regions[k if isinstance(found, Diagram) else found.point_region[k]]
+        if -1 in corners:
             return np.inf
-        far = max(far, float(np.linalg.norm(found.vertices[region] - found.points[k], axis=1).max()))
-    return far
+        if not corners:         # an empty cell; only those of power diagrams are
+            if isinstance(found, Diagram):
+                continue
+            return np.inf
+        far = float(np.linalg.norm(found.vertices[corners] - found.points[k], axis=1).max())
+        needed = max(needed, far + max(far * far + most - weight[k], 0.0) ** 0.5)
+    return needed

@@ -20,7 +20,6 @@ PARTIAL = {
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
     ("fix", "msst"): "no dftb",
-    ("compute", "voronoi/atom"): "no radius: cells of power diagrams, which scipy does not have",
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
