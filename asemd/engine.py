@@ -105,7 +105,7 @@ class Engine:
         """The neighbour list that `n` such atoms need: mode, whether pairs are written out, in rows, packed; and why."""
         table = any(part.arrays for t in self.pair_terms for part in t.style.parts)
         rules, chosen = len(self.exclusions.rules) > 0, any(t.molecules for t in self.pair_terms)
-        few, partners = 2.1 * self.reach**3 * n < SPARSE * self.volume, self.exclusions.partners is not None
+        few, partners = self.few(n), self.exclusions.partners is not None
         # where two images of an atom are in reach, rows of atoms cannot tell which one is special
         room = 2 if self.many_terms or partners and (table or few or rules or chosen) else 1
         mode, why = "cluster", "half list of clusters of 8 atoms"
@@ -124,6 +124,9 @@ class Engine:
                        ("pairs are chosen by molecule", chosen), (f"fewer than {SPARSE} neighbours per atom", True))
             why = f"{next(text for text, holds in reasons if holds)}: rows of single atoms"
         return mode, expanded, sparse, packed, why
+
+    def few(self, n: int) -> bool:
+        return 2.1 * self.reach**3 * n < SPARSE * self.volume
 
     def _make_terms(self) -> list:
         terms, single = [], self.settings.precision == "mixed"
@@ -188,8 +191,8 @@ class Engine:
         turning = not TURNING.isdisjoint(self.system.extra)
         self.buffers = aligned((self.threads, 6 if turning else 3, capacity))      # forces, then torques
         self.state = new._replace(f=self.buffers[0, :3], torque=self.buffers[0, 3:])
-        self.held = aligned((3, capacity))
-        self.moved = aligned((capacity,))      # squared displacement of each slot since the list was built, for lists that may be outdated
+        # positions when the list was built; squared displacements of the slots since then, for lists that may be outdated
+        self.held, self.moved = aligned((3, capacity)), aligned((capacity,))
         self.atom_energy, self.atom_virial = np.zeros((self.threads, 1)), np.zeros((self.threads, 6, 1))
 
     def __getstate__(self):
@@ -207,8 +210,7 @@ class Engine:
         s.row[:n] = np.arange(n, dtype=np.int32)
         s.x[:, :n] = self.system.x.T
         s.v[:, :n] = self.system.v.T
-        self._offset = None
-        self.slot_of[:], self.held[:, :n] = np.arange(n), s.x[:, :n]
+        self._offset, self.slot_of[:], self.held[:, :n] = None, np.arange(n), s.x[:, :n]
         if self.mode == "cluster":
             self.list.gaps = True
         if listed:
@@ -232,7 +234,8 @@ class Engine:
                 self.list.gaps = bins.k is not None or bool(self.box_moves) or not self.periodic.all()
             found = -1
             while found < 0:
-                if self.list.shape(bins, self.system.n) and s.x.shape[1] < self.list.capacity:
+                self.list.shape(bins, self.system.n)
+                if s.x.shape[1] < self.list.capacity:
                     self._allocate(self.list.capacity)
                     s = self.state
                 found = self.list.sort(k, s, self.ns, bins)
@@ -257,8 +260,7 @@ class Engine:
         elif self.mode == "plain":
             bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
-        self.moved[:] = 0.0
-        self.listed = None
+        self.moved[:], self.listed = 0.0, None
         new = self.state._replace(slot=self.slot_of, image=self.system.image, box=live_box.live(self))
         self.state = new if any(a is not b for a, b in zip(new, self.state)) else self.state      # the same one is packed in memory
         for t in self.terms:

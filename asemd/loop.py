@@ -141,6 +141,7 @@ class Loop:
                            if f.follows or any(not kinds.get(name, True) for name in IN_A_STEP)]
         self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
         self._about_lists = [f for f, kinds in zip(self.fixes, self._kinds) if any(name in kinds for name in ABOUT_LISTS)]
+        self._after_lists = any("post_neighbor" in kinds for kinds in self._kinds)
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
 
     def _next_whole(self, step: int) -> int:
@@ -225,9 +226,9 @@ class Loop:
 
     def _segment(self, last: int, energy: bool) -> None:
         """Compiled steps up to `last`, with list builds in between."""
-        resume = False
+        resume = tl.BEGIN
         while True:
-            status = self._enter(last, energy, resume)
+            began, status = self.step, self._enter(last, energy, resume)
             if status == tl.FINISHED:
                 return
             if status == tl.BAD:
@@ -236,13 +237,15 @@ class Loop:
                     self.engine.check()
                 except SimulationError as error:
                     raise SimulationError(f"step {self.step}: {error}") from None
-            if self._about_lists:
+            if self._about_lists and not (resume == tl.LIST and self.step == began):      # that was a list it could not build
                 self._hook("pre_exchange")
                 self._hook("pre_neighbor")
+                if not (self._in_python or self._after_lists) and self.watchdog.content() and self._relist.ready(self.engine):
+                    resume = tl.LIST
+                    continue
             self._rebuild()
-            if self._about_lists:
-                self._hook("post_neighbor")
-            resume = True
+            self._hook("post_neighbor")
+            resume = tl.FORCES
 
     def _rebuild(self) -> None:
         try:
@@ -270,15 +273,13 @@ class Loop:
         """See `asemd.population.remove`."""
         population.remove(self, rows)
 
-    def _enter(self, last: int, energy: bool, resume: bool = False) -> int:
+    def _enter(self, last: int, energy: bool, resume: int = tl.BEGIN) -> int:
         e, s, c, x = self.engine, self.settings, self._control, self._numbers
-        if last == 0:
-            last = self.step
+        last = last or self.step
         forced = min((f.next_reneighbor for f in self.fixes if f.next_reneighbor > self.step), default=NEVER)
         c[:] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
                   s.outdated, bool(e.box_moves), forced, 0, 0]
-        x[tl.DT], x[tl.TRIGGER] = self.dt, (0.5 * s.skin) ** 2
-        x[tl.FARTHEST], x[tl.UNTIL] = self.watchdog.patience()
+        x[tl.DT], x[tl.TRIGGER], (x[tl.FARTHEST], x[tl.UNTIL]) = self.dt, (0.5 * s.skin) ** 2, self.watchdog.patience()
         self._sync[:] = 0
         status = [0] * e.threads
         run, (calls, starts) = tl.module().run, self._calls.table(tl.KINDS, e.state, self.fix_data)

@@ -107,7 +107,7 @@ def _joined(gone: np.ndarray) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
 def _take_out(loop: Loop, rows: np.ndarray, gone: np.ndarray, lost: bool, slotted: Collection[str]) -> None:
     """The system, groups and exclusions without some atoms."""
     system, s = loop.system, loop.settings
-    for kind, atoms, _ in system.topology.every():
+    for kind, atoms, _ in () if system.topology.is_empty else system.topology.every():
         torn = np.flatnonzero(gone[atoms].any(axis=1) & ~gone[atoms].all(axis=1)) if len(atoms) else ()
         if len(torn) and kind == CROSSTERM:
             raise SimulationError(f"CMAP atoms {' '.join(str(i) for i in system.id[atoms[torn[0]]])} missing: one of them left the system")
@@ -156,7 +156,7 @@ def _behind(array: np.ndarray, more: np.ndarray, slotted: bool) -> np.ndarray:
     """An array with more rows behind it; if it is in slots, only these rows matter."""
     if not slotted:
         return np.concatenate([array, more])
-    out = np.zeros((len(array) + len(more), *array.shape[1:]))
+    out = np.empty((len(array) + len(more), *array.shape[1:]))
     out[len(array):] = more
     return out
 
@@ -189,7 +189,7 @@ def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.n
         return np.append(mask, join)
     s.exclude = [(kind, *(m if kind == "type" else longer(m) for m in masks)) for kind, *masks in s.exclude]
     for name, which in joins.items():
-        loop.groups[name] = np.append(loop.groups[name], which)
+        loop.groups[name] = np.concatenate([loop.groups[name], which])
         loop.gone[name] = loop.gone.get(name, 0) - int(np.count_nonzero(which))
     loop.natoms += n
 

@@ -36,22 +36,30 @@ class Relist:
     def __init__(self):
         self.live = np.zeros(3, np.int64)
         self._given: list = []
-        self._memory: list = []
+        self._functions: list = []
+        self._blocks: list[packed.Block] = []
         self._table = NO_CALLS
 
     def table(self, engine) -> np.ndarray:
         """The calls (m, 2), function and arguments, that build a list; none where only Python can."""
-        if packed.WITHOUT_COMPILER:
-            return NO_CALLS
         # arguments of terms are made anew after each list that Python builds; the rest belongs to the atoms
         given = [engine.thread_arguments, engine.state, engine.system.image, engine.varies, *(getattr(engine, name) for name in BY_ROW)]
         if len(given) != len(self._given) or any(a is not b for a, b in zip(given, self._given)):
-            found = calls(engine, self.live) or []
-            self._table, self._given = np.empty((len(found), 2), packed.HANDLE), given
-            self._memory = [(arguments, packed.block(arguments)) for _, arguments, _ in found]
-            for row, (function, arguments, thread), (_, memory) in zip(self._table, found, self._memory):
-                row[:] = kernel_address(function, packed.text_of_arguments(arguments), thread), packed.handle(memory)
+            found, self._given = calls(engine, self.live) or [], given
+            functions = [(function, thread) for function, _, thread in found]
+            if functions != self._functions or not all(block.take(values) for block, (_, values, _) in zip(self._blocks, found)):
+                self._functions, self._blocks = functions, [packed.Block(values) for _, values, _ in found]
+                self._table = np.empty((len(found), 2), packed.HANDLE)
+                for row, block, (function, values, thread) in zip(self._table, self._blocks, found):
+                    row[:] = kernel_address(function, packed.text_of_arguments(values), thread), packed.handle(block.memory)
         return self._table
+
+    def ready(self, engine) -> bool:
+        """Whether the loop can build the next list, of the atoms that there are now; the grid follows their number."""
+        if engine.changed or not possible(engine) or engine.list.shape(engine.list.bins, engine.system.n):
+            return False
+        engine.thread_arguments = None
+        return True
 
     def take(self, engine, builds: int) -> None:
         """The loop has run, and has built so many lists."""
@@ -60,12 +68,17 @@ class Relist:
             engine.builds, engine.listed = engine.builds + builds, None
 
 
+def possible(engine) -> bool:
+    """Whether the list of an engine is one that compiled code can build, as far as its terms can, too."""
+    c = engine.list
+    return not (packed.WITHOUT_COMPILER or engine.mode != "cluster" or engine.expanded or engine.box_moves or not engine.periodic.all()
+                or engine.bonds.terms or c.shares is None or any(engine.rows) or len(engine.exclusions.rules) or c.gaps)
+
+
 def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple, bool]] | None:
     """Function, arguments, and whether it takes the thread, of each call; the list first. None where only Python can build it."""
     c, s, rules = engine.list, engine.state, engine.exclusions
-    if (engine.mode != "cluster" or engine.expanded or engine.box_moves or not engine.periodic.all() or engine.bonds.terms
-            or c.shares is None or any(engine.rows) or len(rules.rules)
-            or c.gaps or not all(map(follows, engine.terms))):
+    if not possible(engine) or not all(map(follows, engine.terms)):
         return None
     atoms = relist.Atoms(s.x, s.v, engine.system.image, s.row, engine.slot_of, engine.varies, engine.type_row, engine.mass_row,
                          engine.inverse_row, engine.q_row, engine.mask_row, s.type, s.mass, s.inverse_mass, s.q, s.mask, engine.held,

@@ -63,14 +63,18 @@ class BondedTerm(Term):
 
     def rebuild(self, engine):
         self.periodic, self.orthogonal = bool(engine.periodic.any()), engine.ortho
-        if self.start is None or len(self.start) != engine.system.n + 1:
-            self.start = np.searchsorted(self.items[:, 0], np.arange(engine.system.n + 1)).astype(np.int32)
-        engine.k.to_slots(engine.state.row, engine.ns, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types,
-                          self.order)
+        engine.k.to_slots(engine.state.row, engine.ns, self._starts(engine.system.n), self.items, self.types, engine.slot_of, self.slots,
+                          self.slot_types, self.order)
+
+    def _starts(self, n: int) -> np.ndarray:
+        """Where the items of each of `n` rows begin."""
+        if self.start is None or len(self.start) != n + 1:
+            self.start = np.searchsorted(self.items[:, 0], np.arange(n + 1)).astype(np.int32)
+        return self.start
 
     def relisted(self, engine):
-        return [("place_items", (engine.state.row, self.start, self.items, self.types, engine.slot_of, self.slots, self.slot_types,
-                                 self.order))]
+        return [("place_items", (engine.state.row, self._starts(engine.system.n), self.items, self.types, engine.slot_of, self.slots,
+                                 self.slot_types, self.order))]
 
     def arguments(self, engine, tid):
         from asemd.kernels import bonded

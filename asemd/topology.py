@@ -172,7 +172,8 @@ class Topology:
 
     @property
     def is_empty(self) -> bool:
-        return self.frozen is None and not any(len(types) for _, _, types in self.every())
+        return self.frozen is None and not (len(self.bond_types) or len(self.angle_types) or len(self.dihedral_types)
+                                            or len(self.improper_types) or len(self.crossterm_types))
 
     def counts(self) -> dict[str, int]:
         """Number of items by kind."""

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from asemd.neighbor import SMALL
+
 if TYPE_CHECKING:
     from asemd.engine import Engine
     from asemd.system import System
@@ -32,7 +34,7 @@ def simple(engine: Engine, gone: np.ndarray, atoms: System | None) -> bool:
         return False
     if engine.mode == "cluster" and engine.ns + more + 8 > engine.state.x.shape[1]:
         return False
-    if engine.list_for(system.n - len(gone) + more)[:3] != (engine.mode, engine.expanded, engine.sparse):
+    if not _keeps_list(engine, system.n - len(gone) + more):
         return False
     if atoms is not None and not alike(system, atoms):
         return False
@@ -43,6 +45,14 @@ def simple(engine: Engine, gone: np.ndarray, atoms: System | None) -> bool:
     leaves[gone] = True
     partners = exclusions.partners is not None and (exclusions.partners[0][gone + 1] != exclusions.partners[0][gone]).any()
     return top.frozen is None and not partners and not any(leaves[atoms].any() for _, atoms, _ in top.every())
+
+
+def _keeps_list(engine: Engine, n: int) -> bool:
+    """Whether `n` atoms need the neighbour list that the present ones have."""
+    now = engine.system.n
+    if engine.box_moves:
+        return engine.list_for(n)[:3] == (engine.mode, engine.expanded, engine.sparse)
+    return (n < SMALL) == (now < SMALL) and engine.few(n) == engine.few(now)
 
 
 def alike(system: System, atoms: System) -> bool:
@@ -73,6 +83,8 @@ def follow(engine: Engine, gone: np.ndarray, more: int) -> None:
     _constants(engine, gone, more)
     if engine.mode != "cluster":        # whose slots are the rows
         engine.load(False)
+    engine.state = engine.state._replace(slot=engine.slot_of, image=engine.system.image)
+    engine.thread_arguments = None
 
 
 def _put_in(engine: Engine, gone: np.ndarray, more: int) -> None:
@@ -92,23 +104,22 @@ def _put_in(engine: Engine, gone: np.ndarray, more: int) -> None:
 
 def _constants(engine: Engine, gone: np.ndarray, more: int) -> None:
     """Types, masses, charges and masks by row."""
-    names = "type_row", "mass_row", "inverse_row", "q_row", "mask_row"
-    if not more:
-        for name in names:
-            setattr(engine, name, changed(getattr(engine, name), gone))
-        return
-    system, last = engine.system, slice(-more, None)
-    mass = system.rmass[last] if system.rmass is not None else system.mass[system.type[last]]
-    mass = np.where(np.isnan(mass), 1.0, mass)
-    mask = np.ones(more, np.int32)
-    for name, members in engine.groups.items():
-        mask[members[last]] |= np.int32(engine.bits[name])
-    new = (system.type[last], mass, engine.units.ftm2v / mass, system.q[last] if system.q is not None else np.zeros(more), mask)
-    for name, values in zip(names, new):
-        array = changed(getattr(engine, name), gone, values)
-        setattr(engine, name, array)
-        if name != "inverse_row":
-            engine.varies[("type_row", "mass_row", "q_row", "mask_row").index(name)] |= bool((values != array[0]).any())
+    system, last = engine.system, slice(engine.system.n - more, None)
+    names, own = ("mass_row", "inverse_row", "mask_row"), ((), (), ())
+    if more:
+        mass = system.rmass[last] if system.rmass is not None else system.mass[system.type[last]]
+        mass = np.where(np.isnan(mass), 1.0, mass)
+        mask = np.ones(more, np.int32)
+        for name, members in engine.groups.items():
+            mask[members[last]] |= np.int32(engine.bits[name])
+        own = (mass,), (engine.units.ftm2v / mass,), (mask,)
+    for name, values in zip(names, own):
+        setattr(engine, name, changed(getattr(engine, name), gone, *values))
+    engine.type_row = np.ascontiguousarray(system.type, np.int32)
+    engine.q_row = np.ascontiguousarray(system.q, float) if system.q is not None else np.zeros(system.n)
+    if more:
+        for k, array in enumerate((engine.type_row, engine.mass_row, engine.q_row, engine.mask_row)):
+            engine.varies[k] |= bool((array[last] != array[0]).any())
 
 
 def changed(array: np.ndarray, gone: np.ndarray, *joining: np.ndarray) -> np.ndarray:

@@ -107,7 +107,7 @@ class Watchdog:
         self.frames: list[Frame] = []
         self._energies: tuple[float, float] | None = None       # total and kinetic, of the start
         self.seconds, self._next, self._next_energy = 0.0, 0.0, 0.0
-        self._spare, self._built, self.reach = 0, 0, np.inf
+        self._ids, self._spare, self._built, self.reach = None, 0, 0, np.inf
         self._limit, self._free = np.inf, False
 
     # ---- before the run -----------------------------------------------------------------------------------------------------------------
@@ -160,6 +160,10 @@ class Watchdog:
                                   "the box: the time step is too long, or atoms are too close together")
         self._look_at_speed()
 
+    def content(self) -> bool:
+        """Whether `before_build` has nothing to say; after compiled steps that measured how far atoms have moved."""
+        return not self.on or bool(self.loop.engine.farthest[0] <= self._limit)
+
     def patience(self) -> tuple[float, float]:
         """For lists that the loop builds by itself: the squared distance up to which `before_build` has nothing to say, and the seconds
         for which `after_build` has nothing to do."""
@@ -168,16 +172,21 @@ class Watchdog:
     def built(self, step: int) -> None:
         """The loop built lists by itself, the last one at that step; 0: none."""
         self._built = max(self._built, step)
+        self._recognise()
 
     def after_build(self) -> None:
         """After a list was built: this is a good frame."""
         if not self.on:
             return
         self._built = self.loop.step
-        if self._ids is not self.loop.system.id:        # some left or joined, with their energy; older frames are of other atoms
-            self._ids, self._energies = self.loop.system.id, None
+        self._recognise()
         if time.perf_counter() > self._next:
             self._timed(self._keep)
+
+    def _recognise(self) -> None:
+        """Where some atoms left or joined, with their energy; older frames are of other atoms."""
+        if self._ids is not self.loop.system.id:
+            self._ids, self._energies = self.loop.system.id, None
 
     def look(self) -> None:
         """Where a compiled stretch ends: velocities are numbers and no atom is too fast; constraints hold.

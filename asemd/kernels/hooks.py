@@ -144,10 +144,8 @@ class Calls:
         """Arguments anew where the state or the arrays of fixes are others; the state stays where it is in memory."""
         if state is not self._state:
             self._state = state
-            if self._block is None or packed.WITHOUT_COMPILER:
+            if self._block is None or not self._block.take(state):
                 self._block, self._data = packed.Block(state), None
-            else:
-                self._block.take(state)
         if data is not self._data:
             known, self._data = self._data, data
             if known is None or any(a is not b for new, old in zip(data, known, strict=True) for a, b in zip(new, old)):

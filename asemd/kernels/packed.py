@@ -84,22 +84,48 @@ class Block:
     """
 
     def __init__(self, values: tuple):
-        self.values, self.starts, self.memory = values, [], values
+        self.values, self.places, self.memory = values, [], values
         if not WITHOUT_COMPILER:
             into: list[int] = []
-            for value in values:
-                self.starts.append(len(into))
-                pack((value,), into)
+            self.places = _places(values, into)
             self.memory = np.array(into, np.int64)
 
-    def take(self, values: tuple) -> None:
-        """Other values: only those that are others are packed."""
-        for start, new, old in zip(self.starts, values, self.values):
-            if new is not old:
-                into: list[int] = []
-                pack((new,), into)
-                self.memory[start:start + len(into)] = into
-        self.values = values
+    def take(self, values: tuple) -> bool:
+        """Other values of the same kind of tuple: only those that are others are packed. False if one is of another type, or where nothing
+        is compiled: a new block is needed then."""
+        known, self.values = self.values, values
+        return not WITHOUT_COMPILER and _take(values, known, self.places, self.memory)
+
+
+def _places(values: tuple, into: list[int]) -> list:
+    """Where each value of a tuple begins, as it is packed; of a tuple within, such a list."""
+    places: list = []
+    for value in values:
+        if isinstance(value, tuple):
+            places.append(_places(value, into))
+        else:
+            places.append(len(into))
+            pack((value,), into)
+    return places
+
+
+def _take(values: tuple, known: tuple, places: list, memory: np.ndarray) -> bool:
+    """See `Block.take`."""
+    if len(values) != len(places):
+        return False
+    for value, old, place in zip(values, known, places):
+        if value is old:
+            continue
+        if isinstance(place, list):
+            if not isinstance(value, tuple) or not _take(value, old, place, memory):
+                return False
+        elif text_of_arguments((value,)) != text_of_arguments((old,)):
+            return False
+        else:
+            into: list[int] = []
+            pack((value,), into)
+            memory[place:place + len(into)] = into
+    return True
 
 
 def arguments(state_block, numbers):

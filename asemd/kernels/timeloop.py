@@ -25,6 +25,7 @@ from asemd.kernels.state import Thread
 from asemd.kernels.threads import barrier
 
 FINISHED, REBUILD, BAD = 0, 1, 2
+BEGIN, FORCES, LIST = 0, 1, 2       # ``control[RESUME]``: a step begins, or goes on with its forces, or with the list before them
 COMPILED = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate", "end_of_step")
 HALVES = ("initial_integrate", "final_integrate", "final_initial")      # strict: a run has the same digits wherever it is cut into pieces
 KINDS = (*COMPILED, "final_initial")
@@ -77,21 +78,16 @@ class Terms:
 
     def __init__(self, terms: Sequence, arguments: Sequence[tuple], virial: bool):
         self.arguments, self.blocks = arguments, [packed.Block(a) for a in arguments]
-        self.kinds = [packed.text_of_arguments(a) for a in arguments]
         self.rows = np.empty((len(terms), 5), packed.HANDLE)
-        for row, t, kind, block in zip(self.rows, terms, self.kinds, self.blocks, strict=True):
+        for row, t, a, block in zip(self.rows, terms, arguments, self.blocks, strict=True):
             kernels = t.kernel(False, False), t.kernel(True, False), t.virial_kernel() if virial else t.kernel(True, False)
-            row[:3] = [kernel_address(k, kind) for k in kernels]
+            row[:3] = [kernel_address(k, packed.text_of_arguments(a)) for k in kernels]
             row[ARGUMENTS], row[TIME] = packed.handle(block.memory), {"pair": PAIR_TIME, "kspace": KSPACE_TIME}.get(t.category, BOND_TIME)
 
     def take(self, arguments: Sequence[tuple]) -> bool:
         """Other arguments of the same terms; False if they are of other types, and kernels are to be looked up again."""
-        if packed.WITHOUT_COMPILER or [packed.text_of_arguments(a) for a in arguments] != self.kinds:
-            return False
-        for block, values in zip(self.blocks, arguments):
-            block.take(values)
         self.arguments = arguments
-        return True
+        return len(arguments) == len(self.blocks) and all(block.take(values) for block, values in zip(self.blocks, arguments))
 
 
 @cache
@@ -176,8 +172,10 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
     if tid == 0:
         numbers[UNTIL] += t0
     barrier(th)
-    while resume != 0 or step < last:
-        if resume == 0:
+    while resume != BEGIN or step < last:
+        need = resume == LIST
+        odd = False
+        if resume == BEGIN:
             step += 1
             th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
             if not ready:
@@ -189,17 +187,17 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
             forced = step == control[FORCED]
             if due or forced or control[OUTDATED] != 0:
                 m = 0.0
-                odd = 0.0
+                wrong = 0.0
                 for i in range(hi - lo):
                     a = x0[i] - held0[i]
                     b = x1[i] - held1[i]
                     c = x2[i] - held2[i]
                     m = max(m, a * a + b * b + c * c)
-                    odd += 0.0 * (a + b + c)                # not zero where a position is not a number
+                    wrong += 0.0 * (a + b + c)              # not zero where a position is not a number
                 if control[OUTDATED] != 0:
                     for i in range(hi - lo):
                         away[i] = (x0[i] - held0[i]) ** 2 + (x1[i] - held1[i]) ** 2 + (x2[i] - held2[i]) ** 2
-                scratch[tid, 1] = m if odd == 0.0 else 1e301
+                scratch[tid, 1] = m if wrong == 0.0 else 1e301
             if tid == 0:
                 t1 = now()
                 numbers[MODIFY_TIME] += t1 - t0
@@ -220,22 +218,25 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
                     control[STEP] = step
                     if need and check != 0 and ago == max(every, delay):
                         control[DANGEROUS] += 1
-                if not listed(th, lists, live, control, numbers, forced or farthest[tid] > numbers[FARTHEST], t0):
-                    return REBUILD
-                ago = 0
-                farthest[tid] = 0.0
-                ns = live[NS]
-                lo = ns * tid // nth
-                hi = ns * (tid + 1) // nth
-                x0, x1, x2 = x[0, lo:hi], x[1, lo:hi], x[2, lo:hi]
-                held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
-                away = moved[lo:hi]
-                th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
-                if tid == 0:
-                    t0 = now()
+                odd = forced or farthest[tid] > numbers[FARTHEST]
+                need = True
         else:
             farthest[tid] = 0.0
-        resume = 0
+        if need:
+            if not listed(th, lists, live, control, numbers, odd, t0):
+                return REBUILD
+            ago = 0
+            farthest[tid] = 0.0
+            ns = live[NS]
+            lo = ns * tid // nth
+            hi = ns * (tid + 1) // nth
+            x0, x1, x2 = x[0, lo:hi], x[1, lo:hi], x[2, lo:hi]
+            held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
+            away = moved[lo:hi]
+            th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+            if tid == 0:
+                t0 = now()
+        resume = BEGIN
         act(2, th, calls, starts)
         for d in range(f.shape[0]):
             for i in range(ns):

@@ -10,6 +10,8 @@ from functools import cache
 
 import numpy as np
 
+from asemd.kernels.trial_cells import around, cell_of, enter, fill, grid, largest, leave
+
 OVERLAP = 1e100        # energy of a trial position that is too near to an atom
 BLOCK = 256
 ACCEPTABLE = 1e50       # energies beyond are refused without a random number
@@ -52,11 +54,36 @@ def image_of(d, edge, inverse, which):
     return n + 1.0 if d > n * edge else n - 1.0
 
 
-def aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables):
-    """`trial_energy` in a box along the axes that are longer than the cutoff: distances of `BLOCK` atoms at once."""
+def near_energy(total, count, near, r2s, which, p, ti, charge, numbers, x, type_of, q, molecule, edges, scale, inverse, low, high, cut2,
+                tables):
+    """`total` and the energy of an atom at `p` with the first ones of the atoms `near`, whose images `which` are at squared distances
+    `r2s`."""
     skip, without = int(numbers[0]), int(numbers[1])
     overlap2, qqr2e, limited = numbers[2], numbers[3], numbers[4] != 0.0
-    total, most, s, r2s = 0.0, overlap2, np.empty((6, BLOCK)), np.empty(BLOCK)
+    for k in range(count):
+        j, r2 = near[k], r2s[k]
+        tj = type_of[j]
+        if molecule[j] == without or (r2 >= cut2[ti, tj] and r2 >= overlap2):
+            continue
+        here, seen = True, True
+        for d in range(3):
+            a = image_of(p[d] - x[j, d], edges[d], scale[d], which[d])
+            if a != 0.0:
+                here = False
+                if limited and not low[d] <= x[j, d] * inverse[d, d] + a <= high[d]:
+                    seen = False
+        if not seen or (here and j == skip):
+            continue
+        if r2 < overlap2:
+            return OVERLAP
+        if r2 < cut2[ti, tj]:
+            total += pair_energy(r2, qqr2e * charge * q[j], tables, ti, tj)
+    return total
+
+
+def aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables):
+    """`trial_energy` in a box along the axes that are longer than the cutoff: distances of `BLOCK` atoms at once."""
+    total, most, s, r2s, near = 0.0, largest(cut2, numbers[2]), np.empty((6, BLOCK)), np.empty(BLOCK), np.empty(BLOCK, np.int64)
     edges, scale, images = np.empty(3), np.zeros(3), np.ones(3, np.int64)
     for d in range(3):
         edges[d] = cell[d, d]
@@ -65,11 +92,7 @@ def aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inve
         if reach[d] >= 0.5:
             images[d] = 2
     several = images[0] * images[1] * images[2]
-    for ti in range(cut2.shape[0]):
-        for tj in range(cut2.shape[1]):
-            most = max(most, cut2[ti, tj])
     for t in range(at.shape[0]):
-        ti = types[t]
         for first in range(0, n, BLOCK):
             last = min(first + BLOCK, n)
             if several > 1:
@@ -81,27 +104,15 @@ def aligned_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inve
                     add_squares(s[which[0]], s[2 + which[1]], s[4 + which[2]], last - first, r2s)
                 else:
                     nearest(x, first, last, at[t], edges, scale, r2s)
-                for k in range(last - first):
+                count = 0
+                for k in range(last - first):       # without branches
                     r2 = r2s[np.uint64(k)]
-                    if r2 >= most:
-                        continue
-                    j = first + k
-                    tj = type_of[j]
-                    if molecule[j] == without or (r2 >= cut2[ti, tj] and r2 >= overlap2):
-                        continue
-                    here, seen = True, True
-                    for d in range(3):
-                        a = image_of(at[t, d] - x[j, d], edges[d], scale[d], which[d])
-                        if a != 0.0:
-                            here = False
-                            if limited and not low[d] <= x[j, d] * inverse[d, d] + a <= high[d]:
-                                seen = False
-                    if not seen or (here and j == skip):
-                        continue
-                    if r2 < overlap2:
-                        return OVERLAP
-                    if r2 < cut2[ti, tj]:
-                        total += pair_energy(r2, qqr2e * charges[t] * q[j], tables, ti, tj)
+                    near[np.uint64(count)], r2s[np.uint64(count)] = first + k, r2
+                    count += r2 < most
+                total = near_energy(total, count, near, r2s, which, at[t], types[t], charges[t], numbers, x, type_of, q, molecule, edges,
+                                    scale, inverse, low, high, cut2, tables)
+                if total == OVERLAP:
+                    return OVERLAP
     return total
 
 
@@ -186,8 +197,11 @@ def fold(x, image, origin, lengths):
 
 def fold_each(x, image, origin, lengths):
     """Positions (m, 3) come into it."""
-    for i in range(len(x)):
-        fold(x[i], image[i], origin, lengths)
+    for d in range(3):
+        low, high = origin[d], origin[d] + lengths[d]
+        for i in range(len(x)):
+            if x[i, d] < low or x[i, d] >= high:
+                fold(x[i], image[i], origin, lengths)
 
 
 def park(states, k):
@@ -217,6 +231,16 @@ def within(x, corners):
             and corners[0, 2] <= x[2] <= corners[1, 2])
 
 
+def atom_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables, cells, near, r2s):
+    """`trial_energy` of one atom, with those around it only if there are cells (see `asemd.kernels.trial_cells`)."""
+    if len(cells[3]) == 0:
+        return trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+    edges, scale = (cell[0, 0], cell[1, 1], cell[2, 2]), (inverse[0, 0], inverse[1, 1], inverse[2, 2])
+    count = around(at[0], x, largest(cut2, numbers[2]), reach, edges, near, r2s, *cells)
+    return near_energy(0.0, count, near, r2s, (0, 0, 0), at[0], types[0], charges[0], numbers, x, type_of, q, molecule, edges, scale,
+                       inverse, low, high, cut2, tables)
+
+
 def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, molecule, row, gas, moved, v, id_of, mass, origin, lengths,
                region, numbers, inverse, cell, reach, low, high, cut2, tables):
     """A series of attempts with single atoms in a periodic box along the axes, as `asemd.fix.gcmc_moves` has them one by one.
@@ -244,6 +268,11 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
     chosen, count = np.empty(len(gas), np.int64), 0
     at, types, charges, new_v, no_image = np.zeros((1, 3)), np.zeros(1, np.int64), np.zeros(1), np.zeros(3), np.zeros(3, np.int32)
     changed = True
+    many = grid(n, reach)
+    cells = origin, inverse, many, np.empty(many[0] * many[1] * many[2], np.int64), np.empty(len(gas), np.int64)
+    near, r2s = np.empty(len(gas), np.int64), np.empty(len(gas))
+    fill(n, x, *cells)
+    others = x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables, cells, near, r2s
     for _ in range(tries):
         if changed:
             count, changed = 0, False
@@ -260,7 +289,7 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
             types[0], charges[0] = kind if limits[6] else type_of[i], q[i]
             numbers[0] = i
             at[0] = x[i]
-            before = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            before = atom_energy(at, types, charges, n, numbers, *others)
             r2 = 2.0
             while r2 > 1.0 or (confined and not within(at[0], region)):
                 r2 = 0.0
@@ -268,10 +297,12 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
                     r = 2.0 * park(states, 1) - 1.0
                     at[0, d] = x[i, d] + p[0] * r
                     r2 += r * r
-            after = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            after = atom_energy(at, types, charges, n, numbers, *others)
             if after < ACCEPTABLE and park(states, decides) < math.exp(min(p[1] * (before - after), 700.0)):
+                leave(i, x, *cells)
                 x[i] = at[0]
                 fold(x[i], image[i], origin, lengths)
+                enter(i, x, *cells)
                 moved[i], changed = True, confined
                 counts[1] += 1
         elif park(states, 0) < 0.5:
@@ -282,14 +313,19 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
             types[0], charges[0] = kind if limits[6] else type_of[i], q[i]
             numbers[0] = i
             at[0] = x[i]
-            energy = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            energy = atom_energy(at, types, charges, n, numbers, *others)
             if park(states, decides) < count * math.exp(min(p[1] * energy, 700.0)) / p[2]:
                 n -= 1
                 if row[i] >= 0:
                     gone[0] = 1
+                leave(i, x, *cells)
+                if i < n:
+                    leave(n, x, *cells)
                 x[i], image[i], v[i] = x[n], image[n], v[n]
                 type_of[i], q[i], molecule[i], row[i], gas[i], moved[i] = type_of[n], q[n], molecule[n], row[n], gas[n], moved[n]
                 id_of[i], mass[i] = id_of[n], mass[n]
+                if i < n:
+                    enter(i, x, *cells)
                 changed = True
                 counts[5] += 1
         else:
@@ -304,7 +340,7 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
             if limits[7]:
                 for d in range(3):
                     new_v[d] = gaussian(states, saved, 1) * p[3]
-            energy = trial_energy(at, types, charges, n, numbers, x, type_of, q, molecule, inverse, cell, reach, low, high, cut2, tables)
+            energy = atom_energy(at, types, charges, n, numbers, *others)
             if energy < ACCEPTABLE and park(states, decides) < p[2] * math.exp(min(-p[1] * energy, 700.0)) / (count + 1):
                 if not limits[7]:
                     for d in range(3):
@@ -315,6 +351,7 @@ def atom_moves(states, saved, limits, p, counts, n, gone, x, image, type_of, q, 
                 x[n], v[n], image[n] = at[0], new_v, 0
                 type_of[n], q[n], molecule[n], row[n], gas[n], moved[n] = kind, p[5], 0, -1, True, False
                 id_of[n], mass[n] = last + 1, p[6]
+                enter(n, x, *cells)
                 n += 1
                 changed = True
                 counts[3] += 1
@@ -345,12 +382,13 @@ def kernel(styles: tuple):
     b.constant("OVERLAP", OVERLAP)
     b.constant("ACCEPTABLE", ACCEPTABLE)
     b.constant("BLOCK", BLOCK)
-    for f in (nearest, squares, add_squares, image_of, fold, fold_each):
+    for f in (nearest, squares, add_squares, image_of, fold, fold_each, largest, grid, cell_of, fill, enter, leave, around):
         b.function(f)
     for k, style in enumerate(styles):
         b.use(list_kernel(style, style.parts, energy=True, per_atom=False)[1], "pair_energy_one", f"pair{k}")
-    for f in (aligned_energy, trial_energy):
-        b.text(_written_out(plain_source(f), len(styles)))
-    for f in (park, gaussian, within, atom_moves):
+    b.text(_written_out(plain_source(near_energy), len(styles)))
+    b.function(aligned_energy)
+    b.text(_written_out(plain_source(trial_energy), len(styles)))
+    for f in (park, gaussian, within, atom_energy, atom_moves):
         b.function(f)
     return b.build()
