@@ -71,7 +71,9 @@ def places(loop: Loop) -> np.ndarray:
 def _change(loop: Loop, rows, atoms: System | None, groups, lost: bool, listed: bool) -> None:
     """Atoms go, others join."""
     e, n = loop.engine, loop.system.n
-    rows = np.unique(np.asarray(rows, np.int64))
+    rows = np.asarray(rows, np.int64)
+    if len(rows) > 1:
+        rows = np.unique(rows)
     simple = turnover.simple(e, rows, atoms)
     if not simple or e.mode != "cluster":
         e.store()
@@ -174,8 +176,9 @@ def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.n
             slotted: Collection[str]) -> None:
     """The system, groups and exclusions with more atoms."""
     system, s, n = loop.system, loop.settings, atoms.n
-    chosen = groups if isinstance(groups, Mapping) else dict.fromkeys(groups, np.ones(n, bool))
-    joins = {name: np.ones(n, bool) if name == "all" else np.asarray(chosen.get(name, np.zeros(n, bool)), bool) for name in loop.groups}
+    everybody, nobody = np.ones(n, bool), np.zeros(n, bool)
+    chosen = groups if isinstance(groups, Mapping) else dict.fromkeys(groups, everybody)
+    joins = {name: everybody if name == "all" else np.asarray(chosen.get(name, nobody), bool) for name in loop.groups}
     _join(system, atoms, alike, slotted)
 
     def longer(mask):       # exclusions hold masks, no names of groups: that of a group beside `all`, where one fits

@@ -203,7 +203,8 @@ class GCMC(Fix):
     def pre_exchange(self, loop) -> None:
         """On its steps: a series of attempts."""
         if loop.step == self.next_reneighbor:
-            loop.sync_out()
+            if self.by_molecule or loop.engine.box_moves:
+                loop.sync_out()
             moves = Moves(self, loop)
             moves.series()
             moves.carry_over()

@@ -27,7 +27,7 @@ class Moves(Reservoir):
         self.decides = fix.random if fix.full_energy else fix.other
         self.count = fix.counts
         self.born: dict[int, np.ndarray] = {}
-        self.closed = not self.box.periodic.all()
+        self.closed = self.energies.closed
         self.angle = math.radians(fix.max_angle)
         self.one_type = fix.as_lammps and not fix.full_energy and fix.molecule is None     # that of inserted atoms, whatever an atom is
 
@@ -57,7 +57,7 @@ class Moves(Reservoir):
         """All attempts of one time: compiled where single atoms move in a periodic box along the axes, or in a block of it."""
         fix, anywhere = self.fix, self.fix.region is None or self.fix.region.style == "block"
         plain = fix.molecule is None and not fix.by_molecule and anywhere and not self.tail.on and not self.closed
-        if plain and self.box.aligned and not (self.energies.exact and self.energies.narrow):
+        if plain and self.energies.aligned and not (self.energies.exact and self.energies.narrow):
             self.compiled()
         else:
             for _ in range(fix.exchanges + fix.moves):
@@ -76,7 +76,7 @@ class Moves(Reservoir):
         gone = np.zeros(1, np.int64)
         self.energies.numbers[1] = -1.0
         a.n = int(self.energies.module.atom_moves(states, saved, limits, p, self.count, a.n, gone, a.x, a.image, a.type, a.q, a.molecule,
-                                                  a.row, a.gas, a.moved, a.v, a.id, a.mass, self.box.origin, np.diag(self.box.cell).copy(),
+                                                  a.row, a.gas, a.moved, a.v, a.id, a.mass, self.box.origin, self.energies.edges,
                                                   np.array([self.low, self.high]), self.energies.numbers, *self.energies.box))
         a.removed |= bool(gone[0])
         for r, state, value in zip(streams, states, saved):

@@ -156,11 +156,12 @@ class Reservoir:
         self.fix, self.loop, self.system, self.box = fix, loop, loop.system, loop.system.box
         self.energies = Energies.of_loop(loop, fix.full_energy or not fix.as_lammps, fix.overlap, fix.what)
         self.energies.see(self.box)
-        self.edges = np.diag(self.box.cell).copy() if self.box.aligned and self.box.periodic.all() else None
+        known = self.energies
+        self.edges = known.edges if known.aligned and not known.closed else None
         self.atoms = TrialAtoms(loop, fix.storage, fix.group, self.wrap)
-        self.volume = fix.volume if fix.region is not None else self.box.volume
-        self.low, self.high = fix.region.extent() if fix.region is not None else (self.box.origin, self.box.origin + np.diag(self.box.cell))
-        self.tilted = fix.region is None and (self.box.triclinic or not self.box.is_lammps_frame)
+        self.volume = fix.volume if fix.region is not None else known.volume
+        self.low, self.high = fix.region.extent() if fix.region is not None else (self.box.origin, self.box.origin + known.edges)
+        self.tilted = fix.region is None and known.tilted
         self.own: dict[int, float] = {}        # energies of molecules by themselves
         self.tail = Tail(self, fix)
         m = fix.molecule
@@ -291,7 +292,7 @@ class Tail:
     """
 
     def __init__(self, reservoir: Reservoir, fix):
-        self.atoms, n, volume = reservoir.atoms, reservoir.system.counts["ntypes"], reservoir.box.volume
+        self.atoms, n, volume = reservoir.atoms, reservoir.system.counts["ntypes"], reservoir.energies.volume
         self.matrix = np.zeros((n + 1, n + 1))
         for term in reservoir.loop.interactions.pair_terms(n, reservoir.loop.units) if fix.full_energy else ():
             if term.has_tail and term.style.tail is not None:

@@ -14,7 +14,7 @@ from asemd import population
 from asemd.errors import InputError
 from asemd.fix.atom_order import AtomOrder
 from asemd.kernels import trial
-from asemd.kernels.rows import of_rows
+from asemd.kernels.rows import of_rows, of_slots
 
 NOBODY = -1
 _known: WeakKeyDictionary = WeakKeyDictionary()      # loop -> energies that were asked for
@@ -78,6 +78,8 @@ class Energies:
             return
         self.seen = now
         self.cell, self.inverse = np.ascontiguousarray(box.cell, float), np.ascontiguousarray(box.inverse)
+        self.volume, self.edges, self.tilted = box.volume, np.diag(box.cell).copy(), box.triclinic or not box.is_lammps_frame
+        self.aligned, self.closed = box.aligned, not box.periodic.all()
         heights = 1.0 / np.linalg.norm(self.inverse, axis=0)
         periodic = np.array(box.periodic)
         self.reach = np.where(periodic, self.cutoff / heights, -1.0)
@@ -122,15 +124,18 @@ class TrialAtoms:
         n = self.n = len(rows)
         kept = _arrays.setdefault(loop, {})
         cap = max([n + 64, *map(len, kept.values())])
-        s = SimpleNamespace(x=system.x, image=system.image, type=np.asarray(system.type, np.int64), v=system.v, id=system.id,
+        s = SimpleNamespace(x=loop.state.x, image=system.image, type=np.asarray(system.type, np.int64), v=loop.state.v, id=system.id,
                             q=np.zeros(n) if system.q is None else system.q, molecule=np.asarray(system.molecule, np.int64),
                             mass=system.atom_masses(), gas=loop.groups[group], row=np.arange(n))
+        slots = loop.engine.slot_of[rows]
         for name, values in vars(s).items():
-            array = kept.get(name)
+            array, wide = kept.get(name), (3,) * (values.ndim - 1)
             if array is None or len(array) < cap or array.dtype != values.dtype:
-                array = np.zeros((cap, *values.shape[1:]), values.dtype, order="F")     # x, y, z each in one piece, for vector instructions
-                kept[name] = array
-            values.take(rows, out=array[:n], mode="clip") if values.ndim == 1 else of_rows(values, rows, array.T)
+                array = kept[name] = np.zeros((cap, *wide), values.dtype, order="F")      # each column in one piece, for vectors
+            if name in ("x", "v"):
+                of_slots(slots, values, array)
+            else:
+                values.take(rows, out=array[:n], mode="clip") if values.ndim == 1 else of_rows(values, rows, array.T)
             setattr(self, name, array)
         self.moved = np.zeros(len(self.x), bool)
         self.names = (*vars(s), "moved")
@@ -196,14 +201,14 @@ class TrialAtoms:
         old, moved = self.row[:n] >= 0, np.flatnonzero(self.moved[:n] & (self.row[:n] >= 0))
         if len(moved):
             rows = self.row[moved]
-            system.x[rows], system.image[rows] = self.x[moved], self.image[moved]
-            loop.sync_in()
             slots = loop.engine.slot_of[rows]       # it is no motion that a list would have to follow
-            loop.engine.held[:, slots] = loop.state.x[:, slots]
-        new = np.flatnonzero(~old)
-        left = np.zeros(system.n, bool)
-        left[self.row[:n][old]] = True
-        gone = np.flatnonzero(~left)
+            loop.state.x[:, slots] = loop.engine.held[:, slots] = self.x[moved].T
+            system.image[rows] = self.image[moved]
+        new, gone = np.flatnonzero(~old), ()
+        if self.removed:
+            left = np.zeros(system.n, bool)
+            left[self.row[:n][old]] = True
+            gone = np.flatnonzero(~left)
         if len(new):
             atoms = make(new)
             population.exchange(loop, gone, atoms, members(atoms))

@@ -117,7 +117,8 @@ class Widom(Fix):
         if loop.step != self.next_reneighbor:
             return
         self.next_reneighbor += self.interval
-        loop.sync_out()
+        if loop.engine.box_moves:
+            loop.sync_out()
         self.mean = 0.0
         trial = Reservoir(self, loop)
         self.seen = trial.volume
