@@ -8,6 +8,7 @@ import numpy as np
 
 from asemd import turnover
 from asemd.errors import InputError, SimulationError
+from asemd.kernels.rows import of_slots
 from asemd.topology import CROSSTERM
 
 if TYPE_CHECKING:
@@ -65,7 +66,9 @@ def exchange(loop: Loop, rows, atoms: System, groups: Iterable[str] | Mapping[st
 
 def places(loop: Loop) -> np.ndarray:
     """Where the atoms are in the midst of a run, (n, 3)."""
-    return np.take(loop.state.x, loop.engine.slot_of, axis=1, mode="clip").T
+    x = np.empty((loop.system.n, 3), order="F")
+    of_slots(loop.engine.slot_of, loop.state.x, x)
+    return x
 
 
 def _change(loop: Loop, rows, atoms: System | None, groups, lost: bool, listed: bool) -> None:
@@ -146,7 +149,7 @@ def _drop(system: System, rows: np.ndarray, gone: np.ndarray, slotted: Collectio
 def _join(system: System, atoms: System, alike: bool, slotted: Collection[str]) -> None:
     """`System.append`, with the ids that the atoms have, in place; `alike`: surely of the same properties and types."""
     if alike or turnover.alike(system, atoms):
-        if atoms.id.min(initial=1) <= system.id.max(initial=0) and np.isin(atoms.id, system.id).any():
+        if atoms.n and atoms.id.min() <= system.id.max(initial=0) and np.isin(atoms.id, system.id).any():
             raise InputError(f"atom ID {atoms.id[np.isin(atoms.id, system.id)][0]} exists in both systems")
         theirs = atoms.per_atom()
         _take(system, {name: _behind(a, theirs[name], name in slotted) for name, a in system.per_atom().items()})

@@ -78,6 +78,16 @@ def test_memory_has_the_layout_of_the_compiler():
     assert x[1, 2] == -1.0
 
 
+def test_memory_takes_other_values_of_the_same_types():
+    x, y = np.arange(3.0), np.arange(4.0)
+    block = packed.Block((x, (1, y), 2.5))
+    memory = block.memory
+    assert block.take((x, (7, x), 0.5)) and block.memory is memory
+    assert memory.tolist() == packed.block((x, (7, x), 0.5)).tolist()
+    for other in ((x, (7, x)), (x, (7, x.astype(np.float32)), 0.5), (x, x, 0.5), (x, (7, x, x), 0.5), (x, (7.0, x), 0.5)):
+        assert not packed.Block((x, (7, x), 0.5)).take(other)
+
+
 class Pair(NamedTuple):
     left: np.ndarray
     right: np.ndarray

@@ -11,7 +11,10 @@ from water_molecule import BOX, water
 from wheel import ask
 
 import asemd.fix as fixes
+from asemd import relist
+from asemd.engine import Engine
 from asemd.errors import InputError
+from asemd.kernels import trial_cells
 from asemd.random import ParkMiller
 
 ATOMS = """
@@ -179,6 +182,62 @@ def test_excess_potential_of_a_gas():
                                  fill="region none", pair=LJ, more="", types="1", steps=1, fix=WIDOM))
     fix = session.scene.fixes["g"]
     assert [fix.vector(i) for i in (1, 2)] == [0.0, 1.0]
+
+
+@pytest.mark.skipif(relist.packed.WITHOUT_COMPILER, reason="nothing is compiled")
+def test_lists_after_exchanges_are_those_of_python(monkeypatch):
+    """The loop builds them by itself; digits do not depend on who builds."""
+    text, built, rebuild = atoms(GCMC.replace("gcmc 1", "gcmc 2"), steps=21), [], Engine.rebuild
+    monkeypatch.setattr(Engine, "rebuild", lambda engine: built.append(1) or rebuild(engine))
+    quick = asemd(text)
+    by_python = len(built)
+    monkeypatch.setattr(relist, "possible", lambda engine: False)
+    anew = asemd(text)
+    assert quick.scene.fixes["g"].vector(4) > 2 and quick.scene.fixes["g"].vector(6) > 2
+    assert quick.loop.engine.builds == anew.loop.engine.builds > 10
+    assert by_python < 5 < len(built) - by_python
+    for name in ("id", "x", "v", "f", "image"):
+        assert getattr(quick.scene.system, name).tolist() == getattr(anew.scene.system, name).tolist()
+
+
+@pytest.mark.parametrize("lengths", [(3.0, 4.0, 9.0), (2.1, 40.0, 2.5)])
+def test_cells_know_who_is_around(lengths):
+    """While atoms come, go and move."""
+    rng, n, cutoff = np.random.default_rng(7), 60, 1.0
+    origin, edges, reach = np.array([-1.0, 2.0, 0.5]), np.array(lengths), cutoff / np.array(lengths)
+    x, near, r2s = np.zeros((200, 3), order="F"), np.zeros(200, int), np.zeros(200)
+    x[:n] = origin + rng.random((n, 3)) * edges
+    counts = trial_cells.grid(n, reach)
+    assert (counts * cutoff <= edges).all() and 1 < counts.prod() <= n
+    cells = origin, np.diag(1.0 / edges), counts, np.zeros(counts.prod(), int), np.zeros(200, int)
+    trial_cells.fill(n, x, *cells)
+    found = 0
+    for _ in range(60):
+        what, i = rng.integers(3), rng.integers(n)
+        if what == 0:
+            x[n] = origin + rng.random(3) * edges
+            trial_cells.enter(n, x, *cells)
+            n += 1
+        else:
+            trial_cells.leave(i, x, *cells)
+            if what == 1:
+                x[i] = origin + rng.random(3) * edges
+            else:
+                n -= 1
+                if i < n:
+                    trial_cells.leave(n, x, *cells)
+                    x[i] = x[n]
+            if i < n:
+                trial_cells.enter(i, x, *cells)
+        p = origin + (3.0 * rng.random(3) - 1.0) * edges
+        d = p - x[:n]
+        d -= np.rint(d / edges) * edges
+        count = trial_cells.around(p, x, cutoff**2, reach, edges, near, r2s, *cells)
+        assert near[:count].tolist() == np.flatnonzero((d * d).sum(axis=1) < cutoff**2).tolist()
+        assert r2s[:count] == pytest.approx((d * d).sum(axis=1)[near[:count]])
+        found += count
+    assert found > 60
+    assert not trial_cells.grid(n, np.array([0.1, 0.5, 0.1])).any()
 
 
 def test_goes_on_from_a_restart(tmp_path, monkeypatch):

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.fix import NEVER
+from asemd.kernels.rows import of_ids
 
 SPREAD = 64     # the largest id over the number of atoms
 
@@ -39,10 +40,8 @@ class AtomOrder:
             self.remove(self.ids[~np.isin(self.ids, system.id)])
             self.ids = np.concatenate([self.ids, system.id[~np.isin(system.id, self.ids)]])
             return system.index_of(self.ids) if len(self.ids) else np.zeros(0, np.int64)
-        row_of = np.full(largest + 1, -1)
-        row_of[system.id] = np.arange(system.n)
-        rows = row_of[self.ids]
-        if rows.min(initial=0) < 0:
+        row_of, rows = np.full(largest + 1, -1), np.empty(len(self.ids), np.int64)
+        if of_ids(system.id, self.ids, row_of, rows) < len(rows):
             self.remove(self.ids[rows < 0])
             rows = row_of[self.ids]
         if len(rows) < system.n:

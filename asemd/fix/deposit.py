@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from copy import copy
 
 import numpy as np
 
@@ -255,7 +254,8 @@ class Deposit(Fix):
         if self.single is None:
             self.single = System(box=system.box, x=x[None], type=np.array([self.kind]), units=system.units, dimension=system.dimension,
                                  counts=dict(system.counts), **fresh(system.atom_style, 1))
-        one = copy(self.single)
+        one = object.__new__(System)
+        vars(one).update(vars(self.single))
         one.box, one.x, one.v, one.id = system.box, x[None], np.zeros((1, 3)), np.ones(1, np.int64)
         return one
 

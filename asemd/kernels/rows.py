@@ -23,6 +23,18 @@ def of_rows(values, rows, out):
 
 
 @njit(cache=True, nogil=True)
+def of_ids(there, ids, table, rows):
+    """`rows` of `ids` among the ids `there`, -1 for those that are not; returns how many are. `table` has -1 for each id there may be."""
+    found = 0
+    for r in range(len(there)):
+        table[np.uint64(there[r])] = r
+    for k in range(len(ids)):
+        rows[k] = table[np.uint64(ids[k])]
+        found += rows[k] >= 0
+    return found
+
+
+@njit(cache=True, nogil=True)
 def of_items(x, atoms, out):
     """Positions ``x (n, 3)`` of the atoms of items ``atoms (m, k)``, one item after the other, as `out (3, m k)`."""
     k = atoms.shape[1]
