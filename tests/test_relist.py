@@ -83,7 +83,7 @@ def test_motion_has_the_same_digits(name, threads, monkeypatch, tmp_path):
 
 @pytest.mark.parametrize("sort", [0, 1000])
 def test_fixes_that_wait_for_their_step_leave_lists_to_the_loop(sort):
-    """Only the lists before which a reservoir acts are made by Python, and those before which it sorts."""
+    """Those before which a reservoir acts, too."""
     from asemd.fix.gcmc import GCMC
     fix = GCMC(every=50, exchanges=3, moves=3, kind=1, seed=7, temperature=1.4, mu=-3.0, displace=0.3)
     fix.storage.every = sort
@@ -97,7 +97,7 @@ def test_fixes_that_wait_for_their_step_leave_lists_to_the_loop(sort):
         rebuild()
     loop.engine.rebuild = counted
     loop.advance(160)
-    assert made == [1, 51, 101, 151] and loop.engine.builds - before > len(made) + 5
+    assert not made and loop.engine.builds - before > 9
 
 
 def test_arrays_that_are_too_small_grow():
