@@ -280,8 +280,7 @@ class Loop:
         c[:] = [self.step, last, resume, self._ago, s.every, s.delay, s.check, self.begin, self.end, 0, energy, self._virial_every,
                   s.outdated, bool(e.box_moves), forced, 0, 0]
         x[tl.DT], x[tl.TRIGGER], (x[tl.FARTHEST], x[tl.UNTIL]) = self.dt, (0.5 * s.skin) ** 2, self.watchdog.patience()
-        self._sync[:] = 0
-        status = [0] * e.threads
+        self._sync[:], status = 0, [0] * e.threads
         run, (calls, starts) = tl.module().run, self._calls.table(tl.KINDS, e.state, self.fix_data)
         terms = [self._terms(t) for t in range(e.threads)]
         acts = any(f.next_list(self.step) <= last for f in self._about_lists)
