@@ -12,6 +12,7 @@ from lj_cell import BASE
 
 import asemd
 from asemd import cli
+from asemd.errors import InputError
 from asemd.lammps import command_line
 
 
@@ -122,6 +123,16 @@ def test_read_stops_before_the_first_run(script):
     atoms = asemd.read("in.r")
     assert len(atoms) == 32 and atoms.get_potential_energy() == pytest.approx(32 * -5.5046614, rel=1e-6)
     assert not {"d.txt", "touched", "p.txt", "log.lammps"} & set(os.listdir(script))
+
+
+def test_read_takes_variables(script):
+    (script / "in.v").write_text(BASE.replace("mass 1 ", "variable m index 2.0\nvariable which index a b\nmass 1 ${m} # "))
+    path = script / "in.v"
+    assert asemd.read(path).get_masses()[0] == 2.0
+    assert asemd.read(path, variables={"m": 3.5, "which": ["c", "d"]}).get_masses()[0] == 3.5
+    (script / "x.data").write_text("x\n\n0 atoms\n1 atom types\n0 1 xlo xhi\n")
+    with pytest.raises(InputError, match="variables are for scripts"):
+        asemd.read(script / "x.data", variables={"m": 1})
 
 
 def test_import_is_light():

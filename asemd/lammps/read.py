@@ -4,14 +4,17 @@ from __future__ import annotations
 import gzip
 import os
 import re
+from collections.abc import Mapping, Sequence
 
 from asemd.errors import InputError, Where
 from asemd.lammps.script import Command
+from asemd.lammps.switches import Switches
 
 HEAD = 200      # lines that show what a file is
 
 
-def read(path: str | os.PathLike, units: str | None = None, atom_style: str | None = None):
+def read(path: str | os.PathLike, units: str | None = None, atom_style: str | None = None,
+         variables: Mapping[str, object] | None = None):
     """Atoms of a LAMMPS input script or data file.
 
     A script is executed up to, not including, the first run, minimize or rerun that is reached. It writes no log and no dump and runs
@@ -23,6 +26,9 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
         Script or data file (also ``.gz``), told apart by what is in it. Relative paths in a script are relative to the working directory.
     units, atom_style : str, optional
         For a data file; by default what it says itself, else ``lj`` and what fits the number of columns.
+    variables : mapping, optional
+        For a script: variables of style index, as the switch ``-var`` sets them; a value, or a sequence of values. The script's own
+        ``variable NAME index ...`` then gives way.
 
     Returns
     -------
@@ -37,8 +43,10 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
     from asemd.lammps.session import Session, Stop
     path = os.fspath(path)
     lines = head(path)
-    session = Session(passive=True)
+    session = Session(switches=Switches(variables=[(name, _values(v)) for name, v in (variables or {}).items()]), passive=True)
     if is_data(lines):
+        if variables:
+            raise InputError(f"read: variables are for scripts, {path} is a data file")
         session.call("units", [units or hint(lines[:1], r"units = (\w+)") or "lj"])
         session.call("atom_style", [*atom_style.split()] if atom_style else [hint(lines, r"^\s*Atoms\s*#\s*(\w+)") or guess_style(lines)])
         session.execute(Command(f"read_data '{path}' nocoeff", Where("", 1, f"read_data {path}")))
@@ -52,6 +60,12 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
     if session.scene.system is None:
         raise InputError(f"read: {path} defines no atoms before its first run")
     return session.scene.to_atoms()
+
+
+def _values(given: object) -> list[str]:
+    """The words of a variable."""
+    several = isinstance(given, Sequence) and not isinstance(given, str)
+    return [str(v) for v in given] if several else [str(given)]
 
 
 def head(path: str) -> list[str]:
