@@ -59,6 +59,7 @@ def units_of(style):
     return units.get("metal" if style.name == "mesocnt" else "lj")       # LAMMPS refuses mesocnt in units lj
 
 
+@pytest.mark.part(4)
 @pytest.mark.parametrize(("category", "name", "check"), [(c, n, k) for c, n in STYLES for k in styles.checks_of(registry.find(c, n))])
 def test_shipped_check(category, name, check):
     styles.check_style(registry.find(category, name), [check])

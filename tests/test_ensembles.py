@@ -44,10 +44,11 @@ def run(folder: Path, *options: str) -> dict:
 def test_three_ensembles_of_a_liquid(tmp_path):
     result = run(tmp_path, "--quick", "--processes", "1")
     for row in result["kinetic"]:
-        assert row["ok"] != row["control"], row         # the thermostat that is known to be wrong is found out
+        # five standard errors, for paths differ between processors; the thermostat that is known to be wrong is found out
+        assert (max(row["off mean"], row["off width"]) > 5) == row["control"], row
         assert row["T of mean"] == pytest.approx(row["T"], rel=0.02) and row["samples"] > 40
     for row in result["ratios"]:
-        assert row["ok"] and row["slope"] == pytest.approx(1.0, abs=4 * row["error"]), row
+        assert row["slope"] == pytest.approx(1.0, abs=5 * row["error"]), row
 
 
 @compiled
