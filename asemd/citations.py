@@ -46,16 +46,17 @@ class Paper:
         return any(fnmatchcase(style, pattern) for pattern in self.styles.split())
 
     def __str__(self) -> str:
-        where = f"{self.journal} {self.volume}, {self.page} ({self.year})" if self.volume else f"{self.journal} ({self.year})"
-        return f"{self.authors.replace(' and others', ' et al.')}, {where}" + (f", https://doi.org/{self.doi}" if self.doi else "")
+        where = ", ".join(part for part in (f"{self.journal} {self.volume}".strip(), self.page) if part)
+        known = f"{self.authors.replace(' and others', ' et al.')}, {where} ({self.year})"
+        return f"{known}, https://doi.org/{self.doi}" if self.doi else known
 
     def bibtex(self) -> str:
         """The entry for BibTeX; titles are where the DOI leads."""
-        names = " and ".join(a.strip() for a in self.authors.replace(" and others", ", others").split(","))
-        title = [("title", self.journal)] if not self.volume else [("journal", self.journal), ("volume", self.volume), ("pages", self.page)]
-        fields = [("author", names), *title, ("year", self.year), *([("doi", self.doi)] if self.doi else [])]
-        kind = "article" if self.volume else "book"
-        lines = [f"  {name} = {{{value if name == 'doi' else value.translate(SPECIAL)}}}," for name, value in fields]
+        names = " and ".join(_last_first(a.strip()) for a in self.authors.replace(" and others", ", others").split(","))
+        kind, where = ("article", "journal") if self.volume else ("inproceedings", "booktitle") if self.page else ("book", "title")
+        fields = {"author": names, where: self.journal, "volume": self.volume, "pages": self.page.replace("-", "--"), "year": self.year,
+                  "doi": self.doi}
+        lines = [f"  {name} = {{{value if name == 'doi' else value.translate(SPECIAL)}}}," for name, value in fields.items() if value]
         return "\n".join([f"@{kind}{{{self.key},", *lines, "}"])
 
 
@@ -96,6 +97,13 @@ class Citations:
         """Everything, JSON-able."""
         return {"papers": {what: [vars(p) for p in papers] for what, papers in self.papers.items()}, "files": self.files,
                 "without": self.without}
+
+
+def _last_first(name: str) -> str:
+    """A name for BibTeX, which would take the ``III`` at the end of one for the surname."""
+    given, _, end = name.rpartition(" ")
+    first, _, last = given.rpartition(" ")
+    return f"{last}, {end}, {first}" if end in ("Jr.", "III") else name
 
 
 @cache
