@@ -29,7 +29,7 @@ thermo 10
 RUNS = "run 30\nrun 17\nrun 23\n"
 CASES = {
     "ave/time": """
-fix a all ave/time 2 3 10 c_t c_t[1] v_v c_thermo_press[*] file a1.txt
+fix a all ave/time 2 3 10 c_t c_t[1] v_v c_thermo_press[*] file a1.txt off 5
 fix b all ave/time 5 2 10 c_t mode vector file a2.txt
 fix b2 all ave/time 5 2 10 c_t v_vv[1] c_t[*] mode scalar file a22.txt ave running
 fix c all ave/time 5 2 10 c_t file a3.txt ave window 2 start 20 format " %10.3f" title1 "# hello" title2 "# two"
@@ -44,6 +44,7 @@ thermo_style custom step temp f_a[1] f_a[2] f_c f_d[1] f_b[1] f_y2[1][2] f_y3[3]
     "vector and print": """
 fix p all print 10 "step $(step) T $(c_t:%.8f)" file p.txt screen no
 fix p2 all print 10 "step $(step) pe $(c_pe:%.8f)" append p3.txt title hello
+fix p4 all print 10 "step $(step)" append p5.txt
 variable next equal step+7
 fix p3 all print v_next "step $(step)" file p4.txt
 fix vec all vector 5 c_t

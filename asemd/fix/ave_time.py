@@ -85,17 +85,9 @@ class AveTime(Sampled):
         mode = choice(options.get("mode", ["scalar"])[0], ("scalar", "vector"), f"{what} mode")
         if not names:
             raise InputError(f"{what} needs at least one value after Nfreq")
-        for k in off:
-            if not 1 <= k <= len(names):
-                raise InputError(f"{what}: off {k}: there are {len(names)} values")
-        wide, shifted = [], []
-        for k, name in enumerate(names, 1):
-            written_out = expand([name], session, vectors=mode == "vector")
-            shifted += [len(wide) + j for j in range(1, len(written_out) + 1)] if k in off else []
-            wide += written_out
-        values = [read(w, session, what).check(mode, what) for w in wide]
+        values = [read(w, session, what).check(mode, what) for w in expand(names, session, vectors=mode == "vector")]
         ave, window = sampled.read_ave(options.get("ave", ["one"]), what)
-        fix = cls(group, values, every, repeat, freq, mode, ave, window, whole(options.get("start", ["0"])[0], f"{what} start"), shifted)
+        fix = cls(group, values, every, repeat, freq, mode, ave, window, whole(options.get("start", ["0"])[0], f"{what} start"), off)
         fix.session, fix.words = session, list(words)
         sampled.check_frequencies(fix)
         if len({v.extensive(mode) for v in values}) > 1 and mode == "vector" and len(values) > 1:

@@ -63,8 +63,7 @@ class Print(Fix):
         if path:
             fix.file = OutputFile(path, what, "append" in options, session.passive)
             title = options.get("title", [f"# Fix print output for fix {getattr(session, 'defining', '')}"])[0]
-            if "append" not in options or "title" in options:
-                fix.file.write(title + "\n")
+            fix.file.write(title + "\n")                           # also in a file that is appended to
         fix.begin(session.scene.step)
         return fix
 
