@@ -5,16 +5,18 @@ python run.py [--folder umbrella] [--windows 24] [--copies 40] [--steps 20000]
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
 import typer
 from ase import units
-from scipy.optimize import minimize
-from scipy.special import logsumexp
 
 from asemd import Atoms, ForceField, MolecularDynamics, Topology
 from asemd.fix import BAOAB
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from wham import wham  # noqa: E402
 
 T = 300.0
 KT = units.kB * T
@@ -47,18 +49,6 @@ def sample(centres: np.ndarray, copies: int, steps: int) -> np.ndarray:
     md.attach(lambda: seen.append(np.linalg.norm(atoms.positions[1::2] - atoms.positions[::2], axis=1)), interval=20)
     md.run(steps)
     return np.array(seen).T.reshape(windows, -1)
-
-
-def wham(histograms: np.ndarray, bias: np.ndarray) -> np.ndarray:
-    """Free energy of the bins (kT) from counts and bias energies (kT), both (windows, bins): the minimum of a convex function."""
-    seen, counts = histograms.sum(axis=0), histograms.sum(axis=1)
-
-    def function(f):
-        total = logsumexp(f[:, None] - bias, axis=0, b=counts[:, None])
-        return seen @ total - counts @ f, (np.exp(f[:, None] - bias - total) * counts[:, None]) @ seen - counts
-    f = minimize(function, np.zeros(len(bias)), jac=True, method="L-BFGS-B", options={"maxiter": 5000, "ftol": 1e-15, "gtol": 1e-3}).x
-    energy = logsumexp(f[:, None] - bias, axis=0, b=counts[:, None]) - np.log(seen)
-    return energy - energy.min()
 
 
 def draw(result: dict, path: Path) -> None:
