@@ -1,4 +1,4 @@
-"""Workflows that are LAMMPS scripts with a picture: small versions give the numbers of their README files, and numbers known from elsewhere."""
+"""Workflows that are LAMMPS scripts: small versions give the numbers of their README files, and numbers known from elsewhere."""
 from __future__ import annotations
 
 import pytest
