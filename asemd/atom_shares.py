@@ -10,6 +10,7 @@ from asemd.embedded_term import EmbeddedTerm
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels import rows as by_row
 from asemd.kernels.cluster import CLUSTER
+from asemd.kernels.hooks import bound
 from asemd.kernels.state import aligned
 from asemd.manybody_term import ManyBodyTerm
 from asemd.result import Result
@@ -80,7 +81,8 @@ def _of_pairs(engine: Engine, t: PairTerm | PairRowsTerm, energies: bool, virial
     """Pair terms over clusters and over rows have kernels of their own for it, which write no forces."""
     seen = t.sighted(engine) if isinstance(t, OnSites) else engine
     room, (kernel, arguments) = engine.shares, (_rows if isinstance(t, PairRowsTerm) else _clusters)(seen, t, energies, virials)
-    engine.parallel(lambda tid: kernel(*arguments(tid), room.front[tid], room.back[tid]))
+    calls = [bound(kernel, (*arguments(tid), room.front[tid], room.back[tid])) for tid in range(engine.threads)]
+    engine.parallel(lambda tid: calls[tid]())
     scale = 0.5 * (1.0 if t.owner.is_plain else float(t.owner.use.factor))
     column = -1 if not energies else 0 if isinstance(t, PairTerm) and not virials else 3
     by_row.of_tables(engine.slot_of, room.front, room.back, scale, column, virials, energy, virial)
@@ -128,7 +130,8 @@ def _of_others(engine: Engine, t, energies: bool, virials: bool, energy: np.ndar
             t.rebuild(engine)
         f, many = t.kernel(True, True), isinstance(t, ManyBodyTerm)
         given = [t.arguments(engine, tid, shares=True) if many else t.arguments(engine, tid) for tid in range(engine.threads)]
-        engine.parallel(lambda tid: f(*given[tid]))
+        calls = [bound(f, arguments, 2) for arguments in given]
+        engine.parallel(lambda tid: calls[tid]())
         scale = float(t.owner.use.factor) if many else 1.0
         by_row.of_columns(engine.slot_of, engine.atom_energy, engine.atom_virial, scale, energy, virial)
     finally:

@@ -123,7 +123,7 @@ class ReleasedPairTerm(PairListTerm):
         bonds.released.append(self)
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom, broken=True)[0]
+        return pair_kernels.list_kernel(self.style, self.parts, wanted=energy or per_atom, broken=True)[0]
 
     def rebuild(self, engine):
         """Nothing yet: `follow` comes when the bonds are in their slots."""

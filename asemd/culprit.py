@@ -10,6 +10,7 @@ from asemd import units as unit_styles
 from asemd.compute._items import evaluate
 from asemd.errors import AsemdError
 from asemd.hessian import ListEngine
+from asemd.kernels.hooks import bound
 from asemd.term import PairListTerm
 
 UNUSUAL = 0.02          # of its length: how far the pull of an interaction moves an atom in one step, from which on it is named
@@ -163,7 +164,7 @@ def _closest(engine, term: PairListTerm, scale) -> list[Item]:
         i, j = term.i[m], term.j[m]
         engine.buffers[0][:, [i, j]] = 0.0
         arguments[10:12] = m, m + 1
-        kernel(*arguments)
+        bound(kernel, tuple(arguments), 1)()
         return float(engine.acc[0, term.index, :2].sum()), engine.buffers[0, :3][:, [i, j]].T.copy()
     best, item = -1.0, None
     for m in near.tolist():

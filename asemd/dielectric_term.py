@@ -20,8 +20,8 @@ def kernel(style, energy: bool, per_atom: bool):
     b.constant("ENERGY", energy)
     b.constant("PER_ATOM", per_atom)
     paste_one(b, style, style.parts, apart=True)
-    for f in (pair_sums.eight, pair_sums.add, pair_dielectric.dielectric_forces):
-        b.function(f)
+    pair_sums.use(b, "eight", "add")
+    b.function(pair_dielectric.dielectric_forces)
     return b.build().dielectric_forces
 
 

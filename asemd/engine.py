@@ -14,6 +14,7 @@ from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
+from asemd.kernels.hooks import bound
 from asemd.kernels.rows import of_slots
 from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import vector
@@ -99,6 +100,7 @@ class Engine:
                      if self.mode == "cluster" else PlainList(self.reach))
         self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
         self.state, self._offset, self.ns = None, None, 0
+        self._bound: dict[bool, tuple] = {}
         self.listed: tuple | None = None      # the present list as plain pairs, if anything asked for it
 
     def list_for(self, n: int) -> tuple[str, bool, bool, bool, str]:
@@ -294,6 +296,16 @@ class Engine:
             self.thread_arguments = [tuple(t.arguments(self, i) for t in self.terms) for i in range(self.threads)]
         return self.thread_arguments[tid]
 
+    def _calls(self, energy: bool) -> list[list]:
+        """For each thread the calls of the kernels of all terms."""
+        kernels = [t.kernel(energy, False) for t in self.terms]
+        self.arguments(0)
+        known = self._bound.get(energy)
+        if known is None or known[0] is not self.thread_arguments or known[1] != kernels:
+            calls = [[bound(f, a, int(energy)) for f, a in zip(kernels, mine, strict=True)] for mine in self.thread_arguments]
+            known = self._bound[energy] = self.thread_arguments, kernels, calls
+        return known[2]
+
     # ---- forces -------------------------------------------------------------------------------------------------------------------------
     def forces(self, energy: bool = True) -> None:
         """Forces of the present slots into ``state.f``; energies and virials into `acc`."""
@@ -302,13 +314,13 @@ class Engine:
             self.acc[:] = 0.0
         if self.settings.outdated:
             self.farthest[:] = self.k.displacements(self.state.x, self.held, self.ns, self.moved)
-        calls, spent = [t.kernel(energy, False) for t in self.terms], np.zeros(len(self.terms))
+        calls, spent = self._calls(energy), np.zeros(len(self.terms))
 
         def work(tid):
             self.k.clear(self.buffers[tid], self.ns)
-            for n, (f, a) in enumerate(zip(calls, self.arguments(tid))):
+            for n, call in enumerate(calls[tid]):
                 began = time.perf_counter()
-                f(*a)
+                call()
                 if tid == 0:
                     spent[n] += time.perf_counter() - began
         self.parallel(work)

@@ -15,6 +15,7 @@ from asemd.curvatures import SHIFT, STEP, bonded_items, of_list
 from asemd.embedded_curvature import of_embedded
 from asemd.engine import Engine
 from asemd.errors import InputError
+from asemd.kernels.hooks import bound
 from asemd.loads import Maps, Potential
 from asemd.manybody_term import ManyBodyTerm
 from asemd.own_term import OwnTerm
@@ -102,7 +103,7 @@ def _of_forces(engine, term):
             for count, weight in SHIFT:
                 s.x[axis, slot] = here + count * STEP
                 f[:] = 0.0
-                kernel(*term.arguments(engine, 0))
+                bound(kernel, term.arguments(engine, 0))()
                 column[rows] -= weight / STEP * f[:3, slots].T
             s.x[axis, slot] = here
             out.append(sparse.csr_matrix(column.reshape(1, -1)))

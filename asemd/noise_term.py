@@ -20,7 +20,8 @@ def kernel(energy: bool, per_atom: bool, across: bool):
     b = Builder("pairs with friction and noise")
     for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, ACROSS=across).items():
         b.constant(name, value)
-    for f in (pair_sums.eight, pair_sums.add, pair_sums.halve, marsaglia.uniform, marsaglia.gaussian, pair_noise.noisy_forces):
+    pair_sums.use(b, "eight", "add", "halve")
+    for f in (marsaglia.uniform, marsaglia.gaussian, pair_noise.noisy_forces):
         b.function(f)
     return b.build().noisy_forces
 

@@ -24,8 +24,8 @@ def dipole_kernel(style, energy: bool, per_atom: bool):
     for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FIRST=last, SCALE=last + 2 + scale, SCALED=scale >= 0).items():
         b.constant(key, value)
     b.function(style.radial, "radial")
-    for f in (pair_sums.eight, pair_sums.add, pair_sums.halve, pair_dipole.dipole_forces):
-        b.function(f)
+    pair_sums.use(b, "eight", "add", "halve")
+    b.function(pair_dipole.dipole_forces)
     return b.build().dipole_forces
 
 
@@ -67,7 +67,8 @@ def ellipsoid_kernel(style, energy: bool, per_atom: bool):
            "    return e - rows[1, ti, tj], -2.0 * d")
     for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FORM=4).items():
         b.constant(key, value)
-    for f in (pair_sums.eight, pair_sums.add, pair_sums.halve, turn_axes, pair_ellipsoid.lay, pair_ellipsoid.times, pair_ellipsoid.inverse,
+    pair_sums.use(b, "eight", "add", "halve")
+    for f in (turn_axes, pair_ellipsoid.lay, pair_ellipsoid.times, pair_ellipsoid.inverse,
               pair_ellipsoid.skew, pair_ellipsoid.trace):
         b.function(f)
     b.function(style.potential, "potential")

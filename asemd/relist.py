@@ -46,12 +46,12 @@ class Relist:
         given = [engine.thread_arguments, engine.state, engine.system.image, engine.varies, *(getattr(engine, name) for name in BY_ROW)]
         if len(given) != len(self._given) or any(a is not b for a, b in zip(given, self._given)):
             found, self._given = calls(engine, self.live) or [], given
-            functions = [(function, thread) for function, _, thread in found]
-            if functions != self._functions or not all(block.take(values) for block, (_, values, _) in zip(self._blocks, found)):
-                self._functions, self._blocks = functions, [packed.Block(values) for _, values, _ in found]
+            functions = [function for function, _ in found]
+            if functions != self._functions or not all(block.take(values) for block, (_, values) in zip(self._blocks, found)):
+                self._functions, self._blocks = functions, [packed.Block(values) for _, values in found]
                 self._table = np.empty((len(found), 2), packed.HANDLE)
-                for row, block, (function, values, thread) in zip(self._table, self._blocks, found):
-                    row[:] = kernel_address(function, packed.text_of_arguments(values), thread), packed.handle(block.memory)
+                for row, block, (function, values) in zip(self._table, self._blocks, found):
+                    row[:] = kernel_address(function, packed.text_of_arguments(values)), packed.handle(block.memory)
         return self._table
 
     def ready(self, engine) -> bool:
@@ -75,8 +75,8 @@ def possible(engine) -> bool:
                 or engine.bonds.terms or c.shares is None or any(engine.rows) or len(engine.exclusions.rules) or c.gaps)
 
 
-def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple, bool]] | None:
-    """Function, arguments, and whether it takes the thread, of each call; the list first. None where only Python can build it."""
+def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple]] | None:
+    """Function and arguments of each call; the list first. None where only Python can build it."""
     c, s, rules = engine.list, engine.state, engine.exclusions
     if not possible(engine) or not all(map(follows, engine.terms)):
         return None
@@ -92,9 +92,9 @@ def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple, bool]] | None
     rows = engine.rows.get("", NO_ROWS)
     special = relist.Special(*rules.left_out, *rules.rule_arrays, rows.start, rows.owners, rows.neighbors, rows.edges)
     module = relist.module(engine.k, not engine.sparse and rules.partners is not None, engine.sparse)
-    found = [(module.relist, (live, atoms, space, arrays, special), True)]
+    found = [(module.relist, (live, atoms, space, arrays, special))]
     for steps in [term.relisted(engine) for term in engine.terms]:
         if steps is None:
             return None
-        found += [(getattr(module, name), (live, *arguments), False) for name, arguments in steps]
+        found += [(getattr(module, name), (live, *arguments)) for name, arguments in steps]
     return found

@@ -20,7 +20,7 @@ from asemd.cluster_term import PairTerm
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
-from asemd.kernels.hooks import Calls
+from asemd.kernels.hooks import Calls, bound
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
 from asemd.respa_pieces import ShortClusterTerm, ShortListTerm
@@ -184,6 +184,7 @@ class RespaLoop(Loop):
         e, at = self.engine, self.levels.level
         self._work: list[list] = [[] for _ in range(self.levels.n)]
         self._whole, self._pieces = [], []
+        self._calls: dict[tuple[int, bool], list] = {}
         for t in e.terms:
             if t.category != "pair" or getattr(t, "pairs", "") == "one_four":
                 self._work[at["dihedral" if t.category == "pair" else t.category] - 1].append(t)
@@ -222,17 +223,23 @@ class RespaLoop(Loop):
         return new
 
     def _new_lists(self) -> None:
-        """After each list build: the pieces' lists, and kernels with their arguments by level, without and with energy."""
+        """After each list build: the pieces' lists; kernels get other arguments."""
         e = self.engine
         for piece in self._pieces:
             piece.rebuild(e)
         e.changed = False       # the pieces' buffers, perhaps
-        threads = range(e.threads)
+        self._calls.clear()
 
-        def calls(terms, energy):
-            return [(t, t.kernel(energy and t not in self._pieces, False), [t.arguments(e, tid) for tid in threads]) for t in terms]
-        self._kernels = [[calls(terms, energy) for energy in (False, True)] for terms in self._work]
-        self._whole_calls = calls(self._whole, True)
+    def _kernels(self, level: int, energy: bool) -> list[tuple]:
+        """Terms of one level, or of no level (0) but as a whole, and the calls of their kernels by thread."""
+        if (level, energy) not in self._calls:
+            e, found = self.engine, []
+            for t in self._work[level - 1] if level else self._whole:
+                wanted = energy and t not in self._pieces
+                kernel = t.kernel(wanted, False)
+                found.append((t, [bound(kernel, t.arguments(e, tid), int(wanted)) for tid in range(e.threads)]))
+            self._calls[level, energy] = found
+        return self._calls[level, energy]
 
     # ---- steps --------------------------------------------------------------------------------------------------------------------------
     def _python_step(self, energy: bool) -> None:
@@ -318,14 +325,14 @@ class RespaLoop(Loop):
 
     def _forces(self, level: int, energy: bool, fixes) -> None:
         """The forces of one level, with what `fixes` do to them; of its terms, energies and virials too."""
-        e, calls = self.engine, self._kernels[level - 1][energy]
+        e, calls = self.engine, self._kernels(level, energy)
         if self.settings.outdated:
             e.farthest[:] = e.k.displacements(e.state.x, e.held, e.ns, e.moved)
         if energy:
             e.acc[:, [t.index for t in self._work[level - 1] if t not in self._pieces]] = 0.0
             if level == self.levels.level.get("outer"):
                 e.acc[:, [t.index for t in self._whole]] = 0.0
-                self._compute(self._whole_calls)
+                self._compute(self._kernels(0, True))
         self._compute(calls)
         began, before = time.perf_counter(), self.state.virial.copy()
         for n in fixes:
@@ -341,17 +348,17 @@ class RespaLoop(Loop):
 
         def work(tid):
             e.k.clear(e.buffers[tid], e.ns)
-            for k, (_, kernel, arguments) in enumerate(calls):
+            for k, (_, call) in enumerate(calls):
                 began = time.perf_counter()
-                kernel(*arguments[tid])
+                call[tid]()
                 if tid == 0:
                     spent[k] += time.perf_counter() - began
         e.parallel(work)
         if e.threads > 1:
             e.k.add_buffers(e.buffers, e.ns)
-        for (t, _, _), seconds in zip(calls, spent):
+        for (t, _), seconds in zip(calls, spent):
             e.timings["Pair" if t.category == "pair" else "Bond"] += seconds
-        for t, _, _ in calls if e.bad[:, :, 0].any() else ():
+        for t, _ in calls if e.bad[:, :, 0].any() else ():
             for found, item, value, _ in e.bad[:, t.index]:
                 if found:
                     e.bad[:] = 0.0

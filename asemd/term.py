@@ -224,7 +224,7 @@ class PairListTerm(Term):
         self.by_atom = owner is not None and np.ndim(owner.use.factor) > 0
 
     def kernel(self, energy, per_atom):
-        return pair_kernels.list_kernel(self.style, self.parts, energy=energy, per_atom=per_atom, factor=self.by_atom, piece=self.piece)[0]
+        return pair_kernels.list_kernel(self.style, self.parts, wanted=energy or per_atom, factor=self.by_atom, piece=self.piece)[0]
 
     def rename(self, new):
         if self.one_four is not None:

@@ -35,6 +35,7 @@ from asemd import style as registry  # noqa: E402
 from asemd import units as unit_styles  # noqa: E402
 from asemd.engine import Engine  # noqa: E402
 from asemd.errors import AsemdError, InputError, SimulationError  # noqa: E402
+from asemd.kernels.hooks import bound  # noqa: E402
 from asemd.lammps import Lammps  # noqa: E402
 from asemd.lammps.command import angle_write, bond_write, dihedral_write  # noqa: E402
 from asemd.lammps.table_write import style_of  # noqa: E402
@@ -195,7 +196,7 @@ class Runner:
         self.terms = [t for t in engine.terms if t.category == category and (category == "pair" or not hasattr(t, "owner"))]
         if not self.terms:
             self.terms = [t for t in engine.terms if t.category == category]
-        self.calls = [(t.kernel(False, False), t.arguments(engine, 0)) for t in self.terms]
+        self.calls = [bound(t.kernel(False, False), t.arguments(engine, 0)) for t in self.terms]
         engine.buffers[0][:] = 0.0
         self.run(1)
         engine.check()
@@ -206,8 +207,8 @@ class Runner:
 
     def run(self, times: int) -> None:
         for _ in range(times):
-            for kernel, arguments in self.calls:
-                kernel(*arguments)
+            for call in self.calls:
+                call()
 
     def take_turn(self) -> None:
         """Time some evaluations."""

@@ -359,8 +359,7 @@ from asemd.kernels import bonded
 from asemd.testing import styles
 s = styles.sample(style.find("bond", "morse"))
 s.run()
-loop = bonded.loop(s.style, energy=True, per_atom=True, periodic=False, orthogonal=True)
-print(sum(loop.stats.cache_hits.values()) + bonded.evaluator(s.style, True).cache_hits, sum(loop.stats.cache_misses.values()))
+print(bonded.evaluator(s.style, True).cache_hits)
 """
 
 
@@ -369,4 +368,4 @@ def test_second_process_compiles_nothing(tmp_path):
     env = {**os.environ, "ASEMD_CACHE_DIR": str(tmp_path)}
     first, second = (subprocess.run([sys.executable, "-c", CACHE], env=env, capture_output=True, text=True, check=True).stdout.split()
                      for _ in range(2))
-    assert first == ["0", "1"] and second == ["2", "0"]
+    assert (first, second) == (["0"], ["1"])

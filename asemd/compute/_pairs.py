@@ -13,6 +13,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.exclusions import Exclusions
 from asemd.kernels import surroundings as loops
+from asemd.kernels.hooks import bound
 from asemd.kernels.rows import extent
 from asemd.kernels.state import cell_arrays
 from asemd.neighbor import BinCell, PlainList, kernels
@@ -220,8 +221,8 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
             chosen = np.flatnonzero(same == (term.molecules == "same"))
         a, b, c = first[chosen], second[chosen], code[chosen]
         radii = [state.system.extra["radius"][rows]] if term.style.sized else []
-        _kernel(term)(x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), rows_of_tables, term.tables.constants,
-                      (*term.tables.arrays, *radii), engine.qqr2e, np.zeros(8), e, np.zeros((6, 2 * m)), bad)
+        bound(_kernel(term), (x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), rows_of_tables, term.tables.constants,
+                              (*term.tables.arrays, *radii), engine.qqr2e, np.zeros(8), e, np.zeros((6, 2 * m)), bad), 2)()
         energy += e[:m] + e[m:]
         force += f[:, :m].T
     return energy, force
@@ -247,7 +248,7 @@ def check_pairwise(terms) -> None:
 
 def _kernel(term):
     from asemd.kernels.pair import list_kernel
-    return list_kernel(term.style, term.style.parts, energy=True, per_atom=True, factor=False)[0]
+    return list_kernel(term.style, term.style.parts, wanted=True)[0]
 
 
 def within_force_cutoff(state, cutoff: float, what: str) -> float:

@@ -7,8 +7,8 @@ coefficients (from P on). Every loop but `gather` and `scatter` runs over neighb
 
 The style comes in as the address of a function of a block: `forces` is compiled once for all styles of the same coordinates.
 `asemd.kernels.bonded` pastes it together with the functions of a coordinate (`gather`, `geometry`, `gradient`, `scatter`; for items with a
-past `recall` and `part`, for the side of a plane `settle`) and writes out the constants: rows, PER_ATOM, SKEW (the cell), HISTORY; see
-there for the arguments.
+past `recall` and `part`, for the side of a plane `settle`) and writes out the constants: rows, SKEW (the cell), HISTORY; see there for
+the arguments.
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from asemd.kernels.algebra import NUMBERS, member, narrow, number, plus, pointer
 
 BLOCK = 64
 VECTORS = STRESS = ATOMS = V1 = F1 = D = SLOPES = E = SHAPE = VALUE = P = 0
-PER_ATOM = SKEW = HISTORY = False
+SKEW = HISTORY = False
 SIDE = 0
 gather = sides_of = skewed = geometry = settle = gradient = scatter = recall = part = None
 
@@ -144,8 +144,10 @@ def shares(items, first, n, b, atom_energy, atom_virial):
                     atom_virial[3 + q, i] += 1.0 / ATOMS * across[q]
 
 
-def forces(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad, function, room, energy):
+def forces(th, x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, atom_virial, bad, function, room):
     narrow()
+    level = th.level
+    energy = min(level, 1)
     kind, b = -1, pointer(room)
     sides = sides_of(cell)
     for first in range(lo, hi, BLOCK):
@@ -158,10 +160,10 @@ def forces(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, 
         if SIDE:
             settle(b, n, first, x, items)
         if HISTORY:
-            recall(b, n, first, lo, hi, items, types, arrays)
+            recall(b, n, first, lo, hi, items, types, arrays, level)
         call(function[energy], n, b, arrays[0])
         if HISTORY:
-            part(b, n, first, items, types, arrays, x)
+            part(b, n, first, items, types, arrays, x, level)
         gradient(b, n)
         count = 0
         for k in range(n):
@@ -171,5 +173,5 @@ def forces(x, out, items, types, cell, coeff, arrays, lo, hi, acc, atom_energy, 
         scatter(out, items, first, n, b)
         if energy:
             sums(b, n, acc)
-        if PER_ATOM:
+        if level > 1:
             shares(items, first, n, b, atom_energy, atom_virial)

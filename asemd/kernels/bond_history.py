@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from asemd.kernels.algebra import between, dot, member, number, put, times, triple
 
-PER_ATOM = BREAKS = False
+BREAKS = False
 V1 = R = D = E = REFERENCE = RATE = 0
 
 
-def recall(b, n, first, lo, hi, items, types, arrays):
+def recall(b, n, first, lo, hi, items, types, arrays, level):
     """What the style takes besides the length."""
     for k in range(n):
         m = first + k
@@ -21,13 +21,13 @@ def recall(b, n, first, lo, hi, items, types, arrays):
             put(b, REFERENCE, k, arrays[-3][m, 0])
         if RATE:
             r, rate = number(b, R, k), arrays[-3][m, 1]
-            if not PER_ATOM:     # which is asked after the step, when velocities have gone on
+            if level < 2:        # shares are asked for after the step, when velocities have gone on
                 rate = dot(triple(b, V1, k), between(arrays[-2], member(items, m, 0), member(items, m, 1))) / r if r > 0.0 else 0.0
                 arrays[-3][m, 1] = rate
             put(b, RATE, k, rate)
 
 
-def part(b, n, first, items, types, arrays, x):
+def part(b, n, first, items, types, arrays, x, level):
     """Bonds that break now (the derivative is not a number), and bonds that broke before, have no forces."""
     for k in range(n):
         m, r, slope = first + k, number(b, R, k), number(b, D, k)
@@ -35,7 +35,7 @@ def part(b, n, first, items, types, arrays, x):
         if BREAKS:
             if not gone and slope != slope and r == r:
                 gone = True
-                if not PER_ATOM:
+                if level < 2:
                     types[m] = 0
                     if REFERENCE:
                         past, i, d = arrays[-3], member(items, m, 0), times(0.5, triple(b, V1, k))
@@ -46,12 +46,12 @@ def part(b, n, first, items, types, arrays, x):
             put(b, E, k, 0.0)
 
 
-def broken_pairs(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
+def broken_pairs(th, x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
                  atom_energy, atom_virial, bad, bond_types):
     """The pairs of bonds: kind 1 while a bond holds, 0 once it is broken."""
-    if not PER_ATOM:
+    if th.level < 2:
         for m in range(lo, hi):
             if bond_types[m] == 0 and code[m] & 3 == 1:
                 code[m] -= 1
-    list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
+    list_forces(th, x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
                 atom_energy, atom_virial, bad)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import functools
-import inspect
 import math
 from collections.abc import Callable, Sequence
 from types import ModuleType
@@ -19,6 +18,7 @@ from numba import config
 from asemd.kernels import algebra, angle, block, bond, bond_history, dihedral, dipole, image, vector_math, vectors, volume
 from asemd.kernels.algebra import ROW
 from asemd.kernels.generate import Builder, plain_source
+from asemd.kernels.hooks import bound
 from asemd.kernels.paste import paste
 from asemd.kernels.state import aligned
 from asemd.style import VECTORS, Style
@@ -134,10 +134,10 @@ def source(style: Style, *, energy: bool) -> Builder:
     return b
 
 
-def loop_source(style: Style, *, per_atom: bool = False, periodic: bool = True, orthogonal: bool = True) -> Builder:
-    """The text of the module that holds `loop` and `loop_energy`, the same for all styles of the same coordinates."""
+def loop_source(style: Style, *, periodic: bool = True, orthogonal: bool = True) -> Builder:
+    """The text of the module that holds `loop`, the same for all styles of the same coordinates."""
     module, straight = _geometry(style), periodic and orthogonal
-    constants = dict(layout(style), PER_ATOM=bool(per_atom), SKEW=periodic and not orthogonal, HISTORY=style.history or module is dipole,
+    constants = dict(layout(style), SKEW=periodic and not orthogonal, HISTORY=style.history or module is dipole,
                      BLOCK=block.BLOCK)
     if module is vectors:
         places = vectors.order(style)
@@ -168,10 +168,7 @@ def _loops(module: ModuleType, past: ModuleType, straight: bool, items: tuple) -
     if constants["HISTORY"]:
         parts |= {"recall": past.recall, "part": past.part}
     texts = [plain_source(f, name, constants=constants) for name, f in parts.items()]
-    b.text(paste(plain_source(block.forces, constants=constants), texts, constants), INNER, cache=False)
-    for name, energy in (("loop", 0), ("loop_energy", 1)):
-        given = ", ".join(inspect.signature(block.forces).parameters).removesuffix(", energy")
-        b.text(f"def {name}({given}):\n    forces({given}, np.int64({energy}))")
+    b.text(paste(plain_source(block.forces, "loop", constants=constants), texts, constants))
     return b
 
 
@@ -193,12 +190,12 @@ def loop(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthogon
     Returns
     -------
     callable
-        As `kernel` returns, with `arrays` from `arrays` and two more arguments at the end: `functions` and `room`.
+        As `kernel` returns, with the `Thread`, whose level says what is wanted, before the other arguments, `arrays` from `arrays`, and two
+        more at the end: `functions` and `room`.
     """
     f = evaluator(style, energy or per_atom)
     functions(style)[int(energy or per_atom)] = f if config.DISABLE_JIT else f.address
-    module = loop_source(style, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal).build()
-    run = module.loop_energy if energy or per_atom else module.loop
+    run = loop_source(style, periodic=periodic, orthogonal=orthogonal).build().loop
     return np.errstate(all="ignore")(run) if config.DISABLE_JIT else run
 
 
@@ -239,9 +236,10 @@ def kernel(style: Style, *, energy: bool, per_atom: bool, periodic: bool, orthog
         first item outside the domain.
     """
     run = loop(style, energy=energy, per_atom=per_atom, periodic=periodic, orthogonal=orthogonal)
+    level = 2 if per_atom else int(energy)
 
     def call(x, out, items, types, cell, coeff, given, *rest):
-        run(x, out, items, types, cell, coeff, arrays(style, given), *rest, functions(style), room(style))
+        bound(run, (x, out, items, types, cell, coeff, arrays(style, given), *rest, functions(style), room(style)), level)()
     return call
 
 

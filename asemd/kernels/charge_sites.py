@@ -8,9 +8,11 @@ from __future__ import annotations
 from functools import cache
 
 from asemd.kernels.generate import Builder
+from asemd.kernels.hooks import takes_thread
 from asemd.kernels.threads import barrier
 
 forces_on_sites = None
+THREAD = False          # whether it takes the `Thread`, too
 
 
 def place(x, first, last, site_of, hydrogens, images, half, vectors, seen):
@@ -47,13 +49,16 @@ def share(f, own, oxygens, hydrogens, half):
             whole[k] += mine[k]
 
 
-def with_sites(meeting, tid, x, f, site_of, oxygens, hydrogens, images, half, vectors, seen, own, arguments):
+def with_sites(th, meeting, tid, x, f, site_of, oxygens, hydrogens, images, half, vectors, seen, own, arguments):
     """What ``forces_on_sites(*arguments)`` adds to `own`, at the positions `seen`, comes to the atoms of `f`."""
     n = x.shape[1]
     place(x, n * tid // meeting.nth, n * (tid + 1) // meeting.nth, site_of, hydrogens, images, half, vectors, seen)
     own[:] = 0.0
     barrier(meeting)
-    forces_on_sites(*arguments)
+    if THREAD:
+        forces_on_sites(th, *arguments)
+    else:
+        forces_on_sites(*arguments)
     share(f, own, oxygens, hydrogens, half)
 
 
@@ -64,6 +69,7 @@ def on_sites(kernel):
     b = Builder("charges on massless sites")
     b.line("from asemd.kernels.threads import barrier")
     b.line(f"from {plain.__module__} import {plain.__name__} as forces_on_sites")
+    b.constant("THREAD", takes_thread(kernel))
     for f in (place, share, with_sites):
         b.function(f)
     return b.build().with_sites

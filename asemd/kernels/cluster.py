@@ -282,7 +282,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     in `hide` the bits of the atoms of the cluster that are beyond reach. With `places` (see `asemd.kernels.gaps`) `widths` are what is
     left of them.
     """
-    n = 0
+    n = np.int64(0)         # not a literal: a function called with one is compiled for it, too
     r2 = reach * reach
     tx, ty, tz = work[0], work[1], work[2]
     wa = widths[0] / nx
@@ -302,7 +302,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         ca = column // ny
         cb = column % ny
         lo0, lo1, lo2, hi0, hi1, hi2 = 1e300, 1e300, 1e300, -1e300, -1e300, -1e300
-        m = 0
+        m = np.int64(0)
         for k in range(ci * CLUSTER, ci * CLUSTER + CLUSTER):
             if row[k] >= 0:
                 m += 1
@@ -318,7 +318,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
                 hi1 = max(hi1, s1)
                 lo2 = min(lo2, s2)
                 hi2 = max(hi2, s2)
-        nt = 0
+        nt = np.int64(0)
         runs = 0        # stretches of candidates are found first and copied then, lest a wrong guess of one's length wait for its root
         all_in = True
         na = near_columns(ca, nx, ra, lo0, hi0, widths[0], reach, periodic[0], index_a, image_a, gap_a)

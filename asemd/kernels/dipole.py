@@ -24,7 +24,7 @@ def geometry(b, n, sides):
         closest(b, V1, k, sides)         # the rest is for `recall`, which knows the dipoles
 
 
-def recall(b, n, first, lo, hi, items, types, arrays):
+def recall(b, n, first, lo, hi, items, types, arrays, level):
     """The angles."""
     row, mu = arrays[-3], arrays[-2]
     for k in range(n):
@@ -36,7 +36,7 @@ def recall(b, n, first, lo, hi, items, types, arrays):
         put(b, SHAPE, k, aa if aa < mm else mm)      # 0: at one place, or no dipole
 
 
-def part(b, n, first, items, types, arrays, x):
+def part(b, n, first, items, types, arrays, x, level):
     """The torques; they take the place of the normals."""
     for k in range(n):
         slope, normal = number(b, D, k), triple(b, NORMAL, k)

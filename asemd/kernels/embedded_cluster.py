@@ -16,6 +16,7 @@ from functools import cache
 
 import numpy as np
 
+from asemd.kernels import pair_sums
 from asemd.kernels.embedded import embedding
 from asemd.kernels.gather import give8, take8
 from asemd.kernels.generate import Builder
@@ -317,6 +318,7 @@ def kernel(*, energy: bool, varying: bool, outdated: bool):
     b.line("place, single = np.uint64, np.float32")
     for name, value in dict(CLUSTER=CLUSTER, SLOT_BITS=SLOT_BITS, ENERGY=energy, VARYING=varying, OUTDATED=outdated).items():
         b.constant(name, value)
-    for f in (add, embedding, pack, find, blocks, slopes, embed, embedded_clusters):
+    pair_sums.use(b, "add", fast=True)
+    for f in (embedding, pack, find, blocks, slopes, embed, embedded_clusters):
         b.function(f, fast=True)
     return b.build().embedded_clusters

@@ -250,6 +250,7 @@ def load(text: str) -> types.ModuleType:
         module = types.ModuleType(name)
         run = functools.partial(_run_unwritten, text)
     sys.modules[name] = module
+    module.TEXT = text
     try:
         run(module)
     except BaseException:

@@ -2,14 +2,18 @@
 from __future__ import annotations
 
 import ast
+import inspect
+import re
+import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import lru_cache
-from types import ModuleType
+from functools import cache, lru_cache, partial
+from types import CodeType, ModuleType
 
 import numpy as np
 
 from asemd.kernels import packed, random
 from asemd.kernels.generate import FAST, Builder, plain_source
+from asemd.kernels.state import Thread
 from asemd.style import text_of
 
 INNER = "no_cpython_wrapper=True"       # called by compiled code only
@@ -53,6 +57,13 @@ def shared(function: Callable, uses: tuple[Callable, ...] = ()) -> ModuleType:
     return b.build()
 
 
+def _fields(source: str, name: str) -> list[str] | None:
+    """The attributes that a function reads of one of its arguments; None if it hands on the whole."""
+    nodes = list(ast.walk(ast.parse(source)))
+    read = [n.attr for n in nodes if isinstance(n, ast.Attribute) and isinstance(n.value, ast.Name) and n.value.id == name]
+    return sorted(set(read)) if len(read) == sum(isinstance(n, ast.Name) and n.id == name for n in nodes) else None
+
+
 @lru_cache(1024)
 def compiled(function: Callable, arrays: str, strict: bool = False):
     """A hook with an address.
@@ -76,12 +87,13 @@ def compiled(function: Callable, arrays: str, strict: bool = False):
     _imports(b, function, source, getattr(function, "uses", ()))
     b.line("from importlib import import_module")
     b.line("from numba import types")
-    b.line("from asemd.kernels.packed import AFTER_NUMBERS, AFTER_STATE, entry, reader")
-    b.line("from asemd.kernels.packed import read_address, read_numbers, read_state, read_thread")
-    b.line(f"read_arrays = reader({arrays})")
-    b.line(f"# {packed.LAYOUT}")
+    b.line("from asemd.kernels.packed import AFTER_NUMBERS, AFTER_STATE, STATE, entry, reader")
+    b.line("from asemd.kernels.packed import read_address, read_numbers, read_thread")
     head, body = source.split("\n", 1)
     th, s, p, a = head.removeprefix("def hook(").removesuffix("):").split(", ")
+    b.line(f"read_state = reader(STATE, {_fields(source, s)})")
+    b.line(f"read_arrays = reader({arrays})")
+    b.line(f"# {packed.LAYOUT}")
     b.text(f"""@entry({"" if strict else f"fastmath={FAST}"})
 def hook(thread, arguments):
     {th} = read_thread(thread)
@@ -92,29 +104,74 @@ def hook(thread, arguments):
     return b.build().hook.address
 
 
+def takes_thread(kernel: Callable) -> bool:
+    """Whether the first argument of a kernel is the `Thread`, named ``th``."""
+    code = getattr(inspect.unwrap(getattr(kernel, "py_func", kernel)), "__code__", None)
+    return code is not None and code.co_varnames[:1] == ("th",)
+
+
 @lru_cache(1024)
-def kernel_address(kernel: Callable, arguments: str, thread: bool = False):
-    """A kernel of a generated module with an address, as hooks have one.
+def kernel_address(kernel: Callable, arguments: str):
+    """A kernel of a generated module with an address, as hooks have one. It is compiled in this form only: its text is taken over, and what
+    it calls is imported.
 
     Parameters
     ----------
     kernel : callable
+        Its first argument may be the `Thread`, see `takes_thread`. It returns nothing.
     arguments : str
-        The type of its arguments as one tuple, as `asemd.kernels.packed.text_of_type` writes it.
-    thread : bool
-        Its first argument is the `Thread`, which is not one of them.
+        The type of its (other) arguments as one tuple, as `asemd.kernels.packed.text_of_type` writes it.
     """
+    thread = takes_thread(kernel)
     if packed.WITHOUT_COMPILER:
         return kernel if thread else lambda th, *values: kernel(*values)
     function = kernel.py_func
+    module, names = sys.modules[function.__module__], function.__code__.co_varnames[:function.__code__.co_argcount]
     b = Builder(f"{function.__name__} by address")
     b.line("from importlib import import_module")
     b.line("from numba import types")
     b.line("from asemd.kernels.packed import entry, read_thread, reader")
-    b.line(f"from {function.__module__} import {function.__name__} as kernel")
+    called = sorted(n for n in _names(function.__code__) if n in vars(module) and n not in ("math", "np"))
+    if called:
+        b.line(f"from {module.__name__} import {', '.join(called)}")
     b.line(f"read = reader({arguments})")
-    b.text(f"@entry()\ndef call(thread, arguments):\n    kernel({'read_thread(thread), ' * thread}*read(arguments))", jit=False)
+    body = re.search(rf"^def {function.__name__}\(.*\):\n((?:[ ].*\n|\n)*)", module.TEXT, re.M).group(1)
+    reads = "    th = read_thread(thread)\n" * thread + f"    {''.join(f'{n}, ' for n in names[thread:])}= read(arguments)\n"
+    fast = kernel.targetoptions.get("fastmath")
+    b.text(f"@entry({f'fastmath={FAST}' if fast else ''})\ndef call(thread, arguments):\n{reads}{body}", jit=False)
     return b.build().call.address
+
+
+def _names(code: CodeType) -> set[str]:
+    """What a function may look up outside itself."""
+    return set(code.co_names).union(*(_names(c) for c in code.co_consts if isinstance(c, CodeType)))
+
+
+@cache
+def _standing(level: int) -> np.ndarray:
+    """A thread in memory for kernels that Python calls."""
+    return packed.block(Thread(0, 1, 0, 0, 0, 0, 0, 0.0, np.zeros(8, np.int64), np.zeros((1, 8)), level))
+
+
+def bound(kernel: Callable, arguments: tuple, level: int = 0) -> Callable[[], None]:
+    """A call of a kernel from Python, of the same machine code that the time loop calls.
+
+    Parameters
+    ----------
+    kernel : callable
+        As for `kernel_address`, or any Python function.
+    arguments : tuple
+        What it takes besides the `Thread`; the arrays live as long as the call.
+    level : int
+        `Thread.level`.
+    """
+    if packed.WITHOUT_COMPILER or not hasattr(kernel, "py_func"):
+        return partial(kernel, *[_standing(level)] * takes_thread(kernel), *arguments)
+    block = packed.Block(arguments)
+    address = kernel_address(kernel, packed.text_of_arguments(arguments))
+    call = partial(packed.enter_at, address, packed.handle(_standing(level)), packed.handle(block.memory))
+    call.block = block      # type: ignore[attr-defined]    # which lives as long as the call
+    return call
 
 
 class Calls:

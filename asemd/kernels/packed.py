@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import struct
 import weakref
-from itertools import count
 
 import numba
 import numpy as np
@@ -25,7 +24,7 @@ _ROWS, _THREES, _FOURS = np.zeros(3), np.zeros((3, 3)), np.zeros((4, 4))
 _CELL = cell_arrays(np.eye(3), np.ones(3))
 _BOX = BoxState(_THREES, _ROWS, _ROWS, _CELL, _THREES, _THREES, _THREES, _FOURS, _THREES, _THREES, _THREES, _ROWS)
 STATE = numba.typeof(empty_state(8, np.zeros(1, np.int32), np.zeros((1, 3), np.int32), np.zeros((1, 1, 8)), _BOX))
-THREAD = numba.typeof(Thread(0, 1, 0, 1, 0, 0, 0, 0.0, np.zeros(8, np.int64), np.zeros((1, 8))))
+THREAD = numba.typeof(Thread(0, 1, 0, 1, 0, 0, 0, 0.0, np.zeros(8, np.int64), np.zeros((1, 8)), 0))
 NUMBERS = types.Array(types.float64, 1, "C")
 LAYOUT = " ".join(State._fields + BoxState._fields)      # hooks are compiled for it
 _DOUBLE, _SINGLE, _BITS = struct.Struct("d"), struct.Struct("ff"), struct.Struct("q")
@@ -174,30 +173,45 @@ def text_of_arguments(value) -> str:
 _texts: dict[bytes, str] = {}
 
 
-def _read(builder, kind, places):
-    """The value whose members are at the next places, 8 bytes each: loads of what nobody uses vanish."""
-    if not isinstance(kind, (ir.BaseStructType, ir.ArrayType)):
-        return builder.load(builder.bitcast(next(places), kind.as_pointer()))
-    value = ir.Constant(kind, ir.Undefined)
-    for k, member in enumerate(kind.elements if isinstance(kind, ir.BaseStructType) else [kind.element] * kind.count):
-        value = builder.insert_value(value, _read(builder, member, places), k)
+def _members_of(kind) -> list:
+    return list(kind.elements) if isinstance(kind, ir.BaseStructType) else [kind.element] * kind.count if _is_made_of(kind) else []
+
+
+def _is_made_of(kind) -> bool:
+    return isinstance(kind, (ir.BaseStructType, ir.ArrayType))
+
+
+def _size(kind) -> int:
+    return sum(map(_size, _members_of(kind))) if _is_made_of(kind) else 1
+
+
+def _read(builder, first, at: int, kind, only=None):
+    """The value whose members are 8 bytes each from place `at` on; `only` some of them, whose loads are all that is written."""
+    if not _is_made_of(kind):
+        return builder.load(builder.bitcast(builder.gep(first, [ir.Constant(ir.IntType(64), at)]), kind.as_pointer()))
+    value = ir.Constant(kind, None)      # zeros: an array that is not read has no owner to be counted
+    for k, member in enumerate(_members_of(kind)):
+        if only is None or k in only:
+            value = builder.insert_value(value, _read(builder, first, at, member), k)
+        at += _size(member)
     return value
 
 
-def reader(kind):
-    """A function for compiled code that takes an address and returns the value of that type which is there."""
+def reader(kind, fields=None):
+    """A function for compiled code that takes an address and returns the value of that type which is there; of a tuple with names only
+    some `fields`, if given: writing out the rest takes the compiler its time."""
+    only = None if fields is None else [kind.fields.index(name) for name in fields]
+
     @intrinsic
     def read(context, address):
         def generate(ctx, builder, signature, arguments):
-            whole = ir.IntType(64)
-            first = builder.inttoptr(arguments[0], whole.as_pointer())
-            places = (builder.gep(first, [ir.Constant(whole, k)]) for k in count())
-            return impl_ret_borrowed(ctx, builder, kind, _read(builder, ctx.get_value_type(kind), places))
+            first = builder.inttoptr(arguments[0], ir.IntType(64).as_pointer())
+            return impl_ret_borrowed(ctx, builder, kind, _read(builder, first, 0, ctx.get_value_type(kind), only))
         return kind(types.int64), generate
     return read
 
 
-read_address, read_thread, read_state, read_numbers = (reader(k) for k in (types.int64, THREAD, STATE, NUMBERS))
+read_address, read_thread, read_numbers = (reader(k) for k in (types.int64, THREAD, NUMBERS))
 AFTER_STATE, AFTER_NUMBERS = 8, 64      # where the fix's numbers and its arrays begin
 
 
@@ -247,3 +261,18 @@ def act(kind, th, calls, starts):
 def enter(function, th, arguments):
     """Call a hook from Python."""
     call(function, th, arguments)
+
+
+@intrinsic
+def _call_at(context, function, thread, arguments):
+    def generate(ctx, builder, signature, values):
+        whole = ir.IntType(64)
+        builder.call(builder.inttoptr(values[0], ir.FunctionType(ir.VoidType(), [whole, whole]).as_pointer()), values[1:])
+        return ctx.get_dummy_value()
+    return types.void(types.int64, types.int64, types.int64), generate
+
+
+@njit(cache=True, nogil=True)
+def enter_at(function, thread, arguments):
+    """Call from Python what takes the addresses of a thread and of its arguments."""
+    _call_at(function, thread, arguments)

@@ -165,8 +165,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
                             HIDE=False, PRUNED=pruned, SLOT_BITS=pair_cluster.SLOT_BITS))
     if pruned:
         b.use(prune.module(), "renew")
-    for f in (pair_sums.eight, pair_sums.plus, pair_sums.add):
-        b.function(f, fast=True)
+    pair_sums.use(b, "eight", "plus", "add", fast=True)
     if varying:
         b.function(pair_cluster.coefficients, fast=True)
     inner = pair_cluster.inner_two if paired else pair_cluster.inner_one
@@ -295,22 +294,20 @@ def paste_one(b: Builder, style, parts, piece: str = "", apart: bool = False) ->
 
 
 @cache
-def list_kernel(style, parts, *, energy: bool, per_atom: bool, broken: bool = False, factor: bool = False,
-                piece: str = ""):
-    """The kernel over plain pair lists; `parts` are the style's own or its 1-4 parts; `broken`: pairs of bonds, see `bond_history`;
-    `factor`: atoms have a factor each, the last of `arrays`.
+def list_kernel(style, parts, *, wanted: bool, broken: bool = False, factor: bool = False, piece: str = ""):
+    """The kernel over plain pair lists, with the `Thread` first; `parts` are the style's own or its 1-4 parts; `wanted`: energies or
+    shares; `broken`: pairs of bonds, see `bond_history`; `factor`: atoms have a factor each, the last of `arrays`.
 
     `piece` as in `cluster_kernel`.
     """
     b = Builder(f"pair {style.name}: plain list")
     b.line("real = np.float64")
     charged, sized = any(p.charged for p in parts), any(p.sized for p in parts)
-    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, WANTED=energy or per_atom, CHARGED=charged, FACTOR=factor,
+    for name, value in dict(WANTED=wanted, CHARGED=charged, FACTOR=factor,
                             SIZED=sized).items():
         b.constant(name, value)
     paste_one(b, style, parts, piece)
-    for f in (pair_sums.eight, pair_sums.add, pair_sums.halve):
-        b.function(f)
+    pair_sums.use(b, "eight", "add", "halve")
     b.function(pair_list.list_forces)
     if broken:
         b.function(bond_history.broken_pairs)
@@ -356,7 +353,8 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = 
         b.function(pair_shares.row_shares, fast=True)
         module = b.build()
         return module.row_shares, module
-    for f in (pair_sums.eight, pair_sums.add, pair_list.pairs_at_once, pair_list.row_forces):
+    pair_sums.use(b, "eight", "add", fast=True)
+    for f in (pair_list.pairs_at_once, pair_list.row_forces):
         b.function(f, fast=True)
     module = b.build()
     return module.row_forces, module

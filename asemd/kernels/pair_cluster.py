@@ -216,7 +216,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
     c0, c1 = clusters[0], clusters[1]
     far = real(far_)
     late = False
-    ca = cb = 0
+    ca = cb = np.int64(0)
     cap = x.shape[1]
     for k in range(0, cap, 8):
         take8(near, k, x, q)
@@ -246,7 +246,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         if VARYING:
             for k in range(full):
                 types[k] = type_of[np.uint32(entries[place(f0 + k)] & np.int32(SLOT_BITS))]
-            filled = 0
+            filled = np.int64(0)        # not a literal: functions called with one are compiled for it, too
         if EXCLUDE:
             xp = excluded_first[ci]
             xe = excluded_first[ci + 1]
@@ -264,7 +264,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                     qa = b[place(mine + a0 + 6 * ROW)] * real(qqr2e)
                     qb = b[place(mine + a0 + 1 + 6 * ROW)] * real(qqr2e)
                 if VARYING:
-                    ca, filled = coefficients(c, full, rows, types[place(mine + a0)], types, held, filled, -1)
+                    ca, filled = coefficients(c, full, rows, types[place(mine + a0)], types, held, filled, np.int64(-1))
                     cb, filled = coefficients(c, full, rows, types[place(mine + a0 + 1)], types, held, filled, ca)
                 b[place(mine + a0)] = done
                 b[place(mine + a0 + 1)] = done
@@ -340,7 +340,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                     late = rest <= 0.0 or moved[place(s + a)] > rest * rest
                 qa = b[place(mine + a + 6 * ROW)] * real(qqr2e) if CHARGED else real(0)
                 if VARYING:
-                    ca, filled = coefficients(c, full, rows, types[place(mine + a)], types, held, filled, -1)
+                    ca, filled = coefficients(c, full, rows, types[place(mine + a)], types, held, filled, np.int64(-1))
                 b[place(mine + a)] = done
                 x0 = 0
                 if EXCLUDE:

@@ -3,10 +3,10 @@
 An entry is slot i, slot j, and a code: image (row of `shifts`) * 4 + kind, kind 0 for ordinary pairs and 1, 2, 3 for 1-2, 1-3, 1-4
 partners. Strict arithmetic, differences taken directly: nothing is lost at short distances or far from the origin.
 
-Constants of the generated module: ENERGY, PER_ATOM, WANTED (one of the two), CHARGED, CHECK, FACTOR, SIZED (the last of `arrays` are the
-radii of the slots, which `pair_energy_one` takes as its last two arguments). From the style: `pair_energy_one(r2, qq, lj, coul, whole,
-rows, constants, arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same (coefficients
-from tuple or table, as `uniform` says).
+Constants of the generated module: WANTED (energies, or shares of atoms if the thread says so), CHARGED, CHECK, FACTOR, SIZED (the last of
+`arrays` are the radii of the slots, which `pair_energy_one` takes as its last two arguments). From the style: `pair_energy_one(r2, qq, lj,
+coul, whole, rows, constants, arrays, ti, tj)` -> force/r, E_vdwl, E_coul; for rows of atoms `furthest` (squared) and `pair_of` -> the same
+(coefficients from tuple or table, as `uniform` says).
 """
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ import numpy as np
 
 from asemd.kernels.pair_sums import add, eight, halve
 
-ENERGY = PER_ATOM = WANTED = CHARGED = CHECK = FACTOR = SIZED = False
+ENERGY = WANTED = CHARGED = CHECK = FACTOR = SIZED = False
 ROOM, AT_ONCE = 264, 64
 place = np.uint64        # an index that is surely not negative: no wrap-around test, so that loops vectorise
 pair_energy_one = furthest = pair_of = None
 
 
-def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
+def list_forces(th, x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weight_coul, lo, hi, rows, constants, arrays, qqr2e, acc,
                 atom_energy, atom_virial, bad):
     """Pairs lo..hi-1: forces added to `f`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and `atom_virial (6, cap)`.
 
@@ -65,10 +65,10 @@ def list_forces(x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, weigh
         f[0, np.uint32(j)] -= b * gx
         f[1, np.uint32(j)] -= b * gy
         f[2, np.uint32(j)] -= b * gz
-        if ENERGY:
+        if WANTED:
             mean = 0.5 * (a + b)
             add(acc, eight(ev, ec, dx, dy, dz, mean * gx, mean * gy, mean * gz))
-        if PER_ATOM and not FACTOR:
+        if WANTED and not FACTOR and th.level > 1:
             halve(atom_energy, atom_virial, i, j, ev + ec, dx, dy, dz, gx, gy, gz)
 
 

@@ -1,8 +1,14 @@
 """Energy and virial of pairs as eight numbers, in the order of a term's accumulators: vdwl coul xx yy zz xy xz yz; shares of both atoms.
 
-Pasted into the pair kernels, where the compiler puts these small functions in place.
+Compiled once; the compiler puts these small functions in place in the kernels that call them.
 """
 from __future__ import annotations
+
+from functools import cache
+from types import ModuleType
+
+from asemd.kernels.generate import FAST, Builder, plain_source
+from asemd.kernels.hooks import INNER
 
 
 def eight(ev, ec, dx, dy, dz, fx, fy, fz):
@@ -36,3 +42,18 @@ def halve(atom_energy, atom_virial, i, j, e, dx, dy, dz, fx, fy, fz):
         atom_virial[3, s] += 0.5 * dx * fy
         atom_virial[4, s] += 0.5 * dx * fz
         atom_virial[5, s] += 0.5 * dy * fz
+
+
+@cache
+def module(fast: bool) -> ModuleType:
+    """These functions, compiled; `fast`: sums may be reordered."""
+    b = Builder("sums over pairs")
+    for f in (eight, plus, add, halve):
+        b.text(plain_source(f), f"{INNER}, fastmath={FAST}" if fast else INNER)
+    return b.build()
+
+
+def use(b: Builder, *names: str, fast: bool = False) -> None:
+    """Let a kernel call some of them."""
+    for name in names:
+        b.use(module(fast), name)

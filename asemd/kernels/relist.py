@@ -125,10 +125,19 @@ def balance(shares, bounds, lengths):
     if nth == 1:
         return
     # an entry costs about as much as the own-cluster work of a sixteenth of a cluster
-    total = np.zeros(nth + 1)
+    whole = 0.0
     for t in range(nth):
-        total[t + 1] = total[t] + lengths[t] + 16.0 * (bounds[t + 1] - bounds[t])
-    shares[:] = np.interp(np.linspace(0.0, total[-1], nth + 1), total, bounds / clusters)
+        whole += lengths[t] + 16.0 * (bounds[t + 1] - bounds[t])
+    k, before, here = 0, 0.0, lengths[0] + 16.0 * (bounds[1] - bounds[0])
+    for t in range(1, nth):         # thread k's part holds what the new thread t begins with
+        wanted = whole * t / nth
+        while k < nth - 1 and before + here < wanted:
+            before += here
+            k += 1
+            here = lengths[k] + 16.0 * (bounds[k + 1] - bounds[k])
+        inside = (wanted - before) / here if here > 0.0 else 0.0
+        shares[t] = (bounds[k] + inside * (bounds[k + 1] - bounds[k])) / clusters
+    shares[0], shares[nth] = 0.0, bounds[nth] / clusters
 
 
 def relist(th, live, a, g, c, p):

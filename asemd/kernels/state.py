@@ -85,6 +85,7 @@ class Thread(NamedTuple):
     dt: float
     sync: np.ndarray          # (8,) int64 barrier counter and generation
     scratch: np.ndarray       # (nth, 8) float64
+    level: int = 0            # what terms are asked for: forces, 1 energy and virial too, 2 the shares of atoms as well
 
 
 class Meeting(NamedTuple):

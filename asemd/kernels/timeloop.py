@@ -18,7 +18,7 @@ from asemd.kernels import packed
 from asemd.kernels.box import corner_moves
 from asemd.kernels.clock import now
 from asemd.kernels.generate import FAST, Builder, plain_source
-from asemd.kernels.hooks import Calls, kernel_address, shared
+from asemd.kernels.hooks import INNER, Calls, kernel_address, shared
 from asemd.kernels.packed import act, call
 from asemd.kernels.relist import FINE, NS, WANTED
 from asemd.kernels.state import Thread
@@ -102,14 +102,17 @@ def module() -> ModuleType:
     for name, value in globals().items():
         if name.isupper() and isinstance(value, int):
             b.constant(name, value)
-    b.text(plain_source(compute), f"fastmath={FAST}")
-    b.text(plain_source(listed))
+    b.text(plain_source(compute), f"fastmath={FAST}, {INNER}")
+    b.text(plain_source(listed), INNER)
+    for f in (strides, fill, add_up):
+        b.text(plain_source(f), f"fastmath={FAST}, {INNER}")
     b.text(plain_source(run), f"fastmath={FAST}")
     return b.build()
 
 
 def compute(kind, th, terms, numbers, t0):
     """Call the kernels of all terms; returns the time when they were done."""
+    th = Thread(th.tid, th.nth, th.lo, th.hi, th.step, th.begin, th.end, th.dt, th.sync, th.scratch, min(kind, 1))
     for k in range(terms.shape[0]):
         call(terms[k, kind], th, terms[k, ARGUMENTS])
         if th.tid == 0:
@@ -140,6 +143,40 @@ def listed(th, lists, live, control, numbers, odd, t0):
     return live[FINE] != 0
 
 
+def strides(x, held, lo, hi, moved, keep):
+    """The largest squared displacement since the list was built, 1e301 where a position is not a number; `moved` gets all of them if
+    `keep`."""
+    m = 0.0
+    wrong = 0.0
+    for k in range(lo, hi):
+        i = np.uint64(k)            # surely not negative: vectorises
+        a = x[0, i] - held[0, i]
+        b = x[1, i] - held[1, i]
+        c = x[2, i] - held[2, i]
+        m = max(m, a * a + b * b + c * c)
+        wrong += 0.0 * (a + b + c)
+    if keep:
+        for k in range(lo, hi):
+            i = np.uint64(k)
+            moved[i] = (x[0, i] - held[0, i]) ** 2 + (x[1, i] - held[1, i]) ** 2 + (x[2, i] - held[2, i]) ** 2
+    return m if wrong == 0.0 else 1e301
+
+
+def fill(f, ns):
+    """No forces yet."""
+    for d in range(f.shape[0]):
+        for i in range(ns):
+            f[d, np.uint64(i)] = 0.0
+
+
+def add_up(buffers, t, lo, hi):
+    """The forces that thread `t` found, on a part of the atoms, to those of the first."""
+    for d in range(buffers.shape[1]):
+        for k in range(lo, hi):
+            i = np.uint64(k)
+            buffers[0, d, i] += buffers[t, d, i]
+
+
 def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scratch, control, numbers, acc, terms, calls, starts, live,
         lists):
     """Steps up to ``control[LAST]``; returns FINISHED, REBUILD (a list is due that Python makes) or BAD (`bad` says which item).
@@ -163,12 +200,9 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
     lo = ns * tid // nth
     hi = ns * (tid + 1) // nth
     f = buffers[tid]
-    x0, x1, x2 = x[0, lo:hi], x[1, lo:hi], x[2, lo:hi]            # slices: indices that are surely not negative vectorise
-    held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
-    away = moved[lo:hi]
     ready = False          # whether the first half of the next step is done
     t0 = now()
-    th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+    th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch, 0)
     if tid == 0:
         numbers[UNTIL] += t0
     barrier(th)
@@ -177,27 +211,16 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
         odd = False
         if resume == BEGIN:
             step += 1
-            th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+            th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch, 0)
             if not ready:
-                act(0, th, calls, starts)
+                act(np.int64(0), th, calls, starts)
             ready = False
-            act(1, th, calls, starts)
+            act(np.int64(1), th, calls, starts)
             ago += 1
             due = ago >= delay and ago % every == 0
             forced = step == control[FORCED]
             if due or forced or control[OUTDATED] != 0:
-                m = 0.0
-                wrong = 0.0
-                for i in range(hi - lo):
-                    a = x0[i] - held0[i]
-                    b = x1[i] - held1[i]
-                    c = x2[i] - held2[i]
-                    m = max(m, a * a + b * b + c * c)
-                    wrong += 0.0 * (a + b + c)              # not zero where a position is not a number
-                if control[OUTDATED] != 0:
-                    for i in range(hi - lo):
-                        away[i] = (x0[i] - held0[i]) ** 2 + (x1[i] - held1[i]) ** 2 + (x2[i] - held2[i]) ** 2
-                scratch[tid, 1] = m if wrong == 0.0 else 1e301
+                scratch[tid, 1] = strides(x, held, lo, hi, moved, control[OUTDATED] != 0)
             if tid == 0:
                 t1 = now()
                 numbers[MODIFY_TIME] += t1 - t0
@@ -230,17 +253,12 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
             ns = live[NS]
             lo = ns * tid // nth
             hi = ns * (tid + 1) // nth
-            x0, x1, x2 = x[0, lo:hi], x[1, lo:hi], x[2, lo:hi]
-            held0, held1, held2 = held[0, lo:hi], held[1, lo:hi], held[2, lo:hi]
-            away = moved[lo:hi]
-            th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch)
+            th = Thread(tid, nth, lo, hi, step, begin, end, dt, sync, scratch, 0)
             if tid == 0:
                 t0 = now()
         resume = BEGIN
-        act(2, th, calls, starts)
-        for d in range(f.shape[0]):
-            for i in range(ns):
-                f[d, i] = 0.0
+        act(np.int64(2), th, calls, starts)
+        fill(f, ns)
         for c in range(6):
             virial[tid, c] = 0.0
         kind = PLAIN
@@ -256,10 +274,7 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
         if nth > 1:
             barrier(th)
             for t in range(1, nth):
-                for d in range(f.shape[0]):
-                    sum_of, part = buffers[0, d, lo:hi], buffers[t, d, lo:hi]
-                    for i in range(hi - lo):
-                        sum_of[i] += part[i]
+                add_up(buffers, t, lo, hi)
         for t in range(nth):
             for k in range(bad.shape[1]):
                 if bad[t, k, 0] != 0.0:
@@ -270,13 +285,13 @@ def run(tid, nth, x, virial, box, held, moved, farthest, buffers, bad, sync, scr
             t1 = now()
             numbers[COMM_TIME] += t1 - t0
             t0 = t1
-        act(3, th, calls, starts)
+        act(np.int64(3), th, calls, starts)
         if starts[7] > starts[6] and step < last:
-            act(6, th, calls, starts)
+            act(np.int64(6), th, calls, starts)
             ready = True
         else:
-            act(4, th, calls, starts)
-        act(5, th, calls, starts)
+            act(np.int64(4), th, calls, starts)
+        act(np.int64(5), th, calls, starts)
         if tid == 0:
             t1 = now()
             numbers[MODIFY_TIME] += t1 - t0

@@ -385,7 +385,7 @@ def kernel(styles: tuple):
     for f in (nearest, squares, add_squares, image_of, fold, fold_each, largest, grid, cell_of, fill, enter, leave, around):
         b.function(f)
     for k, style in enumerate(styles):
-        b.use(list_kernel(style, style.parts, energy=True, per_atom=False)[1], "pair_energy_one", f"pair{k}")
+        b.use(list_kernel(style, style.parts, wanted=True)[1], "pair_energy_one", f"pair{k}")
     b.text(_written_out(plain_source(near_energy), len(styles)))
     b.function(aligned_energy)
     b.text(_written_out(plain_source(trial_energy), len(styles)))

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from asemd.errors import SimulationError
+from asemd.kernels.hooks import bound
 from asemd.term import Term
 
 
@@ -64,8 +65,9 @@ class KSpaceTerm(Term):
         engine.state = state._replace(x=places, q=charges)
         self.constants[2:4] = q.sum(), q @ q
         try:
-            kernel, given = self.kernel(True, False), [self.arguments(engine, tid) for tid in range(engine.threads)]
-            engine.parallel(lambda tid: kernel(*given[tid]))
+            kernel = self.kernel(True, False)
+            calls = [bound(kernel, self.arguments(engine, tid), 1) for tid in range(engine.threads)]
+            engine.parallel(lambda tid: calls[tid]())
             return float(engine.acc[:, self.index, 0].sum()), engine.buffers[:, :3, slots].sum(axis=0).T
         finally:
             (engine.buffers, engine.acc, engine.state), self.constants[2:4] = kept, sums

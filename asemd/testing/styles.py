@@ -10,6 +10,7 @@ import math
 import re
 import tempfile
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -85,16 +86,17 @@ def sample(style: Style, seed: int = 7) -> Sample:
     raise AssertionError(f"{style}: the example coefficients leave nearly every geometry outside the domain")
 
 
-def twin(style: Style, *, energy: bool, **variant) -> dict:
+def twin(style: Style, *, energy: bool, per_atom: bool = False, **variant) -> dict:
     """The same as plain Python: `loop`, and `evaluate`, the function of the style for what `asemd.kernels.bonded.chart` names."""
     found: dict = {}
     for source in (bonded.loop_source(style, **variant), bonded.source(style, energy=energy)):
         exec(compile(re.sub(r"(?m)^@(njit|block_function).*$", "", source.source()), f"<{style.name}>", "exec"), found)
-    run, found["madd"] = found["loop_energy" if energy else "loop"], lambda a, b, c: a * b + c
+    run, found["madd"] = found["loop"], lambda a, b, c: a * b + c
 
     def loop(x, out, items, types, cell, coeff, arrays, *rest):
+        th = SimpleNamespace(level=2 if per_atom else int(energy))
         with np.errstate(all="ignore"):
-            run(x, out, items, types, cell, coeff, bonded.arrays(style, arrays), *rest, [found["evaluate"]] * 2, bonded.room(style))
+            run(th, x, out, items, types, cell, coeff, bonded.arrays(style, arrays), *rest, [found["evaluate"]] * 2, bonded.room(style))
 
     def evaluate(*values):
         *coordinates, kind, coeff, arrays = values
