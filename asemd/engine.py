@@ -14,7 +14,7 @@ from asemd.cluster_term import PairTerm
 from asemd.embedded_term import EmbeddedTerm
 from asemd.errors import SimulationError
 from asemd.exclusions import Exclusions
-from asemd.kernels.hooks import bound
+from asemd.kernels.hooks import BoundKernels
 from asemd.kernels.rows import of_slots
 from asemd.kernels.state import Meeting, aligned, cell_arrays, empty_state
 from asemd.kernels.target import vector
@@ -63,6 +63,7 @@ class Engine:
         self.groups: dict[str, np.ndarray] = {}
         self.bits: dict[str, int] = {"all": 1}
         self.result: Result | None = None
+        self._bound = BoundKernels(0), BoundKernels(1)
         self.units = unit_styles.get(system.units)
         self.qqr2e, self.shares = interactions.coulomb_constant(self.units) / interactions.dielectric, None      # of `asemd.atom_shares`
         self.update(system)
@@ -100,7 +101,6 @@ class Engine:
                      if self.mode == "cluster" else PlainList(self.reach))
         self.rows = {t.molecules: Rows(self.threads) for t in self.pair_terms} if self.sparse else {}
         self.state, self._offset, self.ns = None, None, 0
-        self._bound: dict[bool, tuple] = {}
         self.listed: tuple | None = None      # the present list as plain pairs, if anything asked for it
 
     def list_for(self, n: int) -> tuple[str, bool, bool, bool, str]:
@@ -245,8 +245,7 @@ class Engine:
         k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row,
                  s.type, s.mass, s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":
-            partners = self.exclusions.partners
-            hide = None if self.expanded or self.sparse else partners
+            hide = None if self.expanded or self.sparse else self.exclusions.partners
             self.list.build(k, s, self.ns, self.cell, self.periodic, hide, self.slot_of, self.parallel)
             if self.expanded:
                 self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
@@ -290,21 +289,11 @@ class Engine:
             return others + int(((d * d).sum(axis=0) <= self.reach**2).sum())
         return len(self.plain[0]) if self.mode != "none" else 0
 
-    def arguments(self, tid: int) -> tuple:
-        """Arguments of all terms for a thread."""
+    def arguments(self) -> list[tuple]:
+        """Arguments of all terms, for each thread."""
         if self.thread_arguments is None:
             self.thread_arguments = [tuple(t.arguments(self, i) for t in self.terms) for i in range(self.threads)]
-        return self.thread_arguments[tid]
-
-    def _calls(self, energy: bool) -> list[list]:
-        """For each thread the calls of the kernels of all terms."""
-        kernels = [t.kernel(energy, False) for t in self.terms]
-        self.arguments(0)
-        known = self._bound.get(energy)
-        if known is None or known[0] is not self.thread_arguments or known[1] != kernels:
-            calls = [[bound(f, a, int(energy)) for f, a in zip(kernels, mine, strict=True)] for mine in self.thread_arguments]
-            known = self._bound[energy] = self.thread_arguments, kernels, calls
-        return known[2]
+        return self.thread_arguments
 
     # ---- forces -------------------------------------------------------------------------------------------------------------------------
     def forces(self, energy: bool = True) -> None:
@@ -314,7 +303,8 @@ class Engine:
             self.acc[:] = 0.0
         if self.settings.outdated:
             self.farthest[:] = self.k.displacements(self.state.x, self.held, self.ns, self.moved)
-        calls, spent = self._calls(energy), np.zeros(len(self.terms))
+        spent = np.zeros(len(self.terms))
+        calls = self._bound[energy].calls([t.kernel(energy, False) for t in self.terms], self.arguments())
 
         def work(tid):
             self.k.clear(self.buffers[tid], self.ns)
@@ -326,8 +316,8 @@ class Engine:
         self.parallel(work)
         if self.threads > 1:
             self.k.add_buffers(self.buffers, self.ns)
-        for t, dt in zip(self.terms, spent):
-            self.timings[{"pair": "Pair", "kspace": "Kspace"}.get(t.category, "Bond")] += dt
+        for t, seconds in zip(self.terms, spent):
+            self.timings[{"pair": "Pair", "kspace": "Kspace"}.get(t.category, "Bond")] += seconds
         self.check()
 
     def check(self) -> None:
@@ -390,14 +380,12 @@ class Engine:
             Positions, wrapped or not.
         """
         e = self.system
-        if self.state is None or self._offset is None:
-            fresh = True
-        else:
+        fresh = self.state is None or self._offset is None
+        if not fresh:
             self.k.load(x, e.v, self._offset, self.state.x, self.state.v, self.state.row, self.ns, True)
             fresh = not self.k.moved(self.state.x, self.held, self.ns) <= (0.5 * self.settings.skin) ** 2
         if fresh:
-            e.x[:] = x
-            e.image[:] = 0
+            e.x[:], e.image[:] = x, 0
             self.load()
             self._offset = e.image @ self.vectors
         self.forces(True)

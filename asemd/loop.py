@@ -299,7 +299,7 @@ class Loop:
 
     def _terms(self, tid: int) -> np.ndarray:
         """For the loop: kernels, arguments and clock of each term."""
-        arguments = self.engine.arguments(tid)
+        arguments = self.engine.arguments()[tid]
         known = self._packed[tid]
         if known is None or (known.arguments is not arguments and not known.take(arguments)):
             alone = bool(self._virial_every) and not any(f.with_energies for f in self.fixes)

@@ -184,7 +184,7 @@ class RespaLoop(Loop):
         e, at = self.engine, self.levels.level
         self._work: list[list] = [[] for _ in range(self.levels.n)]
         self._whole, self._pieces = [], []
-        self._calls: dict[tuple[int, bool], list] = {}
+        self._term_calls: dict[tuple[int, bool], list] = {}
         for t in e.terms:
             if t.category != "pair" or getattr(t, "pairs", "") == "one_four":
                 self._work[at["dihedral" if t.category == "pair" else t.category] - 1].append(t)
@@ -228,18 +228,18 @@ class RespaLoop(Loop):
         for piece in self._pieces:
             piece.rebuild(e)
         e.changed = False       # the pieces' buffers, perhaps
-        self._calls.clear()
+        self._term_calls.clear()
 
     def _kernels(self, level: int, energy: bool) -> list[tuple]:
         """Terms of one level, or of no level (0) but as a whole, and the calls of their kernels by thread."""
-        if (level, energy) not in self._calls:
+        if (level, energy) not in self._term_calls:
             e, found = self.engine, []
             for t in self._work[level - 1] if level else self._whole:
                 wanted = energy and t not in self._pieces
                 kernel = t.kernel(wanted, False)
                 found.append((t, [bound(kernel, t.arguments(e, tid), int(wanted)) for tid in range(e.threads)]))
-            self._calls[level, energy] = found
-        return self._calls[level, energy]
+            self._term_calls[level, energy] = found
+        return self._term_calls[level, energy]
 
     # ---- steps --------------------------------------------------------------------------------------------------------------------------
     def _python_step(self, energy: bool) -> None:

@@ -174,6 +174,20 @@ def bound(kernel: Callable, arguments: tuple, level: int = 0) -> Callable[[], No
     return call
 
 
+class BoundKernels:
+    """Calls of kernels that take place again and again with the same arguments; `level` as for `bound`."""
+
+    def __init__(self, level: int):
+        self.level, self._known = level, (None, None, None)
+
+    def calls(self, kernels: list[Callable], arguments: list[Sequence[tuple]]) -> list[list[Callable[[], None]]]:
+        """For each thread, whose arguments are one entry of a list that does not change, the calls of all kernels."""
+        if self._known[0] is not arguments or self._known[1] != kernels:
+            calls = [[bound(f, a, self.level) for f, a in zip(kernels, mine, strict=True)] for mine in arguments]
+            self._known = arguments, kernels, calls
+        return self._known[2]
+
+
 class Calls:
     """The hooks of a run, and their arguments in memory.
 
