@@ -133,7 +133,7 @@ def bond_order_forces(x, f, q, type_of, first, middle, last, neighbors, codes, s
     element, pair, ends, many, few, ends_h, hydrogen, lone, conjugated, limits = arrays
     angles, nodes = (ends, many, few, ends_h, hydrogen), (lone, conjugated)
     for i in range(lo, hi):
-        m = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        m = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         ei, bonds = element[type_of[i]], 0
         shared[0, i], shared[1, i], shared[3, i], shared[4, i] = 0.0, 0.0, 0.0, ei
@@ -164,7 +164,7 @@ def bond_order_forces(x, f, q, type_of, first, middle, last, neighbors, codes, s
         for k in range(3):
             shared[SUMS + k, i] = 0.0
         if constants[0] == 1.0:
-            n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+            n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         # first the bonds, then all pairs for dispersion, so that what both do is compiled once
         for item in range(bonds + n):
             bonded = item < bonds

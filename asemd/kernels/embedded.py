@@ -46,7 +46,7 @@ def embedded_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shi
         shared[0, i] = 0.0
         if function_of[ti] < 0:
             continue
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         rho = 0.0
         for k in range(n):
             p = math.sqrt(near[3, k]) * rdr
@@ -67,7 +67,7 @@ def embedded_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shi
     barrier(meeting)
     for i in range(lo, hi):
         ti = type_of[i]
-        n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             r = math.sqrt(near[3, k])
             p = r * rdr

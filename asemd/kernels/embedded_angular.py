@@ -28,7 +28,7 @@ def angular_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
             shared[k, i] = 0.0
         if function_of[ti] < 0:
             continue
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         rho = 0.0
         for k in range(n):
             p = math.sqrt(near[3, k]) * rdr
@@ -63,7 +63,7 @@ def angular_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
     barrier(meeting)
     for i in range(lo, hi):
         ti = type_of[i]
-        n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             j = slots[k]
             dx, dy, dz = near[0, k], near[1, k], near[2, k]

@@ -52,7 +52,7 @@ def concentration_forces(x, f, q, type_of, first, middle, last, neighbors, codes
             shared[k, i] = 0.0
         if function_of[ti] < 0:
             continue
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         rho, rho_b = 0.0, 0.0
         for k in range(n):
             p = math.sqrt(near[3, k]) * rdr
@@ -78,7 +78,7 @@ def concentration_forces(x, f, q, type_of, first, middle, last, neighbors, codes
         ti = type_of[i]
         if function_of[ti] < 0 or not shared[3, i] > 0.0:
             continue
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         slope = 0.0
         for k in range(n):
             if second[types[k]] != second[ti]:
@@ -94,7 +94,7 @@ def concentration_forces(x, f, q, type_of, first, middle, last, neighbors, codes
     barrier(meeting)
     for i in range(lo, hi):
         ti = type_of[i]
-        n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             j, tj = slots[k], types[k]
             r = math.sqrt(near[3, k])

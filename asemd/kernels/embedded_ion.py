@@ -27,7 +27,7 @@ def ion_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts, 
     rdr = constants[0]
     end = int(constants[1])
     for i in range(lo, hi):
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         charge = 0.0
         for k in range(n):
             p = math.sqrt(near[3, k]) * rdr
@@ -37,7 +37,7 @@ def ion_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts, 
         shared[0, i] = charge
     barrier(meeting)
     for i in range(lo, hi):
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         potential = 0.0
         for k in range(n):
             p = math.sqrt(near[3, k]) * rdr
@@ -52,7 +52,7 @@ def ion_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts, 
             atom_energy[i] += energy
     barrier(meeting)
     for i in range(lo, hi):
-        n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             r = math.sqrt(near[3, k])
             p = r * rdr

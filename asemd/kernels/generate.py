@@ -8,6 +8,7 @@ hashed name.
 from __future__ import annotations
 
 import ast
+import builtins
 import contextlib
 import functools
 import hashlib
@@ -31,6 +32,8 @@ from asemd.style import text_of
 PACKAGE = "asemd_kernels"
 FAST = "{'contract', 'reassoc', 'nsz', 'arcp'}"
 LIMIT_BYTES = 512 * 2**20
+_DEFINES = re.compile(r"(?:from \S+ import ([^#]+)|(\w+(?:, \w+)*) = )")
+_EVERYWHERE = {"math", "np", *dir(builtins)}
 _HEADER = "import math\nimport numpy as np\nfrom numba import njit\n"
 
 
@@ -152,11 +155,14 @@ def plain_source(function: Callable, name: str | None = None, real: bool = False
     constants : mapping
         Names whose truth is known: ``if NAME:`` keeps one branch only, so that a variant holds nothing it does not need.
     """
-    tree = ast.parse(text_of(function))
-    node = _Plain(real, vector, constants).visit(tree).body[0]
+    return ast.unparse(_plain_tree(function, name, real, vector, constants))
+
+
+def _plain_tree(function: Callable, name: str | None, real: bool, vector: bool, constants: Mapping[str, bool]) -> ast.FunctionDef:
+    node = _Plain(real, vector, constants).visit(ast.parse(text_of(function))).body[0]
     if name:
         node.name = name
-    return ast.unparse(node)
+    return node
 
 
 class Builder:
@@ -175,14 +181,18 @@ class Builder:
         self.lines = [f'"""{title}"""', _HEADER]
         self.constants: dict[str, object] = {}
         self._have: dict[str, Callable] = {}
+        self._lines_of: dict[str, str] = {}      # name -> the line that defines it
 
     def line(self, text: str) -> None:
         self.lines.append(text)
+        if match := _DEFINES.match(text):
+            names = (match[1] or match[2]).split(",")
+            self._lines_of |= {name.split(" as ")[-1].strip(): text for name in names}
 
     def constant(self, name: str, value) -> None:
         """A module constant, frozen into the machine code; branches on it vanish."""
         self.constants[name] = value
-        self.lines.append(f"{name} = {value!r}" if isinstance(value, (bool, int, float, str)) else f"{name} = {value}")
+        self.line(f"{name} = {value!r}" if isinstance(value, (bool, int, float, str)) else f"{name} = {value}")
 
     def text(self, source: str, options: str = "", cache: bool = True, jit: bool = True) -> None:
         """A function given as text, compiled with strict IEEE arithmetic unless `options` says otherwise."""
@@ -207,15 +217,33 @@ class Builder:
         known = self._have.get(name)
         if known is None:
             self._have[name] = function
-            options = [f"fastmath={FAST}"] * fast + ["forceinline=True"] * inline
-            self.text(plain_source(function, name, real, vector, self.constants), ", ".join(options))
+            options = ", ".join([f"fastmath={FAST}"] * fast + ["forceinline=True"] * inline)
+            tree = _plain_tree(function, name, real, vector, self.constants)
+            source = ast.unparse(tree)
+            if not self._apart(tree, source, options):
+                self.text(source, options)
         elif known is not function and text_of(known) != text_of(function):
             raise NameError(f"two functions named {name} in one module of kernels: of {known.__module__} and {function.__module__}")
         return name
 
+    def _apart(self, tree: ast.FunctionDef, source: str, options: str) -> bool:
+        """Where all that a function needs is written in single lines, it gets a module of its own with these alone: whichever kernels have
+        it in common, it is compiled once."""
+        nodes = [n for n in ast.walk(tree) if isinstance(n, (ast.Name, ast.arg))]
+        own = {n.arg if isinstance(n, ast.arg) else n.id for n in nodes if isinstance(n, ast.arg) or isinstance(n.ctx, ast.Store)}
+        needed = {n.id for n in nodes if isinstance(n, ast.Name)} - own - _EVERYWHERE - {tree.name}
+        if not needed <= self._lines_of.keys():
+            return False
+        b = Builder(tree.name)
+        for line in sorted({self._lines_of[n] for n in needed}):
+            b.line(line)
+        b.text(source, options)
+        self.use(b.build(), tree.name)
+        return True
+
     def use(self, module: types.ModuleType, name: str, alias: str | None = None) -> None:
         """Call a kernel of another generated module; its hashed name makes this module's hash follow."""
-        self.lines.append(f"from {module.__name__} import {name}" + (f" as {alias}" if alias else ""))
+        self.line(f"from {module.__name__} import {name}" + (f" as {alias}" if alias else ""))
 
     def source(self) -> str:
         return "\n".join(self.lines) + "\n"

@@ -244,7 +244,7 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
     for i in range(lo, hi):
         if last[i] == first[i]:
             continue
-        m = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        m = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         if n == 0:
             continue

@@ -295,7 +295,7 @@ def meam_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
             shared[k, i] = 0.0
         if atoms[ti, RE] == 0.0 or last[i] == first[i]:
             continue
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for j in range(n):
             if near[3, j] > rc2:
                 continue
@@ -328,7 +328,7 @@ def meam_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
     barrier(meeting)
     for i in range(lo, hi):
         ti = type_of[i]
-        m = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        m = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             grad[0, k], grad[1, k], grad[2, k] = 0.0, 0.0, 0.0

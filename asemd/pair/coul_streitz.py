@@ -65,7 +65,7 @@ def ionic_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
             acc[1] += own
         if PER_ATOM:
             atom_energy[i] += own
-        n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             r, j = math.sqrt(near[3, k]), types[k]
             if r == 0.0:

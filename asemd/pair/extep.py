@@ -73,7 +73,7 @@ def extep_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
     for i in range(lo, hi):
         ti = type_of[i]
         shared[0, i], shared[1, i] = 0.0, 0.0
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(n):
             fc, slope = taper(np.sqrt(near[3, k]), three[ti, types[k], types[k]])
             shared[0, i] += fc
@@ -81,7 +81,7 @@ def extep_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
     barrier(meeting)
     for i in range(lo, hi):
         ti = type_of[i]
-        m = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        m = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         if n == 0:
             continue

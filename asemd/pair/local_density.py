@@ -39,7 +39,7 @@ def density_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
     last_interval = functions.shape[1] - 1
     for i in range(lo, hi):
         ti = type_of[i]
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for k in range(wells.shape[0]):
             shared[k, i] = 0.0
             if central[k, ti] == 0.0:
@@ -62,7 +62,7 @@ def density_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
     barrier(meeting)
     for i in range(lo, hi):
         ti = type_of[i]
-        n = gather_near(i, first[i], middle[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         for m in range(n):
             g = 0.0
             for k in range(wells.shape[0]):

@@ -44,7 +44,7 @@ def table_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts
     """As `asemd.kernels.manybody.site_forces`; the force on the site is one of its own."""
     three, entries, rows = arrays
     for i in range(lo, hi):
-        n = gather_near(i, first[i], last[i], 0, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         ti = type_of[i]
         shares = (atom_energy, atom_virial, np.int32(i), near, slots)
         for k in range(n):
