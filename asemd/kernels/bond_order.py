@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from asemd.kernels import bond_order_terms as terms
 from asemd.kernels.bond_order_terms import (
     BONDS,
