@@ -135,7 +135,8 @@ def kernel_address(kernel: Callable, arguments: str):
     if called:
         b.line(f"from {module.__name__} import {', '.join(called)}")
     b.line(f"read = reader({arguments})")
-    body = re.search(rf"^def {function.__name__}\(.*\):\n((?:[ ].*\n|\n)*)", module.TEXT, re.M).group(1)
+    text = getattr(module, "TEXT", None) or f"{plain_source(function)}\n"      # of a module that is not generated
+    body = re.search(rf"^def {function.__name__}\(.*\):\n((?:[ ].*\n|\n)*)", text, re.M).group(1)
     reads = "    th = read_thread(thread)\n" * thread + f"    {''.join(f'{n}, ' for n in names[thread:])}= read(arguments)\n"
     fast = kernel.targetoptions.get("fastmath")
     b.text(f"@entry({f'fastmath={FAST}' if fast else ''})\ndef call(thread, arguments):\n{reads}{body}", jit=False)
