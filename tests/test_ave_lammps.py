@@ -7,6 +7,7 @@ import re
 import pytest
 import wheel
 from ave_cases import BASE, CASES, REFUSED, RUNS
+from wheel import ran
 
 from asemd.errors import InputError
 from asemd.lammps import Lammps
@@ -80,8 +81,7 @@ def test_files_like_lammps(name, expected, tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def scene():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(BASE)
+    lmp = ran(BASE)
     yield lmp
     lmp.close()
 
@@ -104,8 +104,7 @@ def test_from_python():
     import numpy as np
 
     from asemd import compute, fix
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(BASE)
+    lmp = ran(BASE)
     scene = lmp.session.scene
     temperature = compute.Temp()
     mean = fix.AveTime(values=[temperature, lambda s: float(s.system.v[0, 0])], sample_every=2, repeat=5, freq=10)
@@ -136,8 +135,7 @@ def test_python_functions_of_a_script(tmp_path, monkeypatch):
     (tmp_path / "f.py").write_text(CODE)
     x = []
     for fixes in ("", "fix e all python/invoke 5 end_of_step endf\nfix p all python/invoke 3 post_force push"):
-        lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-        lmp.commands_string(BASE + "python endf input 1 SELF format p file f.py\n" + fixes + "\nrun 7")
+        lmp = ran(BASE + "python endf input 1 SELF format p file f.py\n" + fixes + "\nrun 7")
         x.append(lmp.extract_atom("x")[0][0])
         calls = lmp.session.python.names["calls"]
     assert calls == [("force", 0), ("force", 3), ("end", 5), ("force", 6)]
@@ -152,8 +150,7 @@ def test_python_functions_of_a_script(tmp_path, monkeypatch):
 def test_older_syntax_of_bins(tmp_path, monkeypatch):
     """Fix ave/spatial has the numbers of ave/chunk."""
     monkeypatch.chdir(tmp_path)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(BASE + """
+    ran(BASE + """
 compute cx all chunk/atom bin/1d x lower 0.25
 fix new all ave/chunk 2 3 10 cx vx density/number c_ke file new.txt
 fix old all ave/spatial 2 3 10 x lower 0.25 vx density/number c_ke file old.txt

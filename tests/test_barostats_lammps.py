@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scripted import by_lammps, have_lammps, measure, write_data
+from wheel import ran, start
 
 NVE = "fix 1 all nve"
 BOX = ["lx", "ly", "lz", "xy", "xz", "yz", "xlo", "ylo", "zlo"]
@@ -133,8 +134,7 @@ ORTHOGONAL, SLAB, FLAT = "boundary p p p", "boundary p p f", "dimension 2\nbound
 ])
 def test_boxes_that_cannot_be_changed_that_way(first, words, message):
     from asemd.errors import InputError
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp = start()
     z = "-0.5 0.5" if first == FLAT else "0 5"
     lmp.commands_string(f"{first}\nregion b block 0 5 0 5 {z}\ncreate_box 1 b\nmass 1 1")
     with pytest.raises(InputError, match=message):
@@ -143,9 +143,7 @@ def test_boxes_that_cannot_be_changed_that_way(first, words, message):
 
 def test_temperatures_that_are_refused():
     from asemd.errors import InputError
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncompute c all chunk/atom type\ncompute t all temp/chunk c")
+    lmp = ran("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncompute c all chunk/atom type\ncompute t all temp/chunk c")
     lmp.command("fix 1 all nvt temp 1 1 1")
     with pytest.raises(InputError, match="fix nvt takes a compute of style temp, temp/com.*; t has style temp/chunk"):
         lmp.command("fix_modify 1 temp t")

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 import pytest
+from wheel import ran
 
 
 @pytest.fixture
@@ -82,24 +83,20 @@ def test_tables_of_pages(compare, monkeypatch, tmp_path):
 
 def test_peptide_scene(compare, tmp_path):
     """Every category of items is there and begins near its rest: the torsions alone have energy."""
-    from asemd.lammps import Lammps
     from tests.benchmarks import peptide, scenes
     peptide.write(tmp_path / "peptide.data")
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(scenes.PEPTIDE.format(data=tmp_path / "peptide.data").replace("replicate 2 2 4", "") + "run 0")
+    lmp = ran(scenes.PEPTIDE.format(data=tmp_path / "peptide.data").replace("replicate 2 2 4", "") + "run 0")
     bond, angle, dihedral, improper = (lmp.get_thermo(word) for word in ("ebond", "eangle", "edihed", "eimp"))
     assert 0.0 < bond < 1.0 and 0.0 < angle < 5.0 and 0.0 < dihedral < 0.4 * 182 and 0.0 <= improper < 1e-3
 
 
 def test_charged_peptide(compare, tmp_path):
     """Neutral, every pair of types has coefficients, and the rigid bonds are those of hydrogen atoms."""
-    from asemd.lammps import Lammps
     from tests.benchmarks import peptide, scenes
     rigid = peptide.write(tmp_path / "p.data", charged=True)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(scenes.PROTEIN_STYLES.replace("coul/long", "coul/charmm").replace("kspace_style pppm 1.0e-4\n", "")
-                        + f"read_data {tmp_path / 'p.data'}\nvariable q equal charge(all)\n"
-                        f"fix 1 all shake 0.0001 10 100 b {' '.join(map(str, rigid['b']))} a {' '.join(map(str, rigid['a']))}")
+    lmp = ran(scenes.PROTEIN_STYLES.replace("coul/long", "coul/charmm").replace("kspace_style pppm 1.0e-4\n", "")
+              + f"read_data {tmp_path / 'p.data'}\nvariable q equal charge(all)\n"
+              f"fix 1 all shake 0.0001 10 100 b {' '.join(map(str, rigid['b']))} a {' '.join(map(str, rigid['a']))}")
     assert abs(lmp.extract_variable("q")) < 1e-12
     bonds, types = lmp.scene.system.topology.items("bond")
     light = lmp.scene.system.atom_masses() < 2.0

@@ -7,12 +7,11 @@ import pickle
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran, start
 
 import asemd
 from asemd.errors import InputError, SimulationError
 from asemd.kernels import bonded
-from asemd.lammps import Lammps
 from asemd.style import find
 from asemd.testing.styles import sample
 
@@ -93,12 +92,8 @@ def theirs(files):
     return ask(STEPS, cases={name: script(name, files) for name in CASES}, words=WORDS)
 
 
-def engine(threads: int = 1):
-    return Lammps(cmdargs=["-screen", "none", "-log", "none", "-threads", str(threads)])
-
-
 def rows_of(lines: list[str], threads: int = 1) -> list[dict]:
-    lmp, rows = engine(threads), []
+    lmp, rows = start("-threads", str(threads)), []
     for line in lines:
         lmp.command(line)
         if line.startswith(("run", "minimize")):
@@ -123,9 +118,7 @@ def test_follows_lammps(name, threads, files, theirs):
 
 
 LOCAL = r"""
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"])
 answer = Path(given["file"]).read_text()
 """
 
@@ -143,9 +136,7 @@ def test_broken_bonds_as_local_values(files, tmp_path):
                 for part in parts]
         return [np.array(sorted(r)) for r in rows]
     want = tables(ask(LOCAL, lines=text(tmp_path / "theirs"), file=str(tmp_path / "theirs")))
-    lmp = engine()
-    for line in text(tmp_path / "mine"):
-        lmp.command(line)
+    lmp = ran(text(tmp_path / "mine"))
     got = tables((tmp_path / "mine").read_text())
     assert [len(t) for t in got] == [len(t) for t in want] and len(got[1]) > 100
     for a, b in zip(got[1:], want[1:]):
@@ -161,9 +152,7 @@ def test_broken_bonds_as_local_values(files, tmp_path):
 def test_energy_is_lost_only_when_bonds_break(files):
     """Every bond that breaks takes U0 with it: the potential ends there with slope zero. The pair style ends before Rc."""
     text = QUARTIC.format(**files).replace("lj/cut 1.5", f"lj/cut {2 ** (1 / 6)!r}") + TAIL + "\ntimestep 0.0005\nrun 0 post no"
-    lmp = engine()
-    for line in text.splitlines():
-        lmp.command(line)
+    lmp = ran(text)
     energies, broken, topology = [], [], lmp.session.scene.system.topology
     for _ in range(8):
         lmp.command("run 25 post no")
@@ -175,25 +164,19 @@ def test_energy_is_lost_only_when_bonds_break(files):
 
 
 def test_broken_bonds_leave_the_data_file(files, tmp_path):
-    lmp = engine()
-    for line in [*script("quartic", files)[0], "run 30 post no", f"write_data {tmp_path / 'out'}"]:
-        lmp.command(line)
+    lmp = ran([*script("quartic", files)[0], "run 30 post no", f"write_data {tmp_path / 'out'}"])
     types = lmp.session.scene.system.topology.bond_types
     left, broken = int((types > 0).sum()), int((types == 0).sum())
     assert left and broken and lmp.get_thermo("bonds") == left + broken
-    again = engine()
     lines = [w for w in script("quartic", files)[0] if not w.startswith(("velocity", "pair_coeff", "bond_coeff", "pair_modify"))]
-    for line in [w.replace(files["chains"], str(tmp_path / "out")) for w in lines] + ["pair_modify shift yes", "run 0 post no"]:
-        again.command(line)
+    again = ran([w.replace(files["chains"], str(tmp_path / "out")) for w in lines] + ["pair_modify shift yes", "run 0 post no"])
     assert again.get_thermo("bonds") == left
     assert again.get_thermo("pe") == pytest.approx(lmp.get_thermo("pe"), rel=1e-10)
 
 
 def test_shares_of_the_atoms_add_up(files):
     for name in ("quartic", "bpm", "special", "restrain"):
-        lmp = engine()
-        for line in [*script(name, files)[0], "compute e all pe/atom", "compute s all stress/atom NULL virial", "run 12 post no"]:
-            lmp.command(line)
+        lmp = ran([*script(name, files)[0], "compute e all pe/atom", "compute s all stress/atom NULL virial", "run 12 post no"])
         moment, result = lmp.session.moment, lmp.session.loop.result
         assert np.sum(moment.per_atom("e")) == pytest.approx(result.potential, rel=1e-11, abs=1e-11)
         units = result.virial_of["bond"] + result.virial_of["pair"]
@@ -239,13 +222,11 @@ def test_memory_follows_lost_atoms(tmp_path):
     """Atoms that leave the box take their bonds along; the others keep their reference lengths."""
     x = np.array([[5.0, 5, 5], [6.1, 5, 5], [9.5, 5, 5], [9.5, 6.3, 5]])
     path = data_file(tmp_path / "data", x, [(3, 4, 1), (1, 2, 1)], 10.0, "full")
-    lmp = engine()
-    for line in ("units lj", "atom_style full", "boundary f p p", "pair_style zero 1.0", "bond_style harmonic/restrain",
-                 f"read_data {path}",
-                 "pair_coeff * *", "bond_coeff 1 10", "group out id 3 4", "velocity out set 5 0 0", "fix 1 all nve", "timestep 0.01",
-                 "thermo_modify lost ignore norm no", "run 60 post no", "displace_atoms all move 0 0 0", "set atom 2 x 6.2",
-                 "run 0 post no"):
-        lmp.command(line)
+    lmp = ran(["units lj", "atom_style full", "boundary f p p", "pair_style zero 1.0", "bond_style harmonic/restrain",
+               f"read_data {path}",
+               "pair_coeff * *", "bond_coeff 1 10", "group out id 3 4", "velocity out set 5 0 0", "fix 1 all nve", "timestep 0.01",
+               "thermo_modify lost ignore norm no", "run 60 post no", "displace_atoms all move 0 0 0", "set atom 2 x 6.2",
+               "run 0 post no"])
     assert lmp.get_natoms() == 2
     assert lmp.get_thermo("ebond") == pytest.approx(0.1, rel=1e-12)
 
@@ -270,8 +251,7 @@ def test_messages(lines, message, files):
     words = {"quartic": "1200 -0.55 0.25 1.3 34.7", "bpm/spring": "1 0.1 0.1", "special": "0.5 0.5"}
     style = next(w.split()[1] for w in lines if w.startswith("bond_style"))
     more = ["pair_coeff * * 1 1"] * any(w.startswith("pair_style") for w in lines) + [f"bond_coeff * {words[style]}", "run 0 post no"]
-    lmp = engine()
-    lmp.commands_list(["units lj", "atom_style full", f"read_data {files['chains']}"])
+    lmp = ran(["units lj", "atom_style full", f"read_data {files['chains']}"])
     with pytest.raises(InputError, match=message):
         lmp.commands_list(lines + more)
 
@@ -309,14 +289,10 @@ def test_quartic_against_60_digits():
 def test_style_chosen_again_after_restart_keeps_lengths(files, tmp_path):
     """Reference lengths come from the restart file as long as no run was made; data files have no coefficients of bpm/spring."""
     head = (BPM.format(special=OFF, words="", **files) + TAIL).splitlines()
-    lmp = engine()
-    for line in [*head, "thermo 10", "run 10", f"write_restart {tmp_path / 'r'}", f"write_data {tmp_path / 'd'}"]:
-        lmp.command(line)
+    lmp = ran([*head, "thermo 10", "run 10", f"write_restart {tmp_path / 'r'}", f"write_data {tmp_path / 'd'}"])
     want = lmp.get_thermo("ebond")
     assert want > 0.0 and "Bond Coeffs" not in (tmp_path / "d").read_text()
-    again = engine()
-    for line in [f"read_restart {tmp_path / 'r'}", "bond_style bpm/spring", "bond_coeff 1 100 0.06 0.5"]:
-        again.command(line)
+    again = ran([f"read_restart {tmp_path / 'r'}", "bond_style bpm/spring", "bond_coeff 1 100 0.06 0.5"])
     (new,), (old,) = (e.session.scene.interactions.uses["bond"] for e in (again, lmp))
     for a, b in zip(new.memory["bonds"], old.memory["bonds"]):
         np.testing.assert_array_equal(a, b)

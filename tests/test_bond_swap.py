@@ -55,13 +55,9 @@ SCRIPT = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
-    n = lmp.extract_setting("nlocal")
-    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
+    lmp = ran(lines)
     bonds = np.array(lmp.gather_bonds()[1]).reshape(-1, 3)
-    answer[name] = {"x": np.array(lmp.numpy.extract_atom("x"))[:n][order].tolist(), "pe": lmp.get_thermo("pe"),
+    answer[name] = {"x": by_id(lmp, "x").tolist(), "pe": lmp.get_thermo("pe"),
                     "vector": [lmp.extract_fix("2", 0, 1, i) for i in (0, 1)],
                     "bonds": sorted([int(min(b[1:])), int(max(b[1:]))] for b in bonds)}
     lmp.close()

@@ -51,9 +51,7 @@ THEIRS = r"""
 answer = {}
 place = given["folder"]
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in [f"log {place}/log", *given["setup"], *lines, *given["end"], f"write_data {place}/theirs nocoeff"]:
-        lmp.command(line)
+    lmp = ran([f"log {place}/log", *given["setup"], *lines, *given["end"], f"write_data {place}/theirs nocoeff"])
     answer[name] = {"energies": [lmp.get_thermo(w) for w in given["words"]], "data": open(f"{place}/theirs").read()}
     answer[name]["items"] = {k: sorted(np.array(getattr(lmp.numpy, f"gather_{k}s")()).reshape(-1, width + 1).tolist())
                              for k, width in (("bond", 2), ("angle", 3), ("dihedral", 4), ("improper", 4))}
@@ -238,9 +236,7 @@ WRITTEN = {"simple": ("", SIMPLE, True), "hybrid": (HYBRID, HYBRID_COEFF, False)
 READ = r"""
 answer = {}
 for name, (styles, lines, writes) in given["files"].items():
-    lmp = start()
-    for line in [*lines, f"include {given['folder']}/{name}.coeff", *given["end"]]:
-        lmp.command(line)
+    lmp = ran([*lines, f"include {given['folder']}/{name}.coeff", *given["end"]])
     answer[name] = {"energies": [lmp.get_thermo(w) for w in given["words"]]}
     if writes:
         lmp.command(f"write_coeff {given['folder']}/theirs")

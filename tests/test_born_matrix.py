@@ -3,10 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 LENGTH, MOLECULES = 14.0, 10
 STYLES = {
@@ -45,9 +44,7 @@ def value(name):
 
 answer = {}
 for name, (lines, names) in given["scenes"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer[name] = {k: np.array(value(k)) for k in names}
     lmp.close()
 """
@@ -85,13 +82,6 @@ def prepare(data, style: str) -> tuple[list[str], list[str]]:
     return [*lines, "thermo_style custom step pe " + " ".join(f"c_{k}[1]" for k in computes), "run 0"], list(computes)
 
 
-def ours(lines, *switches) -> Lammps:
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", *switches])
-    for line in lines:
-        lmp.command(line)
-    return lmp
-
-
 @pytest.fixture(scope="module")
 def scenes(tmp_path_factory):
     data = tmp_path_factory.mktemp("born") / "chains.data"
@@ -113,7 +103,7 @@ def close(a, b, tolerance):
 def test_bonded_and_pair(style, scenes, theirs):
     """Differences as LAMMPS's; second derivatives agree with them."""
     lines, names = scenes[style]
-    lmp = ours(lines)
+    lmp = ran(lines)
     for k in names:
         close(lmp.extract_compute(k, 0, 1), theirs[style][k], 1e-7 if k == "h" else 1e-12)
     lmp.command("compute own all born/matrix")
@@ -123,7 +113,7 @@ def test_bonded_and_pair(style, scenes, theirs):
 
 def test_crystal(scenes, theirs):
     """LAMMPS's own values of pairs by -compat lammps; the pressure with its kinetic part enters those of numdiff."""
-    lmp = ours(scenes["crystal"][0], "-compat", "lammps")
+    lmp = ran(scenes["crystal"][0], "-compat", "lammps")
     for k in "fgh":
         close(lmp.extract_compute(k, 0, 1), theirs["crystal"][k], 1e-7 if k == "h" else 1e-12)
     lmp.close()
@@ -135,15 +125,15 @@ def test_crystal(scenes, theirs):
     ("numdiff 1e-4 vir pair", "unexpected word"), ("pair numdiff 1e-4 vir", "cannot be mixed"),
 ])
 def test_mistakes(words, message):
-    lmp = ours(["units lj", "region b block 0 5 0 5 0 5", "create_box 1 b", "compute vir all pressure NULL virial"])
+    lmp = ran(["units lj", "region b block 0 5 0 5 0 5", "create_box 1 b", "compute vir all pressure NULL virial"])
     with pytest.raises(InputError, match=message):
         lmp.command(f"compute wrong all born/matrix {words}")
     lmp.close()
 
 
 def test_style_without_second_derivatives():
-    lmp = ours(["units lj", "region b block 0 5 0 5 0 5", "create_box 1 b", "create_atoms 1 single 1 1 1", "create_atoms 1 single 2 1 1",
-                "mass * 1", "pair_style dpd 1.0 2.0 123", "pair_coeff 1 1 1 1", "compute f all born/matrix", "run 0"])
+    lmp = ran(["units lj", "region b block 0 5 0 5 0 5", "create_box 1 b", "create_atoms 1 single 1 1 1", "create_atoms 1 single 2 1 1",
+               "mass * 1", "pair_style dpd 1.0 2.0 123", "pair_coeff 1 1 1 1", "compute f all born/matrix", "run 0"])
     with pytest.raises(InputError, match="pair style dpd"):
         lmp.extract_compute("f", 0, 1)
     lmp.close()

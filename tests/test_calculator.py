@@ -17,6 +17,7 @@ from ase.constraints import FixAtoms, FixCartesian
 from ase.filters import FrechetCellFilter
 from ase.md.verlet import VelocityVerlet
 from ase.optimize import BFGS, FIRE
+from wheel import ran
 
 import asemd
 from asemd.calculator import ForceField
@@ -433,9 +434,7 @@ def read(tmp_path, text: str):
 def test_scripts_give_the_energies_of_lammps(tmp_path, unit, more):
     text = script(unit, more)
     atoms = read(tmp_path, text)
-    from asemd.lammps import Lammps
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as session:
-        session.commands_string(text + "\nthermo_modify norm no\nrun 0")
+    with ran(text + "\nthermo_modify norm no\nrun 0") as session:
         energy, forces = session.get_thermo("pe"), np.array(session.gather_atoms("f", 1, 3)).reshape(-1, 3)
     e, d = FACTORS[unit]
     assert atoms.get_potential_energy() == pytest.approx(energy * e, rel=1e-9)

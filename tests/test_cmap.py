@@ -3,12 +3,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 import asemd
 from asemd.errors import AsemdError, InputError, SimulationError
 from asemd.fix.cmap import CMAP, read_maps
-from asemd.lammps import Lammps
 from asemd.topology import Topology
 
 CHAINS, BEADS = 6, 7
@@ -107,12 +106,6 @@ def scene(folder, name="", more=(), read="fix c crossterm CMAP"):
             "velocity all create 300 9", *more]
 
 
-def session(lines):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(lines)
-    return lmp
-
-
 @pytest.fixture(scope="module")
 def expected(folder):
     cases = {name: [scene(folder, name, lines), runs] for name, (lines, runs) in CASES.items()}
@@ -122,7 +115,7 @@ def expected(folder):
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(name, folder, expected):
     lines, runs = CASES[name]
-    lmp, tolerance = session(scene(folder, name, lines)), 1e-8 if name == "minimize" else 1e-10
+    lmp, tolerance = ran(scene(folder, name, lines)), 1e-8 if name == "minimize" else 1e-10
     for run, want in zip(runs, expected[name], strict=True):
         lmp.command(run)
         for key, array, width in ARRAYS[:2] if name == "minimize" else ARRAYS:
@@ -202,21 +195,20 @@ def test_atoms_of_ase(folder):
 def test_threads_give_the_same(folder):
     energies = []
     for threads in (1, 3):
-        lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "--threads", str(threads)])
-        lmp.commands_list(scene(folder, "", ["fix 1 all nve", "run 20"]))
+        lmp = ran(scene(folder, "", ["fix 1 all nve", "run 20"]), "--threads", str(threads))
         energies.append(lmp.get_thermo("f_c"))
     assert energies[0] == pytest.approx(energies[1], rel=1e-11)
 
 
 def test_restart_and_add(folder, tmp_path):
-    lmp = session(scene(folder, "", ["fix 1 all nve", "run 5", f"write_restart {tmp_path}/r", "run 5"]))
-    again = session([f"read_restart {tmp_path}/r", f"fix c all cmap {folder}/maps.cmap", "fix 1 all nve", "thermo_style custom step f_c",
-                     "run 5"])
+    lmp = ran(scene(folder, "", ["fix 1 all nve", "run 5", f"write_restart {tmp_path}/r", "run 5"]))
+    again = ran([f"read_restart {tmp_path}/r", f"fix c all cmap {folder}/maps.cmap", "fix 1 all nve", "thermo_style custom step f_c",
+                 "run 5"])
     assert again.get_thermo("f_c") == pytest.approx(lmp.get_thermo("f_c"), rel=1e-11)
-    both = session([*scene(folder), f"read_data {folder}/chains.data add append fix c crossterm CMAP", "run 0"])
-    alone = session([*scene(folder), "run 0"])
+    both = ran([*scene(folder), f"read_data {folder}/chains.data add append fix c crossterm CMAP", "run 0"])
+    alone = ran([*scene(folder), "run 0"])
     assert both.get_thermo("f_c") == pytest.approx(2 * alone.get_thermo("f_c"), rel=1e-11)
-    copies = session([*scene(folder), "replicate 2 1 1", "run 0"])
+    copies = ran([*scene(folder), "replicate 2 1 1", "run 0"])
     assert copies.get_thermo("f_c") == pytest.approx(2 * alone.get_thermo("f_c"), rel=1e-11)
 
 
@@ -237,7 +229,7 @@ def test_wrong_commands(command, folder):
     (folder / "word.cmap").write_text("# x\n1.0 x\n")
     (folder / "short.cmap").write_text("1 2 3 4 5\n")
     with pytest.raises(InputError, match=WRONG[command]):
-        session([*START.split("\n")[:-1], command.format(f=folder)])
+        ran([*START.split("\n")[:-1], command.format(f=folder)])
 
 
 @pytest.mark.parametrize("lines", SECTIONS)
@@ -245,21 +237,21 @@ def test_wrong_sections(lines, folder, tmp_path):
     text = (folder / "chains.data").read_text()
     (tmp_path / "wrong.data").write_text(text.replace("18 crossterms", "1 crossterms").split("CMAP")[0] + f"CMAP\n\n{lines}\n")
     with pytest.raises(InputError, match=SECTIONS[lines]):
-        session([*START.split("\n")[:-1], f"fix c all cmap {folder}/maps.cmap", f"read_data {tmp_path}/wrong.data fix c crossterm CMAP"])
+        ran([*START.split("\n")[:-1], f"fix c all cmap {folder}/maps.cmap", f"read_data {tmp_path}/wrong.data fix c crossterm CMAP"])
 
 
 def test_other_mistakes(folder):
     with pytest.raises(InputError, match="fix cmap, which must be there before"):
-        session([*START.split("\n")[:-1], f"read_data {folder}/chains.data"])
+        ran([*START.split("\n")[:-1], f"read_data {folder}/chains.data"])
     with pytest.raises(InputError, match="there is fix c of this style already"):
-        session([*scene(folder), f"fix d all cmap {folder}/maps.cmap"])
+        ran([*scene(folder), f"fix d all cmap {folder}/maps.cmap"])
     with pytest.raises(AsemdError, match="CMAP atoms 1 2 3 4 5 missing at step 0"):
-        session([*scene(folder), "group g id 5", "delete_atoms group g bond yes compress no", "run 0"])
+        ran([*scene(folder), "group g id 5", "delete_atoms group g bond yes compress no", "run 0"])
     with pytest.raises(InputError, match="no global vector"):
-        session([*scene(folder), "run 0", "print $(f_c[1])"])
+        ran([*scene(folder), "run 0", "print $(f_c[1])"])
     with pytest.raises(SimulationError, match="CMAP atoms .* missing: one of them left"):
-        session(scene(folder, "", ["region r block INF INF INF INF INF INF", "group g id 5", "fix 1 all nve",
-                                   "thermo_modify lost/bond ignore", "fix 2 g evaporate 1 1 r 77", "run 3"]))
+        ran(scene(folder, "", ["region r block INF INF INF INF INF INF", "group g id 5", "fix 1 all nve",
+                               "thermo_modify lost/bond ignore", "fix 2 g evaporate 1 1 r 77", "run 3"]))
     with pytest.raises(InputError, match=r"maps must have the shape \(m, 24, 24\)"):
         CMAP(np.zeros((24, 24)))
     with pytest.raises(ValueError, match="names an atom twice"):
@@ -267,7 +259,7 @@ def test_other_mistakes(folder):
 
 
 def test_all_atoms_of_a_chain_can_go(folder):
-    lmp = session([*scene(folder), "group g molecule 1", "delete_atoms group g bond yes compress no", "run 0"])
+    lmp = ran([*scene(folder), "group g molecule 1", "delete_atoms group g bond yes compress no", "run 0"])
     assert np.isfinite(lmp.get_thermo("f_c"))
     lmp.command("unfix c")
     assert not len(lmp.scene.system.topology.crossterms)

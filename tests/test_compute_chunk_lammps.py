@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 SCALAR, VECTOR, ARRAY, ATOM = "scalar vector array per_atom".split()
 START = """
@@ -118,9 +118,7 @@ STRAIGHT = {
 SCENES = {"tilted": (FIRST | TILTED, (3.0, -2.0, 1.5)), "straight": (STRAIGHT, None)}
 BY_LAMMPS = """
 import numpy as np
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"])
 order = ("scalar", "vector", "array")
 answer = []
 for run in given["runs"]:
@@ -166,10 +164,7 @@ def write_data(path, tilt):
 
 
 def by_asemd(lines, runs, wanted):
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer = []
     for run in runs:
         lmp.command(run)
@@ -213,14 +208,9 @@ def test_like_lammps(scene, id, results):
 
 def test_arrays_of_temperatures_are_not_divided(tmp_path):
     """``thermo_modify norm yes`` divides the tensor, which grows with the system, by the number of atoms."""
-    from asemd.lammps import Lammps
     write_data(tmp_path / "data", None)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in [line for line in START.format(data=tmp_path / "data").splitlines() if line]:
-        lmp.command(line)
-    for line in ("compute c all chunk/atom molecule", "compute t all temp/chunk c temp", "thermo_style custom c_t[1] c_t[1][1]",
-                 "thermo_modify norm yes", "run 0"):
-        lmp.command(line)
+    lmp = ran([START.format(data=tmp_path / "data"), "compute c all chunk/atom molecule", "compute t all temp/chunk c temp",
+               "thermo_style custom c_t[1] c_t[1][1]", "thermo_modify norm yes", "run 0"])
     moment, row = lmp.session.moment, lmp.session.last_thermo
     assert row["c_t[1]"] == moment.vector("t")[0] / 64 and row["c_t[1][1]"] == moment.array("t")[0, 0] > 0.0
     lmp.close()

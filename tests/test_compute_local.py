@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from bonded_scene import HYBRID, HYBRID_COEFF, SIMPLE, data, head
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.compute import improper_local
 from asemd.compute.dihedral_local import phi
@@ -45,9 +45,7 @@ THEIRS = r"""
 import os
 answer = {}
 for name, lines, local in given["scenes"]:
-    lmp = start()
-    for line in [*lines, *(f"compute {k} {words}" for k, words in local.items())]:
-        lmp.command(line)
+    lmp = ran([*lines, *(f"compute {k} {words}" for k, words in local.items())])
     lmp.command("thermo_style custom step pe ebond")
     for k in local:
         lmp.command(f"dump {k} all local 1 {given['folder']}/unused c_{k}" + ("[*]" if given["wide"][k] else ""))
@@ -57,9 +55,7 @@ for name, lines, local in given["scenes"]:
         values = lmp.numpy.extract_compute(k, 2, 2 if given["wide"][k] else 1)
         answer[name][k] = np.zeros(0) if values is None else np.array(values)
     lmp.close()
-lmp = start()
-for line in given["hybrid"]:
-    lmp.command(line)
+lmp = ran(given["hybrid"])
 for kind in ("bond", "angle", "dihedral", "improper"):
     lmp.command(f"compute {kind} all {kind}")
 lmp.command("thermo_style custom step " + " ".join(f"c_{k}[{i}]" for k in ("bond", "angle", "dihedral", "improper") for i in (1, 2)))
@@ -69,11 +65,8 @@ for kind in ("bond", "angle", "dihedral", "improper"):
 lmp.close()
 answer["dumps"] = {}
 for name, (words, modify) in given["dumps"].items():
-    lmp = start()
     path = os.path.join(given["folder"], "dump")
-    for line in [*given["dumped"], f"dump d all local 1 {path} {words}"] + [f"dump_modify d {modify}"] * bool(modify) + ["run 0"]:
-        lmp.command(line)
-    lmp.close()
+    ran([*given["dumped"], f"dump d all local 1 {path} {words}"] + [f"dump_modify d {modify}"] * bool(modify) + ["run 0"]).close()
     answer["dumps"][name] = open(path).read()
 """
 
@@ -105,13 +98,6 @@ def theirs(folder):
                dumped=[*lines_of("simple", folder / "d"), *DUMPED])
 
 
-def ours(lines):
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(lines)
-    return lmp
-
-
 def by_row(values: np.ndarray, pairs: bool) -> np.ndarray:
     """Rows in order; the two atoms of a pair of neighbours in order of id."""
     values = np.asarray(values, float)
@@ -124,7 +110,7 @@ def by_row(values: np.ndarray, pairs: bool) -> np.ndarray:
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_same_values_as_lammps(theirs, folder, scene):
-    lmp = ours([*lines_of(scene, folder / "d"), "run 0"])
+    lmp = ran([*lines_of(scene, folder / "d"), "run 0"])
     for name, words in LOCAL.items():
         if name == "motion" and scene != "inside":      # LAMMPS takes no image of a bond across a face here
             continue
@@ -138,7 +124,7 @@ def test_same_values_as_lammps(theirs, folder, scene):
 
 
 def test_energies_of_sub_styles(theirs, folder):
-    lmp = ours([*lines_of("hybrid", folder / "d"), *(f"compute {k} all {k}" for k in ("bond", "angle", "dihedral", "improper")), "run 0"])
+    lmp = ran([*lines_of("hybrid", folder / "d"), *(f"compute {k} all {k}" for k in ("bond", "angle", "dihedral", "improper")), "run 0"])
     for kind, total in (("bond", "ebond"), ("angle", "eangle"), ("dihedral", "edihed"), ("improper", "eimp")):
         got = lmp.extract_compute(kind, 0, 1)
         np.testing.assert_allclose(got, theirs[kind], rtol=1e-12)
@@ -149,14 +135,14 @@ def test_energies_of_sub_styles(theirs, folder):
 def test_same_dump_as_lammps(theirs, folder, name, tmp_path):
     words, modify = DUMPS[name]
     lines = [*lines_of("simple", folder / "d"), *DUMPED, f"dump d all local 1 {tmp_path}/dump {words}"]
-    ours([*lines, *[f"dump_modify d {modify}"] * bool(modify), "run 0"]).close()
+    ran([*lines, *[f"dump_modify d {modify}"] * bool(modify), "run 0"]).close()
     assert (tmp_path / "dump").read_text() == theirs["dumps"][name]
 
 
 def test_rows_of_two_computes_fit_together(folder):
     """The energy in a row is that of the bond named in the same row of another compute."""
-    lmp = ours([*lines_of("hybrid", folder / "d"), "compute p all property/local batom1 batom2 btype",
-                "compute e all bond/local engpot dist", "run 0"])
+    lmp = ran([*lines_of("hybrid", folder / "d"), "compute p all property/local batom1 batom2 btype",
+               "compute e all bond/local engpot dist", "run 0"])
     for (_, _, kind), (energy, r) in zip(lmp.extract_compute("p", 2, 2), lmp.extract_compute("e", 2, 2), strict=True):
         expected = 100 * (r - 1.3) ** 2 if kind == 1 else 50 * (1 - np.exp(-1.5 * (r - 1.2))) ** 2
         assert energy == pytest.approx(expected, rel=1e-12)
@@ -164,8 +150,8 @@ def test_rows_of_two_computes_fit_together(folder):
 
 def test_forces_of_bonds_are_the_forces(folder):
     """Forces of all bonds add up to the forces on the atoms, energies to the energy."""
-    lmp = ours([*head(folder / "d"), *SIMPLE, "pair_style none", "angle_style none", "dihedral_style none", "improper_style none",
-                "compute p all property/local batom1 batom2", "compute f all bond/local fx fy fz engpot", "run 0"])
+    lmp = ran([*head(folder / "d"), *SIMPLE, "pair_style none", "angle_style none", "dihedral_style none", "improper_style none",
+               "compute p all property/local batom1 batom2", "compute f all bond/local fx fy fz engpot", "run 0"])
     f, pairs = lmp.extract_compute("f", 2, 2), lmp.extract_compute("p", 2, 2).astype(int) - 1
     total = np.zeros((12, 3))
     np.add.at(total, pairs[:, 0], f[:, :3])
@@ -176,9 +162,9 @@ def test_forces_of_bonds_are_the_forces(folder):
 
 def test_bond_outside_its_domain_is_nan(folder):
     """A bond beyond the reach of its style has no energy; the others keep theirs."""
-    lmp = ours([*head(folder / "d", styles="bond_style hybrid harmonic fene"), "bond_coeff 1 harmonic 100 1.3",
-                "bond_coeff 2 fene 30 1.6 0.1 1", "delete_bonds all bond 2", "compute e all bond/local engpot dist", "run 0",
-                "delete_bonds all bond 2 undo"])
+    lmp = ran([*head(folder / "d", styles="bond_style hybrid harmonic fene"), "bond_coeff 1 harmonic 100 1.3",
+               "bond_coeff 2 fene 30 1.6 0.1 1", "delete_bonds all bond 2", "compute e all bond/local engpot dist", "run 0",
+               "delete_bonds all bond 2 undo"])
     before = lmp.extract_compute("e", 2, 2)
     assert np.isfinite(before).all()
     lmp.scene.system.x[3] += 3.0
@@ -188,8 +174,8 @@ def test_bond_outside_its_domain_is_nan(folder):
 
 
 def test_computes_travel(folder):
-    lmp = ours([*lines_of("simple", folder / "d"), "compute b all bond/local dist engpot", "compute p all property/local patom1 patom2",
-                "run 0"])
+    lmp = ran([*lines_of("simple", folder / "d"), "compute b all bond/local dist engpot", "compute p all property/local patom1 patom2",
+               "run 0"])
     scene = pickle.loads(pickle.dumps(lmp.scene))
     for id in ("b", "p"):
         np.testing.assert_array_equal(scene.computes[id].local(lmp.session.moment.snapshot), lmp.extract_compute(id, 2, 2))
@@ -211,13 +197,13 @@ def test_computes_travel(folder):
     ("dump d all local 1 f c_thermo_pe", "no local values"), ("dump d all local 1 f c_nothing", "there is no compute nothing"),
 ])
 def test_mistakes(folder, line, message):
-    lmp = ours([*lines_of("simple", folder / "d"), *DUMPED])
+    lmp = ran([*lines_of("simple", folder / "d"), *DUMPED])
     with pytest.raises(InputError, match=message):
         lmp.command(line)
 
 
 def test_mistakes_with_dumps(folder, tmp_path):
-    lmp = ours([*lines_of("simple", folder / "d"), *DUMPED, f"dump d all local 1 {tmp_path}/f c_1[1] c_3"])
+    lmp = ran([*lines_of("simple", folder / "d"), *DUMPED, f"dump d all local 1 {tmp_path}/f c_1[1] c_3"])
     with pytest.raises(InputError, match="no atom ID"):
         lmp.command("dump_modify d sort id")
     with pytest.raises(InputError, match="not supported by dump style local"):
@@ -236,8 +222,8 @@ def test_impropers_on_a_line_have_90_degrees_as_in_lammps():
 
 def test_all_sub_styles_in_thermo_before_the_first_run(folder):
     """``c_ID[*]`` is as long as the hybrid."""
-    lmp = ours([*lines_of("hybrid", folder / "d"), "compute b all bond", "compute d all dihedral",
-                "thermo_style custom step c_b[*] c_d[*]", "run 0 post no"])
+    lmp = ran([*lines_of("hybrid", folder / "d"), "compute b all bond", "compute d all dihedral",
+               "thermo_style custom step c_b[*] c_d[*]", "run 0 post no"])
     words = list(lmp.session.scene.thermo.words)
     lmp.close()
     assert words == ["step", *(f"c_{id}[{k}]" for id in "bd" for k in range(1, 1 + len(words) // 2))] and len(words) > 3

@@ -4,9 +4,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from test_compute_chunk_lammps import FIRST, START, TILTED, write_data
+from wheel import ran
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 PAIRS = {"com/molecule": "com/chunk c", "inertia/molecule": "inertia/chunk c", "gyration/molecule": "gyration/chunk c",
          "gyration/molecule tensor": "gyration/chunk c tensor", "property/molecule mol count": "property/chunk c id count",
@@ -18,8 +18,7 @@ PAIRS = {"com/molecule": "com/chunk c", "inertia/molecule": "inertia/chunk c", "
 def scene(tmp_path_factory):
     data = tmp_path_factory.mktemp("molecules") / "data"
     write_data(data, (3.0, -2.0, 1.5))
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(START.format(data=data))
+    lmp = ran(START.format(data=data))
     lmp.commands_string("compute k all ke/atom\ncompute c some chunk/atom molecule compress yes")
     for k, (old, new) in enumerate(PAIRS.items()):
         lmp.commands_string(f"compute old{k} some {old}\ncompute new{k} some {new}")
@@ -77,8 +76,7 @@ def test_errors(words, message, scene):
 def test_words_make_the_same_compute_again(tmp_path):
     data = tmp_path / "data"
     write_data(data, (3.0, -2.0, 1.5))
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(START.format(data=data))
+    lmp = ran(START.format(data=data))
     computes = FIRST | TILTED | {f"old{k}": (f"all {old.replace('c_k', 'c_ke')}", []) for k, old in enumerate(PAIRS)}
     for id, (words, _) in computes.items():
         lmp.command(f"compute {id} {words}")

@@ -5,10 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 COMMON = """
 atom_modify map array sort 0 0
@@ -101,9 +100,7 @@ HERE = {     # rdf 2 1: LAMMPS's coordination numbers of unlike types are wrong 
 THEIRS = """
 answer = {}
 for name, (lines, computes) in given["scenes"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     n = lmp.extract_setting("nlocal")
     order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
     answer[name] = {}
@@ -168,7 +165,7 @@ def occupied() -> list[str]:
 
 def test_occupation_of_cells(theirs):
     """The second column of LAMMPS counts one too many for some atoms with only_group."""
-    lmp = ours(occupied())
+    lmp = ran(occupied())
     order = np.argsort(lmp.scene.system.id)
     for k in "chg":
         columns = slice(0, 1 if k == "g" else 2)
@@ -187,7 +184,7 @@ def running() -> list[str]:
 
 def test_density_of_entropy_in_a_run(theirs):
     """It is that of the last evaluation after a list was built."""
-    lmp = ours(running())
+    lmp = ran(running())
     value = lmp.extract_compute("c", 1, 1)[np.argsort(lmp.scene.system.id)]
     np.testing.assert_allclose(value, theirs["running"]["c"], rtol=1e-9)
     lmp.close()
@@ -202,7 +199,7 @@ def tails() -> list[str]:
 
 
 def test_tail_of_some_types(theirs):
-    lmp = ours(tails())
+    lmp = ran(tails())
     for k in "cd":
         assert lmp.extract_compute(k, 0, 0) == pytest.approx(float(theirs["tails"][k]), rel=1e-13)
     assert abs(lmp.extract_compute("d", 0, 0)) < 0.99 * abs(lmp.extract_compute("c", 0, 0))
@@ -212,7 +209,7 @@ def test_tail_of_some_types(theirs):
 @pytest.mark.parametrize("name", SCENES)
 def test_like_lammps(name, theirs):
     lines, computes = prepare(name)
-    lmp = ours(lines)
+    lmp = ran(lines)
     order = np.argsort(lmp.scene.system.id)
     for (id, kind), words in zip(computes.items(), EVERYWHERE | HERE[name], strict=True):
         value, expected = lmp.extract_compute(id, 0 if kind in "SVG" else 2 if kind in "LM" else 1, "SVG".find(kind)), theirs[name][id]
@@ -227,13 +224,6 @@ def test_like_lammps(name, theirs):
         value = VALUES[kind]
         np.testing.assert_array_equal(getattr(again, value)(snapshot), getattr(compute, value)(snapshot), err_msg=words)
     lmp.close()
-
-
-def ours(lines) -> Lammps:
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in lines:
-        lmp.command(line)
-    return lmp
 
 
 @pytest.mark.parametrize(("line", "message"), [
@@ -298,7 +288,7 @@ def test_beyond_the_pair_style(crystal, line, kind):
 
 @pytest.fixture(scope="module")
 def crystal():
-    lmp = ours([line for line in SCENES["crystal"].splitlines() if line] + [*HELPERS, "run 0"])
+    lmp = ran([SCENES["crystal"], *HELPERS, "run 0"])
     yield lmp
     lmp.close()
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scripted import script, write_data
-
-from asemd.lammps import Lammps
+from wheel import ran
 
 P = "0 0 60"
 RIGID = "neigh_modify exclude molecule/intra all"
@@ -39,8 +38,7 @@ def drift(commands: list[str], data, dt: float) -> float:
     first = ["timestep 1e-5", "run 1", "velocity all create 300 77", "run 1"] if "shake" in commands[0] else []
     smooth = script(data).replace("lj/cut 5.0", "soft 5.0").replace("timestep 1.0", "pair_coeff * * 2.0 5.0")
     steps = round(TIME / dt / LOOKS)
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
-        lmp.commands_string("\n".join([smooth, *commands, "variable e equal econserve", *first, f"timestep {dt}", f"run {steps}"]))
+    with ran("\n".join([smooth, *commands, "variable e equal econserve", *first, f"timestep {dt}", f"run {steps}"])) as lmp:
         energies = [conserved(lmp)]
         for _ in range(LOOKS - 1):
             lmp.command(f"run {steps} pre no")

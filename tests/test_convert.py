@@ -11,12 +11,11 @@ import bonded_scene
 import numpy as np
 import pytest
 from lj_cell import BASE
-from wheel import ask
+from wheel import ask, ran, start
 
 import asemd
 from asemd.cli import main
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = """
@@ -66,7 +65,7 @@ def here(tmp_path, monkeypatch):
 
 
 def thermo(path: str) -> dict:
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+    with start() as lmp:
         lmp.file(path)
         order = np.argsort(lmp.scene.system.id)
         return {"thermo": lmp.last_thermo(), "x": lmp.scene.system.x[order]}
@@ -91,15 +90,14 @@ def test_lammps_runs_what_is_written(here):
 
 
 def test_scene_to_lammps(here):
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
-        lmp.commands_string(BASE + "fix 2 all langevin 1 1 0.3 123\ngroup a id 1:4\nfix 3 a setforce 0 NULL 0\nrun 5")
+    with ran(BASE + "fix 2 all langevin 1 1 0.3 123\ngroup a id 1:4\nfix 3 a setforce 0 NULL 0\nrun 5") as lmp:
         path = lmp.scene.to_lammps("deep/er", "x")
         assert path == Path("deep/er/in.x")
         lmp.commands_string("variable f equal 1\nfix 4 all addforce v_f 0 0")
         with pytest.raises(InputError, match="fix 4 .style addforce. uses v_f"):
             lmp.scene.to_lammps("other")
         os.chdir("deep/er")
-        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as again:
+        with start() as again:
             again.file("in.x")
             assert list(again.scene.fixes) == ["1", "2", "3"] and again.scene.step == 5 and again.scene.groups["a"].sum() == 4
             for l in (lmp, again):
@@ -122,7 +120,7 @@ def test_python(here, name):
 def thermo_energy(path: str) -> float:
     """Potential energy of all atoms after the script, ASE units."""
     from asemd import units
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+    with start() as lmp:
         lmp.file(path)
         lmp.command("thermo_modify norm no")
         return lmp.get_thermo("pe") * units.factor("energy", lmp.scene.units)

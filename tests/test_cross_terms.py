@@ -5,12 +5,11 @@ import math
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran, start
 
 from asemd import style as registry
 from asemd.errors import InputError
 from asemd.forcefield import Interactions
-from asemd.lammps import Lammps
 
 pytestmark = pytest.mark.filterwarnings("ignore:no fixes with time integration")
 HEAD = """four atoms
@@ -64,8 +63,7 @@ MARKED = ["angle_coeff 1 class2 110 75 5 1", "angle_coeff 2 harmonic 30 100", "a
 SCRIPT = """
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    lmp.commands_list(lines)
+    lmp = ran(lines)
     answer[name] = {"energy": lmp.get_thermo("eangle"), "pair": lmp.get_thermo("evdwl"), "forces": by_id(lmp, "f"),
                     "virial": [lmp.extract_compute("w", 0, 1)[k] for k in range(6)], "share": by_share(lmp)}
     lmp.close()
@@ -87,8 +85,7 @@ def lines(folder, data: str, styles: list[str], coeffs=(), special="0 0 1") -> l
 
 
 def agree(commands: list[str], want, tolerance=1e-12):
-    ours = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    ours.commands_list(commands)
+    ours = ran(commands)
     assert ours.get_thermo("eangle") == pytest.approx(want["energy"], rel=tolerance)
     assert ours.get_thermo("evdwl") == pytest.approx(want["pair"], rel=tolerance, abs=1e-14)
     forces = np.array(ours.gather_atoms("f", 1, 3)).reshape(-1, 3)
@@ -142,7 +139,7 @@ def test_written_and_read_back(wheel, tmp_path):
 
 def test_missing_and_wrong_lines(tmp_path):
     def run(*coeffs):
-        Lammps(cmdargs=["-screen", "none", "-log", "none"]).commands_list(
+        start().commands_list(
             lines(tmp_path, "", [*ZERO, "angle_style class2"], [*FILL, *coeffs]))
     with pytest.raises(Exception, match="All angle coeffs are not set: angle_coeff 1 of angle style class2 lacks ba"):
         run("angle_coeff * 110 75 5 1", "angle_coeff * bb 10 1.5 1.4")
@@ -170,8 +167,7 @@ def test_coefficients_from_python():
 
 def test_spica_wants_its_pair_style(tmp_path):
     def run(pair, angle):
-        ours = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-        ours.commands_list(lines(tmp_path, "", [*pair, "angle_style spica"], [*FILL, angle]))
+        ours = ran(lines(tmp_path, "", [*pair, "angle_style spica"], [*FILL, angle]))
         return ours.get_thermo("eangle")
     with pytest.raises(Exception, match="angle style spica takes the repulsion of its ends from a pair style such as lj/spica"):
         run(ZERO, "angle_coeff * 30 110")

@@ -422,11 +422,9 @@ def test_write_and_read_keeps_every_bit(tmp_path, name, types):
 
 
 WHEEL = """
-lmp = start()
-for line in ["units lj", "atom_style full", "pair_style zero 3.0", "bond_style zero", "angle_style zero", "dihedral_style zero",
-             "improper_style zero", "read_data " + given["before"], "pair_coeff * *", "bond_coeff *", "angle_coeff *", "dihedral_coeff *",
-             "improper_coeff *", "write_data " + given["after"]]:
-    lmp.command(line)
+lmp = ran(["units lj", "atom_style full", "pair_style zero 3.0", "bond_style zero", "angle_style zero", "dihedral_style zero",
+           "improper_style zero", "read_data " + given["before"], "pair_coeff * *", "bond_coeff *", "angle_coeff *", "dihedral_coeff *",
+           "improper_coeff *", "write_data " + given["after"]])
 answer = dict(x=list(lmp.gather_atoms("x", 1, 3)), image=list(lmp.gather_atoms("image", 0, 3)))
 lmp.close()
 """

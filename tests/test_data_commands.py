@@ -84,11 +84,7 @@ def session(*lines, before=()):
 
 
 WHEEL = """
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
-for line in ["pair_style zero 2.0", "pair_coeff * *", "bond_style zero", "bond_coeff *", "write_data " + given["out"]]:
-    lmp.command(line)
+lmp = ran([*given["lines"], "pair_style zero 2.0", "pair_coeff * *", "bond_style zero", "bond_coeff *", "write_data " + given["out"]])
 lmp.close()
 answer = "written"
 """

@@ -43,9 +43,7 @@ STEPS = {"remap v": "40", "box, remap v": "40"}
 SCRIPT = """
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     box = lmp.extract_box()
     answer[name] = [*box[0], *box[1], *box[2:5], lmp.get_thermo("press"), lmp.get_thermo("temp")]
     lmp.close()

@@ -77,9 +77,7 @@ THEIRS = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     ids = np.array(lmp.numpy.extract_atom("id"))[:lmp.extract_setting("nlocal")]
     order = np.argsort(ids)
     values = {key: np.array(lmp.numpy.extract_atom(key))[:len(ids)][order].tolist() for key in ("x", "f", "type", "molecule")}

@@ -3,10 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran, start
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 CLASS2 = ["75.0 169 45.0 10 24.0 40.0", "mbt 75 42 31 5.2", "ebt 75 42 31 65 42 -31 1.4 1.5", "at 75 42 31 75 -42 31 120 50",
           "aat 75 120 160", "bb13 75 1.4 1.3"]
@@ -67,8 +66,7 @@ for lines in given["jobs"]:
 
 def same(lines, want, switches=("-compat", "lammps")):
     assert "error" not in want, want["error"]
-    with Lammps(cmdargs=["-screen", "none", "-log", "none", *switches]) as mine:
-        mine.commands_list([*lines, "run 0"])
+    with ran([*lines, "run 0"], *switches) as mine:
         forces = np.array(list(mine.gather_atoms("f", 1, 3))).reshape(-1, 3)
         assert np.abs(forces - want["forces"]).max() <= 5e-12 * np.abs(want["forces"]).max()
         for key in ("edihed", "evdwl", "ecoul"):
@@ -76,7 +74,7 @@ def same(lines, want, switches=("-compat", "lammps")):
 
 
 def fails(lines, text):
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as mine, pytest.raises(InputError, match=text):
+    with start() as mine, pytest.raises(InputError, match=text):
         mine.commands_list([*lines, "run 0"])
 
 
@@ -96,8 +94,7 @@ def test_energy_of_a_straight_chain(tmp_path):
             "opls": ["* 1.74 -0.157 0.279 0.9"], "multi/harmonic": ["* 20 -10 5 7 -3"], "lepton": ["* (phi-1)^2+sin(phi)"]}
     jobs = [scene(path, style, coeff) for style, coeff in (LISTS | more).items()]
     for job, want in zip(jobs, ask(WHEEL, jobs=jobs), strict=True):
-        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as mine:
-            mine.commands_list([*job, "run 0"])
+        with ran([*job, "run 0"]) as mine:
             assert mine.get_thermo("edihed") == pytest.approx(want["edihed"], rel=1e-11, abs=1e-12), job
 
 
@@ -133,8 +130,7 @@ def test_weights_ask_for_factors_of_zero_and_a_pair_style(tmp_path):
 def test_cross_terms_in_data_files(style, tmp_path):
     path, written = data(tmp_path / "data.chain", 0), tmp_path / "data.written"
     lines = scene(path, style, LISTS[style])
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as mine:
-        mine.commands_list([*lines, "run 0", f"write_data {written}"])
+    with ran([*lines, "run 0", f"write_data {written}"]) as mine:
         energy = mine.get_thermo("edihed")
     assert written.read_text().count("skip") == (5 if "hybrid" in style else 0)
     again = [line.replace(str(path), str(written)) for line in lines if not line.startswith(("dihedral_coeff", "bond_coeff", "pair_coeff"))]
@@ -156,8 +152,7 @@ def test_the_cutoff_of_a_table_is_no_cross_term(style, tmp_path):
     hybrid = [f"1 table/cut {cut}", f"3 table/cut {cut}", *(f"2 class2 {line}" for line in CLASS2)]
     lines = hybrid if "hybrid" in style else [f"* {cut}"]
     lines = scene(path, style, lines)
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as mine:
-        mine.commands_list([*lines, "run 0", f"write_data {written}"])
+    with ran([*lines, "run 0", f"write_data {written}"]) as mine:
         energy = mine.get_thermo("edihed")
     again = [line.replace(str(path), str(written)) for line in lines if not line.startswith(("dihedral_coeff", "bond_coeff", "pair_coeff"))]
     want, = ask(WHEEL, jobs=[again])

@@ -5,14 +5,13 @@ import mpmath as mp
 import numpy as np
 import pytest
 from ase import Atoms
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import style as registry
 from asemd.atom_style import bonded, columns
 from asemd.atoms import Atoms as Bonded
 from asemd.calculator import ForceField
 from asemd.errors import InputError, SimulationError
-from asemd.lammps import Lammps
 from asemd.system import System
 from asemd.topology import Topology
 
@@ -69,12 +68,6 @@ angle_coeff 2 -20.0 0.0
 """
 
 
-def session(text: str) -> Lammps:
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(text)
-    return lmp
-
-
 @pytest.fixture
 def data(tmp_path):
     path = tmp_path / "dipole.data"
@@ -93,18 +86,17 @@ def test_columns():
 def test_agrees_with_lammps(data, tmp_path):
     ending = "thermo_modify norm no\nrun 0\nwrite_data {}\n"
     want = ask("""
-l = start()
-l.commands_string(given["text"])
+l = ran(given["text"])
 names = {"f": 3, "torque": 3, "mu": 4, "radius": 1, "rmass": 1, "omega": 3}
 answer = {"energy": l.get_thermo("pe"), **{name: list(l.gather_atoms(name, 1, width)) for name, width in names.items()}}
 """, text=SCRIPT.format(data=data) + ending.format(tmp_path / "lammps.data"))
-    lmp = session(SCRIPT.format(data=data) + ending.format(tmp_path / "asemd.data"))
+    lmp = ran(SCRIPT.format(data=data) + ending.format(tmp_path / "asemd.data"))
     for name, width in (("f", 3), ("torque", 3), ("mu", 4), ("radius", 1), ("rmass", 1), ("omega", 3)):
         assert list(lmp.gather_atoms(name, 1, width)) == pytest.approx(want[name], rel=1e-12, abs=1e-12), name
     assert lmp.get_thermo("pe") == pytest.approx(want["energy"], rel=1e-12)
     # each program reads the other's file
     for out in ("lammps.data", "asemd.data"):
-        again = session(SCRIPT.format(data=tmp_path / out).replace("angle_coeff", "#")).scene.system
+        again = ran(SCRIPT.format(data=tmp_path / out).replace("angle_coeff", "#")).scene.system
         for name in ("mu", "radius", "omega"):
             assert np.allclose(again.extra[name][np.argsort(again.id)], lmp.scene.system.extra[name], rtol=1e-14), name
         assert np.allclose(again.rmass[np.argsort(again.id)], lmp.scene.system.rmass, rtol=1e-14)
@@ -118,7 +110,7 @@ def energy(x, mu, K, gamma0):
 
 
 def setup(x, mu, K="75.0", gamma0="110.1"):
-    lmp = session(CELL + f"angle_style dipole\nangle_coeff * {K} {gamma0}\nbond_style zero\nbond_coeff * 1\n")
+    lmp = ran(CELL + f"angle_style dipole\nangle_coeff * {K} {gamma0}\nbond_style zero\nbond_coeff * 1\n")
     system = lmp.scene.system
     system = system.append(System(box=system.box, x=np.asarray(x, float), type=1, units="real", atom_style=system.atom_style, rmass=1.0,
                                   extra={"mu": np.array([mu, [0, 0, 0]], float)}))
@@ -166,7 +158,7 @@ def test_aligned_dipole_is_left_alone_and_none_is_reported():
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_run_moves_atoms_and_keeps_torques_right(data, threads):
-    lmp = session(SCRIPT.format(data=data) + "fix 1 all nve\ntimestep 0.5\nrun 20\nrun 0\n")
+    lmp = ran(SCRIPT.format(data=data) + "fix 1 all nve\ntimestep 0.5\nrun 20\nrun 0\n")
     system = lmp.scene.system
     lmp.scene.threads = threads
     torque = system.extra["torque"].copy()
@@ -178,12 +170,12 @@ def test_style_without_dipoles_is_refused():
     atoms = "".join(f"create_atoms 1 single {x} 0\n" for x in ("0 0", "1 0", "1 1"))
     rest = "angle_style dipole\nangle_coeff * 1 2\ncreate_bonds single/angle 1 1 2 3\npair_style zero 4\npair_coeff * *\nrun 0\n"
     with pytest.raises(InputError, match="needs atoms with dipoles: use atom_style dipole"):
-        session(CELL.replace("hybrid full sphere dipole", "full") + atoms + rest)
+        ran(CELL.replace("hybrid full sphere dipole", "full") + atoms + rest)
 
 
 def test_set():
-    lmp = session(CELL + "create_atoms 1 single 0 0 0\ncreate_atoms 1 single 1 0.2 0.1\nvariable a atom id\n"
-                  "set atom 1 dipole v_a 2 3\nset atom 2 dipole/random 4711 1.5\nset atom 2 diameter 3 density 2\n")
+    lmp = ran(CELL + "create_atoms 1 single 0 0 0\ncreate_atoms 1 single 1 0.2 0.1\nvariable a atom id\n"
+              "set atom 1 dipole v_a 2 3\nset atom 2 dipole/random 4711 1.5\nset atom 2 diameter 3 density 2\n")
     system = lmp.scene.system
     assert system.extra["mu"][0].tolist() == [1, 2, 3]
     # the numbers of LAMMPS
@@ -194,7 +186,7 @@ def test_set():
                         ("diameter -1", "0 or more")):
         with pytest.raises(InputError, match=text):
             lmp.command(f"set atom * {words}")
-    plain = session(CELL.replace("hybrid full sphere dipole", "full") + "create_atoms 1 single 0 0 0\n")
+    plain = ran(CELL.replace("hybrid full sphere dipole", "full") + "create_atoms 1 single 0 0 0\n")
     for words in ("dipole 1 2 3", "dipole/random 1 1", "diameter 1"):
         with pytest.raises(InputError, match="atom_style full has no"):
             plain.command(f"set atom * {words}")
@@ -202,8 +194,8 @@ def test_set():
 
 def test_dump_columns(data, tmp_path):
     names = "mux muy muz mu tqx tqy tqz omegax omegay omegaz radius diameter"
-    lmp = session(SCRIPT.format(data=data) + f"dump 1 all custom 1 {tmp_path / 'd'} id {names}\n"
-                  "dump_modify 1 sort id format float %.17g\nrun 0\n")
+    lmp = ran(SCRIPT.format(data=data) + f"dump 1 all custom 1 {tmp_path / 'd'} id {names}\n"
+              "dump_modify 1 sort id format float %.17g\nrun 0\n")
     values = np.loadtxt((tmp_path / "d").read_text().splitlines()[9:])
     extra = lmp.scene.system.extra
     assert np.array_equal(values[:, 1:4], extra["mu"]) and np.array_equal(values[:, 5:8], extra["torque"])
@@ -212,7 +204,7 @@ def test_dump_columns(data, tmp_path):
 
 
 def test_arrays_follow_the_atoms(data):
-    lmp = session(SCRIPT.format(data=data) + "run 0\n")
+    lmp = ran(SCRIPT.format(data=data) + "run 0\n")
     s = lmp.scene.system
     back = s.select([2, 0])
     assert np.array_equal(back.extra["mu"], s.extra["mu"][[2, 0]])
@@ -224,7 +216,7 @@ def test_arrays_follow_the_atoms(data):
 
 
 def test_ase_atoms_carry_dipoles(data):
-    lmp = session(SCRIPT.format(data=data) + "run 0\n")
+    lmp = ran(SCRIPT.format(data=data) + "run 0\n")
     atoms = lmp.scene.to_atoms()
     assert atoms.arrays["mu"] == pytest.approx(lmp.scene.system.extra["mu"])            # e Angstrom in both
     before = atoms.get_potential_energy()
@@ -254,7 +246,7 @@ def test_from_python():
     ("dipole 1", "takes no arguments")])
 def test_refused_atom_styles(words, text):
     with pytest.raises(InputError, match=text):
-        session(f"atom_style {words}\n")
+        ran(f"atom_style {words}\n")
 
 
 @pytest.mark.parametrize(("old", "new", "text"), [("1.5 0.4", "-1.5 0.4", "invalid diameter"), ("1.5 0.4", "1.5 0", "invalid density"),
@@ -262,7 +254,7 @@ def test_refused_atom_styles(words, text):
 def test_refused_lines(data, old, new, text):
     data.write_text(DATA.replace(old, new))
     with pytest.raises(InputError, match=text + r".*dipole.data:18"):
-        session(SCRIPT.format(data=data))
+        ran(SCRIPT.format(data=data))
 
 
 def test_coefficients():

@@ -72,11 +72,8 @@ THEIRS = r"""
 import os
 answer = {}
 for name, (lines, style, words, modify) in given["dumps"].items():
-    lmp = start()
     path = os.path.join(given["folder"], "dump")
-    for line in [*lines, f"dump d all {style} 2 {path} {words}", f"dump_modify d {modify}", "timestep 0.001", "run 0"]:
-        lmp.command(line)
-    lmp.close()
+    ran([*lines, f"dump d all {style} 2 {path} {words}", f"dump_modify d {modify}", "timestep 0.001", "run 0"]).close()
     answer[name] = open(path).read()
 """
 

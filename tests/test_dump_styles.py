@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 from both import asemd, lines_of
 from lj_cell import BASE
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 SCENE = """
 units real
@@ -91,9 +90,7 @@ run 9
 THEIRS = """
 import os
 os.chdir(given["folder"])
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"])
 """
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -351,8 +348,7 @@ def test_dcd_on_a_full_disk(tmp_path, monkeypatch):
     resource = pytest.importorskip("resource")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(BASE + "run 5\ndump d all dcd 5 x.dcd\n")
+    lmp = ran(BASE + "run 5\ndump d all dcd 5 x.dcd\n")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (3000, hard))
     try:

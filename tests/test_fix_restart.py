@@ -6,8 +6,7 @@ import warnings
 import numpy as np
 import pytest
 from scripted import script, write_data
-
-from asemd.lammps import Lammps
+from wheel import ran
 
 NVE, RIGID = "fix 1 all nve", "neigh_modify exclude molecule/intra all\ncomm_modify cutoff 11.5"
 P = "0 500 100"
@@ -48,8 +47,7 @@ def end(text: str, values: list[str], last: str) -> dict:
     """The state after a script."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
-            lmp.commands_string(text + "\n" + "\n".join(f"variable value{k} equal {f}" for k, f in enumerate(values)) + "\n" + last)
+        with ran(text + "\n" + "\n".join(f"variable value{k} equal {f}" for k, f in enumerate(values)) + "\n" + last) as lmp:
             s, fixes = lmp.scene.system, lmp.scene.fixes
             out = {"x": s.box.unwrap(s.x, s.image), "v": s.v.copy(), "box": np.vstack([s.box.origin, s.box.cell]),
                    "values": np.array([lmp.extract_variable(f"value{k}") for k in range(len(values))])}

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from wheel import ran
 
 import asemd.fix
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 SETUP = """
 units real
@@ -26,10 +26,7 @@ variable a atom x
 
 @pytest.fixture(scope="module")
 def lmp():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in SETUP.split("\n"):
-        if line:
-            lmp.command(line)
+    lmp = ran(SETUP)
     yield lmp
     lmp.close()
 
@@ -55,10 +52,7 @@ def test_round_trip(line, lmp):
 
 
 def test_springs_of_chunks():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in [*filter(None, SETUP.split("\n")),
-                 "compute c all chunk/atom type", "compute d all chunk/atom type", "compute m all com/chunk c"]:
-        lmp.command(line)
+    lmp = ran([SETUP, "compute c all chunk/atom type", "compute d all chunk/atom type", "compute m all com/chunk c"])
     for words, message in (("1 c", "3 values"), ("x c m", "number"), ("1 m m", "not chunk/atom"), ("1 c d", "not com/chunk"),
                            ("1 d m", "not same"), ("1 c k", "no compute k")):
         with pytest.raises(InputError, match=message):

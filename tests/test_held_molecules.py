@@ -46,9 +46,7 @@ CASES = {
 SCRIPT = ATOMS + """
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer[name] = atoms_of(lmp, ("id", "x", "v"))
     answer[name]["thermo"] = [lmp.get_thermo(key) for key in ("pe", "temp", "press")]
     lmp.close()

@@ -9,7 +9,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import style as registry
 from asemd import units
@@ -352,8 +352,7 @@ def test_an_arm_of_length_zero_is_reported(name):
 SCRIPT = """
 answer = []
 for lines in given["jobs"]:
-    lmp = start()
-    lmp.commands_list(lines)
+    lmp = ran(lines)
     answer.append({"energy": lmp.get_thermo("eimp"), "forces": by_id(lmp, "f")})
     lmp.close()
 """
@@ -388,9 +387,7 @@ def commands(path, improper_style: str, coeffs=()) -> list[str]:
 
 
 def ours(lines: list[str]) -> Lammps:
-    out = Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "lammps"])
-    out.commands_list(lines)
-    return out
+    return ran(lines, "-compat", "lammps")
 
 
 def assert_agrees(energy, forces, want, title):

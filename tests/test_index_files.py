@@ -21,8 +21,7 @@ WRITTEN = "group2ndx all.ndx\ngroup2ndx two.ndx many few"
 WHEEL = """
 import os
 os.chdir(given["folder"])
-lmp = start()
-lmp.commands_string(given["text"])
+lmp = ran(given["text"])
 answer = [Path(name).read_text() for name in ("all.ndx", "two.ndx")]
 """
 

@@ -9,10 +9,10 @@ import pytest
 from ase import Atoms as PlainAtoms
 from ase import units
 from ase.build import bulk
+from wheel import ran
 
 import asemd
 from asemd import Atoms, ForceField, InputError, MolecularDynamics, Topology
-from asemd.lammps import Lammps
 
 mda = pytest.importorskip("MDAnalysis")
 from MDAnalysis.analysis.msd import EinsteinMSD  # noqa: E402
@@ -181,8 +181,7 @@ fix 1 all nve
 @pytest.mark.parametrize("unit", ["lj", "real"])
 def test_scene_is_as_mdanalysis_reads_its_data_file(unit, tmp_path):
     """Another way from a scene to a universe: the data file, read by MDAnalysis."""
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
-        lmp.commands_string(SCRIPT.format(units=unit))
+    with ran(SCRIPT.format(units=unit)) as lmp:
         lmp.command("run 3")
         lmp.command(f"write_data {tmp_path}/x.data")
         u = asemd.to_mdanalysis(lmp)

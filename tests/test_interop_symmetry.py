@@ -13,8 +13,8 @@ from ase.calculators.calculator import Calculator, all_changes
 from ase.io import read
 from ase.optimize import BFGS
 from ase.spacegroup import crystal
+from wheel import ran
 
-import asemd
 from asemd import Atoms, ForceField, InputError, SimulationError, Symmetry, Topology
 from asemd.cli import main
 from asemd.interop.cells import recell
@@ -293,6 +293,5 @@ def test_command_line(tmp_path, capsys, monkeypatch):
 
 
 def test_scene():
-    with asemd.Lammps(cmdargs=["-screen", "none", "-log", "none", "-var", "n", "1"]) as lmp:
-        lmp.commands_string(SCRIPT)
+    with ran(SCRIPT, "-var", "n", "1") as lmp:
         assert Symmetry(lmp).number == Symmetry(lmp.session.scene).number == 216

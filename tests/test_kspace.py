@@ -8,10 +8,10 @@ import pytest
 from ase import Atoms
 from solvers import CHARGES, LJ, NVE, SCENE, TILT, compare, lammps_of, refused
 from solvers import case as scene
+from wheel import ran
 
 from asemd import units
 from asemd.engine import Engine, Settings
-from asemd.lammps import Lammps
 from asemd.registry import class_of
 
 PAIRS = ["pair_style lj/cut/coul/long 5.0 5.5", "pair_modify table 0", *LJ]
@@ -86,8 +86,7 @@ neighbor 1.0 bin
 
 
 def engine(solver: str, tilt: str = "0 0 0", **settings) -> Engine:
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(SCRIPT.format(solver=solver, tilt=tilt))
+    lmp = ran(SCRIPT.format(solver=solver, tilt=tilt))
     scene = lmp.session.scene
     return Engine(scene.system, scene.interactions, Settings(skin=1.0, **settings))
 
@@ -128,10 +127,7 @@ def rocksalt(solver: str, repeat: int = 2):
     basis = [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5), (0.5, 0, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0.5, 0.5)]
     atoms = Atoms("Na4Cl4", scaled_positions=basis, cell=[a, a, a], pbc=True).repeat(repeat)
     edge = f"0 {repeat * a}"
-    commands = ["units real", "atom_style charge", f"region b block {edge} {edge} {edge}", "create_box 2 b", "mass * 1.0"]
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for c in commands:
-        lmp.command(c)
+    lmp = ran(["units real", "atom_style charge", f"region b block {edge} {edge} {edge}", "create_box 2 b", "mass * 1.0"])
     kinds = [1 if s == "Na" else 2 for s in atoms.symbols]
     lmp.create_atoms(len(atoms), list(range(1, len(atoms) + 1)), kinds, list(atoms.positions.ravel()))
     for c in ("set type 1 charge 1", "set type 2 charge -1", "pair_style coul/long 5.6", "pair_coeff * *", f"kspace_style {solver}",

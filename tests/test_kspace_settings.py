@@ -2,13 +2,12 @@
 from __future__ import annotations
 
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import cli
 from asemd.errors import InputError
 from asemd.forcefield import Interactions
 from asemd.kspace_settings import DEFAULTS, parse, to_words
-from asemd.lammps import Lammps
 from asemd.lammps.export import commands
 from asemd.lammps.restart import force_field, interactions
 
@@ -50,9 +49,7 @@ def test_mistakes(text):
 def test_the_same_is_refused_as_in_lammps():
     texts = [*GOOD, *BAD]
     refused = ask("""
-lmp = start()
-for line in ["atom_style charge", "region b block 0 10 0 10 0 10", "create_box 1 b", "pair_style coul/long 4"]:
-    lmp.command(line)
+lmp = ran(["atom_style charge", "region b block 0 10 0 10 0 10", "create_box 1 b", "pair_style coul/long 4"])
 answer = []
 for text in given["texts"]:
     try:
@@ -66,9 +63,7 @@ for text in given["texts"]:
 
 
 def test_settings_travel_and_end_with_the_style(tmp_path):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("region b block 0 4 0 4 0 4", "create_box 1 b", "create_atoms 1 single 1 1 1", "mass 1 1"):
-        lmp.command(line)
+    lmp = ran(["region b block 0 4 0 4 0 4", "create_box 1 b", "create_atoms 1 single 1 1 1", "mass 1 1"])
     scene = lmp.session.scene
     scene.interactions.kspace = "pppm 1e-4"     # no such style exists yet
     lmp.command("kspace_modify mesh 8 8 8 gewald 0.25")

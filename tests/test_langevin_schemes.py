@@ -7,14 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numba import config
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import fix
 from asemd.box import Box
 from asemd.engine import Settings
 from asemd.errors import InputError
 from asemd.forcefield import Interactions
-from asemd.lammps import Lammps
 from asemd.lammps.convert import convert
 from asemd.loop import Loop
 from asemd.system import System
@@ -131,9 +130,7 @@ def test_zero_takes_the_mean_of_the_noise_away():
 
 
 def session(*lines):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(DIMER + "\n".join(lines))
-    return lmp
+    return ran(DIMER + "\n".join(lines))
 
 
 def state(lmp):
@@ -143,8 +140,7 @@ def state(lmp):
 WHEEL = """
 answer = {}
 for damp in given['damps']:
-    l = start()
-    l.commands_string(given['scene'])
+    l = ran(given['scene'])
     l.commands_string(f"fix 2 all langevin 0 0 {damp} 77 gjf vhalf\\nfix 1 all nve\\nrun 10")
     answer[str(damp)] = [np.array(l.gather_atoms(name, 1, 3)) for name in 'xv']
     l.close()
@@ -168,8 +164,7 @@ def test_pieces_equal_one_run(lines, tmp_path, monkeypatch):
     whole, pieces = session(*lines, "run 10"), session(*lines, "run 5", "write_restart half", "run 5")
     for a, b in zip(state(whole), state(pieces), strict=True):
         assert np.array_equal(a, b)
-    again = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    again.commands_string("read_restart half\npair_style zero 5.0\npair_coeff * *\n" + "\n".join(lines) + "\nrun 5")
+    again = ran("read_restart half\npair_style zero 5.0\npair_coeff * *\n" + "\n".join(lines) + "\nrun 5")
     for a, b in zip(state(whole), state(again), strict=True):
         assert np.allclose(a, b, rtol=1e-12, atol=1e-15)
 

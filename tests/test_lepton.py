@@ -36,11 +36,9 @@ LENGTHS = (0.5, 0.9, 1.7)
 LAMMPS = r"""
 n = len(given["expressions"])
 rows = len(given["lengths"])
-lmp = start()
-for line in ["units lj", "atom_style bond", "region b block 0 200 0 200 0 200",
-             f"create_box 1 b bond/types {n} extra/bond/per/atom 1", "mass 1 1",
-             "pair_style zero 5", "pair_coeff * *", "bond_style lepton no_offset"]:
-    lmp.command(line)
+lmp = ran(["units lj", "atom_style bond", "region b block 0 200 0 200 0 200",
+           f"create_box 1 b bond/types {n} extra/bond/per/atom 1", "mass 1 1",
+           "pair_style zero 5", "pair_coeff * *", "bond_style lepton no_offset"])
 x = []
 for t in range(n):
     for k, r in enumerate(given["lengths"]):

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 from ase.build import bulk
-from wheel import ask
+from wheel import ask, ran, start
 
 import asemd.lammps
 from asemd.errors import InputError, SimulationError
@@ -113,8 +113,7 @@ answer = {'calls': calls, 'x': list(l.gather_atoms('x', 1, 3)), 'row': list(l.la
 
 @pytest.fixture
 def lmp():
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as session:
-        session.commands_string(SCENE)
+    with ran(SCENE) as session:
         yield session
 
 
@@ -127,7 +126,7 @@ def test_every_method_is_there():
 
 
 def test_same_answers_as_lammps(lmp):
-    theirs = ask("import ctypes\nl = start()\nl.commands_string(given['scene'])\n"
+    theirs = ask("import ctypes\nl = ran(given['scene'])\n"
                  "answer = {k: eval(v) for k, v in given['values'].items()}\nl.close()", scene=SCENE, values=VALUES)
     for name, text in VALUES.items():
         close(eval(text, {"l": lmp, "np": np, "ctypes": __import__("ctypes")}), theirs[name], name)
@@ -149,9 +148,8 @@ def close(a, b, name) -> None:
 
 
 def test_external_forces(lmp):
-    theirs = ask(f"l = start()\nl.commands_string(given['scene'])\n{CALLBACK}\n{PROGRAM}\nl.close()", scene=EXTERNAL)
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
-        l.commands_string(EXTERNAL)
+    theirs = ask(f"l = ran(given['scene'])\n{CALLBACK}\n{PROGRAM}\nl.close()", scene=EXTERNAL)
+    with ran(EXTERNAL) as l:
         with pytest.raises(InputError, match="has no function"):
             l.command("run 0")
         names = {"l": l, "np": np}
@@ -207,7 +205,7 @@ def test_external_energies_and_virials():
     """What the callback sets counts as in LAMMPS: in all, and by atom."""
     scene = SCENE.rsplit("\n", 1)[0]
     theirs = ask(f"scene = given['scene']\nl = start()\n{SHARES}\nl.close()", scene=scene)
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as l:
+    with start() as l:
         names = {"l": l, "np": np, "scene": scene}
         exec(SHARES, names)
         close(names["answer"], theirs, "external")

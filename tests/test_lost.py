@@ -43,9 +43,7 @@ run 120
 run 80
 """
 ROWS = """
-lmp = start("-log", given["log"])
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"], "-log", given["log"])
 lmp.close()
 answer = open(given["log"]).read()
 """

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, start
 
 import asemd
 from asemd import style
@@ -233,13 +233,12 @@ run 12
 
 def test_hybrid_with_threads(potentials, monkeypatch):
     """Compiled, over clusters: several styles on some pairs of types, some types excluded, one thread and two."""
-    from asemd.lammps import Lammps
-    script = FOLDER + 'os.environ["LAMMPS_POTENTIALS"] = P\nlmp = start()\nlmp.commands_string(given["lines"])\n' \
+    script = FOLDER + 'os.environ["LAMMPS_POTENTIALS"] = P\nlmp = ran(given["lines"])\n' \
         'answer = [lmp.get_thermo(k) for k in ("pe", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")]'
     want = ask(script, lines=HYBRID)
     monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
     for threads in (1, 2):
-        lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+        lmp = start()
         lmp.scene.threads = threads
         lmp.commands_string(HYBRID)
         got = [lmp.get_thermo(k) for k in ("pe", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")]

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
 
@@ -32,13 +32,10 @@ GOOD = "Si Si Si 2.1683 2.0951 1.80 21.0 1.20 -0.333333333333\n 7.049556277 0.60
     ("# UNITS: real\n" + GOOD, "Si", r"the file is in real units, but lj units are in use \(Si.sw:1"),
 ])
 def test_wrong_files(text, words, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     Path("Si.sw").write_text(text)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("units lj", "region box block 0 9 0 9 0 9", "create_box 1 box", "mass 1 1", "create_atoms 1 single 1 1 1",
-                 "pair_style sw"):
-        lmp.command(line)
+    lmp = ran(["units lj", "region box block 0 9 0 9 0 9", "create_box 1 box", "mass 1 1", "create_atoms 1 single 1 1 1",
+               "pair_style sw"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * Si.sw {words}")
         lmp.command("run 0")
@@ -51,11 +48,9 @@ def test_wrong_files(text, words, says, tmp_path, monkeypatch):
     (b"# a\n\0\1\2", r"not a text file, it has bytes of value 0 \(X.file:2"), (b" \n", r"the file is empty \(X.file:1"),
     (None, "X.file is a folder: name a file in it")], ids=["compressed", "zero bytes", "empty", "folder"])
 def test_no_text_files(style, words, content, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     Path("X.file").mkdir() if content is None else Path("X.file").write_bytes(content)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", f"pair_style {style}"])
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", f"pair_style {style}"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * {words}")
 
@@ -83,13 +78,11 @@ ENTRY = "B B B 2.8 t.table T linear 2\n"
      "pair_coeff sw/angle/table: the angles must range from 0 to 180"), ("sw/angle/table on", ENTRY, None, "takes no words, got on"),
 ])
 def test_wrong_files_of_triples(pair, text, table, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     Path("a.file").write_text(text)
     if table is not None:
         Path("t.table").write_text(table)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box"])
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box"])
     with pytest.raises(InputError, match=says):
         lmp.commands_list([f"pair_style {pair}", "pair_coeff * * a.file B"])
 
@@ -107,11 +100,9 @@ DENSITY = "a\n\n1 3\n\n1.0 2.0\n1\n1\n0 4 2\n0.1\n0.2\n0.4\n"
     ("1 3", "2 3", "ends before R1 and R2"), ("a\n", "# UNITS: real\n", "in real units, but metal units are in use"),
 ])
 def test_wrong_files_of_local_densities(old, new, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     Path("a.file").write_text(DENSITY.replace(old, new, 1))
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "mass 1 1", "create_atoms 1 single 1 1 1"])
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "mass 1 1", "create_atoms 1 single 1 1 1"])
     with pytest.raises(InputError, match=says):
         lmp.commands_list(["pair_style local/density", "pair_coeff * * a.file", "run 0"])
 
@@ -128,13 +119,11 @@ def test_wrong_files_of_local_densities(old, new, says, tmp_path, monkeypatch):
     ("airebo 3.0", ("", ""), "C", "not one of AIREBO"),
 ])
 def test_wrong_files_of_hydrocarbons(pair, change, words, says, potentials, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     text = (Path(potentials) / "CH.rebo").read_text()
     old, new = change
     Path("CH").write_text("".join(text.splitlines(True)[:new]) if old is None else text.replace(old, new, 1))
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(["units metal", "region box block 0 9 0 9 0 9", f"create_box {len(words.split())} box"])
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", f"create_box {len(words.split())} box"])
     commands = [f"pair_style {pair}", f"pair_coeff * * CH {words}"]
     if not says:
         return lmp.commands_list(commands)
@@ -144,11 +133,9 @@ def test_wrong_files_of_hydrocarbons(pair, change, words, says, potentials, tmp_
 
 def test_triples_of_types(tmp_path, monkeypatch):
     """Words of pair_style atm, and its coefficients in a restart file."""
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(["units lj", "region box block 0 9 0 9 0 9", "create_box 2 box", "mass * 1", "create_atoms 1 single 1 1 1",
-                       "create_atoms 2 single 1 2.5 1", "create_atoms 2 single 2 1 1", "pair_style atm 4.5 2.5"])
+    lmp = ran(["units lj", "region box block 0 9 0 9 0 9", "create_box 2 box", "mass * 1", "create_atoms 1 single 1 1 1",
+               "create_atoms 2 single 1 2.5 1", "create_atoms 2 single 2 1 1", "pair_style atm 4.5 2.5"])
     for line, says in (("pair_coeff * * 1", "needs 2 values, got 1"), ("pair_coeff * * a 1", "a number or a range, got 'a'"),
                        ("pair_coeff * * * x", "nu: expected a number")):
         with pytest.raises(InputError, match=says):
@@ -164,13 +151,10 @@ def test_triples_of_types(tmp_path, monkeypatch):
 
 
 def test_words_of_commands(tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     Path("Si.sw").write_text(GOOD)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "mass * 1", "create_atoms 1 single 1 1 1",
-                 "create_atoms 2 single 1 3 1"):
-        lmp.command(line)
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "mass * 1", "create_atoms 1 single 1 1 1",
+               "create_atoms 2 single 1 3 1"])
     for line, says in (("pair_style sw threebody", "a value is missing after threebody"),
                        ("pair_style sw two yes", "unknown keyword 'two'"),
                        ("pair_style tersoff shift x", "expected a number"), ("pair_style sw/mod maxdelcs 0.3 0.2", "delta1 must be less")):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_manybody import GRADIENT, MEASURE, OURS, scene, uncompiled
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
 
@@ -117,14 +117,11 @@ LINE = "rc = 4.6\n"
     (None, "", "Aa Bb x.meam Aa", "an element, or NULL, for each of 2 atom types, got 1"),
 ])
 def test_wrong_files(change, lines, words, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     text = library("fcc 0 bcc 3", False)
     Path("x.library").write_text(text.replace(*change, 1) if change else text)
     Path("x.meam").write_text(LINE + lines + "\n")
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "create_atoms 1 single 1 1 1", "pair_style meam"):
-        lmp.command(line)
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "create_atoms 1 single 1 1 1", "pair_style meam"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * x.library {words}")
 
@@ -156,12 +153,9 @@ SPLINE = "3\n-2.0 0.0\n1 1 1 1\n1.0 2.0 0.0\n2.0 0.5 0.0\n3.0 0.0 0.0\n"
     (("3\n-2.0", "meam/spline 1 Ti\n3\n-2.0"), "O", "x.sp has no element O, only Ti"),
 ])
 def test_wrong_splines(change, words, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     text = "# a comment\n" + 5 * SPLINE
     Path("x.sp").write_text(text.replace(*change, 1) if change else text)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("units metal", f"region box block 0 9 0 9 0 9\ncreate_box {len(words.split())} box", "pair_style meam/spline"):
-        lmp.commands_string(line)
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", f"create_box {len(words.split())} box", "pair_style meam/spline"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * x.sp {words}")

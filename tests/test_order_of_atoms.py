@@ -3,15 +3,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
-
-from asemd.lammps import Lammps
+from wheel import ask, ran
 
 RUN = """
 import os
 os.chdir(given["folder"])
-lmp = start()
-lmp.commands_string(given["lines"])
+lmp = ran(given["lines"])
 n = lmp.extract_setting("nlocal")
 answer = {"ids": np.array(lmp.numpy.extract_atom("id"))[:n], "v": by_id(lmp, "v"), "energy": lmp.extract_fix("b", 0, 0)}
 """
@@ -37,8 +34,7 @@ run 5
 run 2
 """
     theirs = ask(RUN, folder=str(tmp_path), lines=script)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(script)
+    lmp = ran(script)
     bath = lmp.session.scene.fixes["b"]
     np.testing.assert_array_equal(lmp.session.scene.system.id[np.argsort(bath.storage.place)], theirs["ids"])
     np.testing.assert_allclose(lmp.session.scene.system.v, theirs["v"], rtol=1e-10, atol=1e-12)

@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
-
-from asemd.lammps import Lammps
+from wheel import ask, ran, start
 
 HOT = """units lj
 lattice fcc 0.8442
@@ -28,7 +26,7 @@ OUTDATED = {"check no": "neigh_modify every 18 delay 0 check no\n", "delay": "ne
 
 
 def positions(name: str, threads: int = 1, precision: str = "double") -> tuple[np.ndarray, float]:
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as own:
+    with start() as own:
         own.session.scene.threads, own.session.scene.precision = threads, precision
         own.commands_string(HOT + OUTDATED[name] + "run 34\n")
         return np.array(own.gather_atoms("x", 1, 3)).reshape(-1, 3), own.get_thermo("pe")
@@ -37,8 +35,7 @@ def positions(name: str, threads: int = 1, precision: str = "double") -> tuple[n
 @pytest.mark.parametrize("name", OUTDATED)
 def test_same_path_as_lammps(name):
     there = ask("""
-l = start()
-l.commands_string("atom_modify map array\\n" + given["text"])
+l = ran("atom_modify map array\\n" + given["text"])
 answer = [list(l.gather_atoms("x", 1, 3)), l.get_thermo("pe")]
 """, text=HOT.replace("lattice", "atom_modify map array\nlattice") + OUTDATED[name] + "run 34\n")
     x, energy = positions(name)
@@ -49,8 +46,7 @@ answer = [list(l.gather_atoms("x", 1, 3)), l.get_thermo("pe")]
 def test_such_runs_do_miss_pairs():
     """Without the mask the paths would differ: the scene is hot enough."""
     _, exact = positions("delay")
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as own:
-        own.commands_string(HOT + "neigh_modify every 1 delay 0 check yes\nrun 34\n")
+    with ran(HOT + "neigh_modify every 1 delay 0 check yes\nrun 34\n") as own:
         assert abs(own.get_thermo("pe") / exact - 1.0) > 1e-7
 
 

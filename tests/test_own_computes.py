@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scripted import by_lammps, have_lammps, measure, write_data
+from wheel import ran
 
 NVE, LOOSE = "fix 2 all nve", "compute_modify 1_temp extra/dof 0"
 LEAVE = ["group last id 61:64", "delete_bonds last bond 1 remove", "region every block INF INF INF INF INF INF",
@@ -96,10 +97,7 @@ NVT, NPT = "fix 1 all nvt temp 1 1 1", "fix 1 all npt temp 1 1 1 iso 0 0 1"
 
 
 def started():
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(PAIR)
-    return lmp
+    return ran(PAIR)
 
 
 @pytest.mark.parametrize(("commands", "there"), [

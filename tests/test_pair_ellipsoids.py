@@ -164,9 +164,7 @@ TRAJECTORIES = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     rows = np.array(lmp.numpy.extract_compute("q", 1, 2))
     answer[name] = {"atoms": rows[np.argsort(rows[:, 0])].tolist(), "thermo": lmp.last_thermo()}
     lmp.close()

@@ -66,9 +66,7 @@ THEIRS = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     rows = []
     for run in ("run 0", "run 3"):
         lmp.command(run)

@@ -55,9 +55,7 @@ THEIRS = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     n = int(lmp.get_natoms())
     order = np.argsort(lmp.numpy.extract_atom("id")[:n])
     answer[name] = {"thermo": [lmp.get_thermo(c) for c in given["columns"]], "f": np.array(lmp.numpy.extract_atom("f"))[:n][order],

@@ -3,10 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 LINES = ["1 2 lj126 1.0 1.1 5.0 # a comment", "3 7 morse 10.0 1.2 2.0 10.0", "2 9 harmonic 50.0 1.2", "4 12 harmonic 50.0 1.2 0.9", "",
          "8 11 quartic 3.0 1.1 0.2 -0.3", "5 6 lj126 1.0 1.1 0.5"]
@@ -33,17 +32,14 @@ ALONE = "list {} 3.0 nocheck", "pair_coeff * *"
 WHEEL = """
 answer = []
 for lines in given["scripts"]:
-    lmp = start()
-    lmp.commands_list(lines)
+    lmp = ran(lines)
     answer.append([lmp.get_thermo("pe"), lmp.get_thermo("press"), list(lmp.gather_atoms("f", 1, 3))])
     lmp.close()
 """
 
 
 def run(text: str, *words: str):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", *words])
-    lmp.commands_string(text)
-    return lmp
+    return ran(text, *words)
 
 
 def script(path, kind) -> str:

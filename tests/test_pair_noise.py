@@ -4,10 +4,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
+from wheel import ran
 
 from asemd import style
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 FLUID = """
 units lj
@@ -53,9 +53,7 @@ def test_trajectories_are_those_of_lammps():
 
 
 def test_momentum_is_conserved_and_the_temperature_comes():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in script("dpd", 400).replace("create 1.0", "create 0.1").splitlines():
-        lmp.command(line)
+    lmp = ran(script("dpd", 400).replace("create 1.0", "create 0.1").splitlines())
     v = np.array(lmp.gather_atoms("v", 1, 3)).reshape(-1, 3)
     assert np.abs(v.sum(axis=0)).max() < 1e-10
     assert (v**2).sum() / (3 * len(v) - 3) == pytest.approx(1.0, abs=0.2)

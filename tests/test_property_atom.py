@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
 from asemd.lammps import Lammps
@@ -98,8 +98,7 @@ def expected(tmp_path_factory):
 
 @pytest.mark.parametrize("name", CASES)
 def test_like_lammps(name, expected, tmp_path):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list(commands(name, tmp_path))
+    ran(commands(name, tmp_path))
     for file, after, want in (("x.dump", "ITEM: ATOMS", expected[name][0]), ("x.end", "Velocities", expected[name][1])):
         assert numbers((tmp_path / file).read_text(), after) == numbers(want, after)
 
@@ -119,8 +118,7 @@ def test_restart_files_are_told_of_in_the_log(tmp_path):
 
 def test_sections_that_do_not_fit(tmp_path):
     start, fix = SETUP.format(style="atomic").split("\n"), "fix p all property/atom i_one d_two"
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list([*start, fix, f"write_data {tmp_path}/x.data nocoeff"])
+    lmp = ran([*start, fix, f"write_data {tmp_path}/x.data nocoeff"])
     text = (tmp_path / "x.data").read_text()
     head, section = text.split("p # i_one d_two")
     for wrong, message in ((section.replace("6 0 0.0\n", ""), "has 5 lines, but there are 6 atoms"), (section.replace("6 0 0.0", "9 0 0.0"),
@@ -134,9 +132,8 @@ def test_sections_that_do_not_fit(tmp_path):
 def test_added_files_find_their_atoms(tmp_path):
     """Ids in the section of an added file are raised as those of its atoms."""
     start, fix = SETUP.format(style="atomic").split("\n"), "fix p all property/atom i_one d_two"
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_list([*start, fix, "set atom 2 i_one 5 d_two 0.5", f"write_data {tmp_path}/x.data nocoeff", "set atom 2 i_one 8",
-                       f"read_data {tmp_path}/x.data add append fix p NULL p"])
+    lmp = ran([*start, fix, "set atom 2 i_one 5 d_two 0.5", f"write_data {tmp_path}/x.data nocoeff", "set atom 2 i_one 8",
+               f"read_data {tmp_path}/x.data add append fix p NULL p"])
     system = lmp.scene.system
     assert system.extra["i_one"][system.index_of([2, 8])].tolist() == [8, 5]
     assert system.extra["d_two"].tolist() == [0, 0.5, 0, 0, 0, 0] * 2

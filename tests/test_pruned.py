@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from wheel import ran
 
 from asemd.engine import Engine, Settings
-from asemd.lammps import Lammps
 from asemd.pruned import PrunedList
 
 SCRIPT = """
@@ -39,9 +39,7 @@ def always(monkeypatch):
 
 
 def scene(tilt: str, modify: str = "every 1 delay 0"):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(SCRIPT.format(tilt=TILTS[tilt], modify=modify))
-    return lmp
+    return ran(SCRIPT.format(tilt=TILTS[tilt], modify=modify))
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -4,10 +4,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
+from wheel import ran
 
 from asemd.errors import AsemdError, InputError
 from asemd.fix.wall_region import colloid
-from asemd.lammps import Lammps
 from asemd.region.block import Block
 from asemd.region.cone import Cone
 from asemd.region.cylinder import Cylinder
@@ -131,9 +131,7 @@ SURFACES = ["block 2 9 -5 5 1 6", "sphere 5 5 5 3", "cylinder x 5 5 3 2 8", "con
 @pytest.mark.parametrize("side", ["in", "out"])
 @pytest.mark.parametrize("words", SURFACES)
 def test_surface(words, side):
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("region all block 0 10 0 10 0 10", "create_box 1 all", "variable a equal 0.7", f"region r {words} side {side} units box"):
-        lmp.command(line)
+    lmp = ran(["region all block 0 10 0 10 0 10", "create_box 1 all", "variable a equal 0.7", f"region r {words} side {side} units box"])
     region, cutoff, h = lmp.session.scene.regions["r"], 1.5, 1e-6
     x = np.random.default_rng(2).uniform(0, 10, (300, 3))
 
@@ -155,12 +153,10 @@ def test_surface(words, side):
 
 
 def test_no_surface():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("region all block 0 10 0 10 0 10", "create_box 1 all", "create_atoms 1 single 5 5 5", "mass 1 1",
-                 "region e ellipsoid 5 5 5 3 2 1",
-                 "region o sphere 5 5 5 3 open 1", "region p prism INF INF 0 1 0 1 0 0 0", "region u union 2 e all",
-                 "region s sphere 2 2 2 1"):
-        lmp.command(line)
+    lmp = ran(["region all block 0 10 0 10 0 10", "create_box 1 all", "create_atoms 1 single 5 5 5", "mass 1 1",
+               "region e ellipsoid 5 5 5 3 2 1",
+               "region o sphere 5 5 5 3 open 1", "region p prism INF INF 0 1 0 1 0 0 0", "region u union 2 e all",
+               "region s sphere 2 2 2 1"])
     for words, message in (("e harmonic 1 1 1", "style ellipsoid.*not supported"), ("o harmonic 1 1 1", "open faces"),
                            ("p harmonic 1 1 1", "INF"), ("u harmonic 1 1 1", "style ellipsoid"), ("all colloid 1 1 1", "radius"),
                            ("s harmonic 1 1 1", "atom 1 is on the surface of region s or outside"), ("x harmonic 1 1 1", "region"),

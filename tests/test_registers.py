@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from wheel import ran
 
 from asemd.kernels import pair as kernels
-from asemd.lammps import Lammps
 
 SCRIPT = """
 units real
@@ -42,8 +42,7 @@ def both(monkeypatch):
         for paired in (True, False):
             kernels.cluster_kernel.cache_clear()
             monkeypatch.setattr(kernels, "two_at_a_time", lambda style, answer=paired: answer)
-            lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-precision", precision])
-            lmp.commands_string(script)
+            lmp = ran(script, "-precision", precision)
             out.append((lmp.numpy.extract_atom("f").copy(), [lmp.get_thermo(k) for k in ("pe", "ecoul", "evdwl", "pxx", "pyz")]))
         return out
     yield run

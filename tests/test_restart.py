@@ -16,7 +16,7 @@ import pytest
 from lj_cell import BASE
 from scripted import have_lammps
 from test_bond_breaking import BPM, OFF, QUARTIC, RESTRAIN, files  # noqa: F401
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import style
 from asemd.errors import InputError
@@ -46,12 +46,6 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def session(text: str) -> Lammps:
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(text)
-    return lmp
-
-
 def state(lmp: Lammps) -> dict:
     system = lmp.scene.system
     arrays = {name: array.copy() for name, array in system.per_atom().items()}
@@ -67,9 +61,9 @@ def same(a: dict, b: dict) -> None:
 
 def continued(head: str, settings: str, half: int = 50) -> None:
     """`restart` in the midst of a run, and a run from the file."""
-    with session(f"{head}{settings}\nrestart {half} r.*.state\nrun {half * 7 // 5}") as lmp:
+    with ran(f"{head}{settings}\nrestart {half} r.*.state\nrun {half * 7 // 5}") as lmp:
         whole = state(lmp)
-    with session(f"read_restart r.*.state\n{settings}\nrun {half * 2 // 5}") as lmp:
+    with ran(f"read_restart r.*.state\n{settings}\nrun {half * 2 // 5}") as lmp:
         same(whole, state(lmp))
 
 
@@ -101,47 +95,47 @@ def test_bonds_with_a_past(here, files, case):  # noqa: F811
 def test_between_runs(here):
     """write_restart, and a run that ends on a step of `restart`: as the next run of the same script."""
     fixes = SETTINGS + FIXES["nvt"].replace("1 1 0.5", "1 2 0.5")
-    with session(f"{MELT}{fixes}\nrun 20\nwrite_restart a.*\nrun 20") as lmp:
+    with ran(f"{MELT}{fixes}\nrun 20\nwrite_restart a.*\nrun 20") as lmp:
         whole = state(lmp)
-    with session(f"read_restart a.20\n{fixes}\nrun 20") as lmp:
+    with ran(f"read_restart a.20\n{fixes}\nrun 20") as lmp:
         same(whole, state(lmp))
         assert lmp.scene.step == 40
-    with session(f"{MELT}{fixes}\nrestart 20 b\nrun 20\nrun 15") as lmp:
+    with ran(f"{MELT}{fixes}\nrestart 20 b\nrun 20\nrun 15") as lmp:
         whole = state(lmp)
-    with session(f"read_restart b.20\n{fixes}\nrun 15") as lmp:
+    with ran(f"read_restart b.20\n{fixes}\nrun 15") as lmp:
         same(whole, state(lmp))
 
 
 def test_changes_after_reading_count(here):
     """The state between two steps is not taken over where the script changed what it belongs to."""
     fixes = SETTINGS + FIXES["nve"]
-    session(f"{MELT}{fixes}\nrestart 20 r\nrun 30").close()
+    ran(f"{MELT}{fixes}\nrestart 20 r\nrun 30").close()
     for change in ("velocity all scale 2.0", "pair_coeff 1 1 1.1 1.0", "displace_atoms half move 0.1 0 0", "timestep 0.001",
                    "fix 5 all setforce 0 0 0"):
-        with session(f"read_restart r.20\n{fixes}\n{change}\nrun 10") as a:
+        with ran(f"read_restart r.20\n{fixes}\n{change}\nrun 10") as a:
             changed = state(a)
         document = restart_file.load("r.20")
         document["state"] = None
         restart_file.save("plain", document)
-        with session(f"read_restart plain\n{fixes}\n{change}\nrun 10") as b:
+        with ran(f"read_restart plain\n{fixes}\n{change}\nrun 10") as b:
             same(changed, state(b))
 
 
 def test_names(here):
-    with session(f"{MELT}{SETTINGS}{FIXES['nve']}\nrestart 10 a.*.x\nrestart 5 one two\nrun 20\nrestart 0\nrun 10\n"
-                 "write_restart parts.% fileper 4"):
+    with ran(f"{MELT}{SETTINGS}{FIXES['nve']}\nrestart 10 a.*.x\nrestart 5 one two\nrun 20\nrestart 0\nrun 10\n"
+             "write_restart parts.% fileper 4"):
         pass
     assert sorted(os.listdir()) == ["a.10.x", "a.20.x", "one", "parts.base", "two"]
     assert [restart_file.load(name)["step"] for name in ("one", "two")] == [15, 20]
-    with session("read_restart parts.%") as lmp:
+    with ran("read_restart parts.%") as lmp:
         assert lmp.scene.step == 30
-    with session(f"variable s equal stride(3,20,7)\n{MELT}{FIXES['nve']}\nrestart v_s v.*\nrun 12"):
+    with ran(f"variable s equal stride(3,20,7)\n{MELT}{FIXES['nve']}\nrestart v_s v.*\nrun 12"):
         pass
     assert sorted(n for n in os.listdir() if n[0] == "v") == ["v.10", "v.3"]
 
 
 def test_what_is_kept(here):
-    with session(f"{MELT}{SETTINGS}{FIXES['nvt']}\nthermo 5\nrun 5\nwrite_restart r") as lmp:
+    with ran(f"{MELT}{SETTINGS}{FIXES['nvt']}\nthermo 5\nrun 5\nwrite_restart r") as lmp:
         bath = lmp.scene.fixes["1"].scalar()
     with Lammps(cmdargs=["-screen", "none", "-log", "log"]) as lmp:
         lmp.commands_string("read_restart r\nfix 1 all nvt temp 1 1 0.5 tchain 4\nfix 2 all momentum 10 linear 1 1 1\nrun 0")
@@ -175,16 +169,15 @@ def test_every_style_is_kept(here, category):
 
 
 def test_minimize(here):
-    with session(f"{MELT}displace_atoms all random 0.05 0.05 0.05 12\nrestart 1000 m.*\nminimize 0 0 7 100") as lmp:
+    with ran(f"{MELT}displace_atoms all random 0.05 0.05 0.05 12\nrestart 1000 m.*\nminimize 0 0 7 100") as lmp:
         assert os.listdir() == [f"m.{lmp.scene.step}"]
 
 
 def test_file_of_lammps(here):
     """A binary restart file of LAMMPS is read by LAMMPS: atoms, groups, step and timestep."""
     lines = (MELT + "fix 1 all nve\ntimestep 0.002\nrun 10\nwrite_restart binary").splitlines()
-    theirs = ask("l = start()\nfor line in given['lines']:\n    l.command(line)\nanswer = {k: by_id(l, k) for k in 'xv'}\nl.close()",
-                 lines=lines)
-    with session("boundary f f f\nread_restart binary remap\npair_style lj/cut 2.5\npair_coeff * * 1 1\nfix 1 all nve\nrun 0") as lmp:
+    theirs = ask("l = ran(given['lines'])\nanswer = {k: by_id(l, k) for k in 'xv'}\nl.close()", lines=lines)
+    with ran("boundary f f f\nread_restart binary remap\npair_style lj/cut 2.5\npair_coeff * * 1 1\nfix 1 all nve\nrun 0") as lmp:
         order = np.argsort(lmp.scene.system.id)
         assert np.abs(lmp.scene.system.x[order] - theirs["x"]).max() < 1e-14
         assert np.abs(lmp.scene.system.v[order] - theirs["v"]).max() < 1e-14
@@ -210,7 +203,7 @@ def test_file_of_lammps(here):
     ("restart 10 nowhere/a\nrun 5", "folder nowhere does not exist"),
 ])
 def test_messages(here, text, words):
-    with session(BASE + "write_restart r") as lmp:
+    with ran(BASE + "write_restart r") as lmp:
         whole = Path("r").read_bytes()
         Path("binary").write_bytes(b"LammpS RestartT\0rest")
         Path("text").write_text("units lj")
@@ -229,7 +222,7 @@ def test_messages(here, text, words):
 
 
 def test_every_truncation_is_found(here):
-    with session(BASE + "write_restart r"):
+    with ran(BASE + "write_restart r"):
         whole = Path("r").read_bytes()
     for n in range(3, len(whole), len(whole) // 40):
         Path("cut").write_bytes(whole[:n])
@@ -269,10 +262,10 @@ def test_killed(here, at):
     os.kill(process.pid, signal.SIGKILL)
     process.communicate()
     last = restart_file.load(restart.newest("r.*"))["step"]
-    with session(f"read_restart r.*\n{settings}\nrestart 20 s.*\nrun 30") as lmp:
+    with ran(f"read_restart r.*\n{settings}\nrestart 20 s.*\nrun 30") as lmp:
         assert lmp.scene.step == last + 30
         continued_state = state(lmp)
-    with session(f"read_restart r.20\n{settings}\nrestart 20 s.*\nrun {last + 10}") as lmp:
+    with ran(f"read_restart r.20\n{settings}\nrestart 20 s.*\nrun {last + 10}") as lmp:
         same(state(lmp), continued_state)
 
 
@@ -288,10 +281,10 @@ def test_full_disk(here):
 
 def test_old_file_survives_a_full_disk(here, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    session(f"{MELT}{FIXES['nve']}\nrun 0\nwrite_restart r").close()
+    ran(f"{MELT}{FIXES['nve']}\nrun 0\nwrite_restart r").close()
     before = Path("r").read_bytes()
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    with session("read_restart r") as lmp:
+    with ran("read_restart r") as lmp:
         resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 2, hard))
         try:
             with pytest.raises(InputError, match="cannot write restart file r"):
@@ -311,7 +304,7 @@ def test_interrupted_run_writes_a_restart(here):
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     assert process.returncode == 130
-    with session(f"read_restart r.*\n{FIXES['nve']}\nrun 1") as lmp:
+    with ran(f"read_restart r.*\n{FIXES['nve']}\nrun 1") as lmp:
         assert lmp.scene.step > 300
 
 

@@ -26,9 +26,7 @@ import os
 os.chdir(given["folder"])
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer[name] = atoms_of(lmp, ("x", "v")) | {"file": open("r.rigid").read()}
     lmp.close()
 """

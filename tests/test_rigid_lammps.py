@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scripted import by_lammps, have_lammps, measure, write_data
+from wheel import ran
 
 from asemd.errors import InputError
 
@@ -64,11 +65,8 @@ def test_like_lammps(name, cases, expected):
 def scene(tmp_path):
     from scripted import script
 
-    from asemd.lammps import Lammps
     write_data(tmp_path / "data")
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(script(tmp_path / "data"))
-    return lmp
+    return ran(script(tmp_path / "data"))
 
 
 def test_a_free_body_keeps_its_angular_momentum(tmp_path):

@@ -38,9 +38,7 @@ NUMBERS = ("pe", "ke", "press", "pxx", "pxy")
 SCRIPT = """
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     x, v = (list(lmp.gather_atoms(key, 1, 3)) for key in "xv")
     answer[name] = {"x": x, "v": v, "thermo": [lmp.get_thermo(key) for key in given["numbers"]]}
     lmp.close()

@@ -5,7 +5,7 @@ import re
 
 import pytest
 from lj_cell import BASE
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.lammps import Lammps
 from asemd.thermo import KEYWORDS
@@ -84,11 +84,9 @@ STATE = BASE + "group a id 1:10\nregion r block 0 1 0 1 0 1\nvariable atomic ato
 
 def test_formulas():
     theirs = ask("""
-l = start()
-l.commands_string("atom_modify map array\\n" + given["state"])
+l = ran("atom_modify map array\\n" + given["state"])
 answer = [float(l.expand("$(" + f + ")")) for f in given["formulas"]]
 """, state=STATE, formulas=FORMULAS)
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as own:
-        own.commands_string(STATE)
+    with ran(STATE) as own:
         for formula, expected in zip(FORMULAS, theirs):
             assert own.eval(formula) == pytest.approx(expected, rel=1e-11, abs=1e-11), formula

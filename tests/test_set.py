@@ -110,9 +110,7 @@ DISCS += "set atom 4* density/disc 0.7\n"
 @pytest.mark.parametrize("script", [SPHERES, DISCS])
 def test_spheres(script):
     answer = ask("""
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"])
 answer = {name: by_id(lmp, name) for name in ("rmass", "radius", "omega")}
 lmp.close()""", lines=script.splitlines())
     system = asemd(script).scene.system

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shake_scene as scene
 from shake_scene import ALL, NVE, VALUES
-from wheel import ask
+from wheel import ask, ran
 
 PLAIN = ["run 0", "run 60", "run 40"]
 SHORT, THREE = ["run 0", "run 30", "run 20"], "run_style respa 3 2 2 bond 1 angle 2 pair 3"
@@ -95,18 +95,13 @@ def test_rattle_on_levels(cases, expected):
 
 def test_virials_of_atoms(cases):
     """Each atom's share in the virial of its cluster."""
-    from asemd.lammps import Lammps
     lines = [line for line in cases["all kinds"][0].splitlines() if line.strip()]
     lines += [NVE, f"fix s all shake 1e-6 100 0 {ALL}", "compute s all stress/atom NULL virial", "thermo 10", "run 10"]
     theirs = ask("""
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"])
 answer = np.array(lmp.gather("c_s", 1, 6)).reshape(-1, 6)
 """, lines=lines)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     seen = lmp.session.moment.snapshot
     ours = lmp.session.scene.computes["s"].per_atom(seen)[np.argsort(seen.system.id)]
     lmp.close()

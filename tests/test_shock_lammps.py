@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scripted import by_lammps, have_lammps, measure, write_data
+from wheel import ran
 
 from asemd.errors import InputError, NotYet
 
@@ -85,10 +86,7 @@ def test_a_shock_was_seen(expected):
 
 @pytest.fixture(scope="module")
 def plain():
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncreate_atoms 1 single 1 1 1\ncreate_atoms 1 single 2 3 3")
-    return lmp
+    return ran("region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\ncreate_atoms 1 single 1 1 1\ncreate_atoms 1 single 2 3 3")
 
 
 @pytest.mark.parametrize(("words", "message"), [
@@ -131,8 +129,6 @@ def test_modify_and_words(plain):
 
 @pytest.mark.parametrize(("first", "message"), [("change_box all triclinic", "orthogonal"), ("change_box all boundary p p f", "periodic")])
 def test_boxes_that_cannot_be_shocked(first, message):
-    from asemd.lammps import Lammps
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(f"region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\n{first}")
+    lmp = ran(f"region b block 0 5 0 5 0 5\ncreate_box 1 b\nmass 1 1\n{first}")
     with pytest.raises(InputError, match=message):
         lmp.command("fix 1 all msst x 1")

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_manybody import FOLDER, GRADIENT, MEASURE, OURS, scene
-from wheel import ask
+from wheel import ask, ran
 
 import asemd
 from asemd.bispectrum import bispectrum, clebsch_gordan
@@ -141,15 +141,12 @@ def test_clebsch_gordan_coefficients_are_orthonormal():
     (("2 6", "3 6"), "twojmax 2\nrcutfac 4", "Aa Bb", r"the file ends before an element \(x.snapcoeff:16"),
 ])
 def test_wrong_files(change, lines, words, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     first, second = write(tmp_path, "x", 2, "")
     if change:
         first.write_text(first.read_text().replace(*change, 1))
     second.write_text(lines + "\n")
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "create_atoms 1 single 1 1 1", "pair_style snap"):
-        lmp.command(line)
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "create_atoms 1 single 1 1 1", "pair_style snap"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * x.snapcoeff x.snapparam {words}")
 
@@ -189,14 +186,11 @@ def test_calculator_and_log(tmp_path, monkeypatch):
     ("model nn a.model descriptor sna d", {"a.model": "1 9\nNET 2 1 tanh 2\n1\n"}, r"the last layer of the network must have one node"),
 ])
 def test_wrong_models(style, files, says, tmp_path, monkeypatch):
-    from asemd.lammps import Lammps
     monkeypatch.chdir(tmp_path)
     known = {"a.model": "1 3\n1 2 3\n", "d": "rcutfac 4\ntwojmax 1\nnelems 1\nelems Aa\nradelems 0.5\nwelems 1\n"}
     for name, text in {**known, **files}.items():
         Path(name).write_text(text)
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "create_atoms 1 single 1 1 1"):
-        lmp.command(line)
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "create_atoms 1 single 1 1 1"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_style mliap {style or 'model linear a.model descriptor sna d'}")
         lmp.command("pair_coeff * * Aa")

@@ -44,10 +44,8 @@ SCRIPT = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
     watch = ["compute q all property/atom mux muy muz omegax omegay omegaz x", "dump q all custom 50 /dev/null c_q[1]"]
-    for line in [*lines, *watch, "run 50"]:
-        lmp.command(line)
+    lmp = ran([*lines, *watch, "run 50"])
     order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:lmp.extract_setting("nlocal")])
     answer[name] = {"atoms": np.array(lmp.numpy.extract_compute("q", 1, 2))[order].tolist(), "thermo": lmp.last_thermo()}
     lmp.close()

@@ -53,9 +53,7 @@ SCRIPT = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer[name] = np.array(lmp.numpy.extract_compute("m", 0, 2 if "profile" in str(lines) else 1)).tolist()
     lmp.close()
 """

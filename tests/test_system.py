@@ -110,9 +110,7 @@ def test_replicate_errors():
 
 
 REPLICATE = """
-lmp = start()
-for line in given["lines"]:
-    lmp.command(line)
+lmp = ran(given["lines"])
 answer = dict(energy=lmp.get_thermo("pe"), x=list(lmp.gather_atoms("x", 1, 3)), image=list(lmp.gather_atoms("image", 0, 3)),
               mol=list(lmp.gather_atoms("molecule", 0, 1)), box=lmp.extract_box()[:5])
 """

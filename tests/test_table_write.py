@@ -5,10 +5,9 @@ import re
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import AsemdError, InputError
-from asemd.lammps import Lammps
 
 SCENE = ["units real", "atom_style full", "region b block -50 50 -50 50 -50 50",
          "create_box 2 b bond/types 3 angle/types 2 dihedral/types 2", "mass * 1.0"]
@@ -25,12 +24,6 @@ CASES = {
 }
 
 
-def execute(commands):
-    l = Lammps(cmdargs=["-screen", "none", "-log", "none"])
-    l.commands_list(commands)
-    return l
-
-
 def sections(text: str):
     """Lines that are no rows, and the rows as numbers; the index of LAMMPS's last angle is wrong and left out."""
     rows = [line.split()[1:] for line in text.splitlines() if re.match(r" +\d", line)]
@@ -41,13 +34,8 @@ def sections(text: str):
 def test_agrees_with_lammps(category, tmp_path):
     commands = SCENE + CASES[category]
     ours, theirs = tmp_path / "ours", tmp_path / "theirs"
-    execute([c.replace("FILE", str(ours)) for c in commands])
-    ask("""
-l = start()
-l.commands_list(given["commands"])
-l.close()
-answer = 0
-""", commands=[c.replace("FILE", str(theirs)) for c in commands])
+    ran([c.replace("FILE", str(ours)) for c in commands])
+    ask("ran(given['commands']).close()\nanswer = 0", commands=[c.replace("FILE", str(theirs)) for c in commands])
     (words, got), (wanted, want) = sections(ours.read_text()), sections(theirs.read_text())
     assert words == wanted
     assert got.shape == want.shape
@@ -78,7 +66,7 @@ def test_read_again(category, coeff, tmp_path):
             [f"{category}_style table spline 1000", f"read_data {tmp_path / 'data'}", "pair_coeff * *", f"{category}_coeff 1 {file} KEY"]]
     answers = []
     for lines in runs:
-        l = execute([*base, *lines, "run 0"])
+        l = ran([*base, *lines, "run 0"])
         answers.append((l.get_thermo("pe"), np.array(l.gather_atoms("f", 1, 3))))
     (e, f), (e2, f2) = answers
     assert e2 == pytest.approx(e, rel=1e-6)
@@ -87,7 +75,7 @@ def test_read_again(category, coeff, tmp_path):
 
 def test_pair_table_read_again(tmp_path):
     file = tmp_path / "t"
-    l = execute([*SCENE, *PAIRS, f"pair_write 1 1 12 bitmap 2.0 8.0 {file} BITS", f"pair_write 1 1 2000 rsq 2.0 8.0 {file} SQUARES"])
+    l = ran([*SCENE, *PAIRS, f"pair_write 1 1 12 bitmap 2.0 8.0 {file} BITS", f"pair_write 1 1 2000 rsq 2.0 8.0 {file} SQUARES"])
     for style, key in (("bitmap 12", "BITS"), ("spline 2000", "SQUARES")):
         again = tmp_path / key
         l.commands_list([f"pair_style table {style}", f"pair_coeff * * {file} {key}", f"pair_write 1 1 9 r 3.01 7.5 {again} KEY"])
@@ -99,12 +87,12 @@ def test_pair_table_read_again(tmp_path):
 def test_appending(tmp_path):
     file = tmp_path / "t"
     bond = [*SCENE, "bond_style harmonic", "bond_coeff * 300 1.1"]
-    execute([*bond, f"bond_write 1 2 0.5 2.0 {file} A", f"bond_write 1 3 0.5 2.0 {file} B"])
+    ran([*bond, f"bond_write 1 2 0.5 2.0 {file} A", f"bond_write 1 3 0.5 2.0 {file} B"])
     lines = file.read_text().splitlines()
     assert re.fullmatch(r"# DATE: \d{4}-\d\d-\d\d UNITS: real Created by bond_write", lines[0])
     assert [k for k, line in enumerate(lines) if line.startswith("# Bond potential harmonic for bond type 1")] == [1, 8]
     with pytest.raises(AsemdError, match="UNITS: real, while units are metal"):
-        execute(["units metal", *bond[1:], f"bond_write 1 2 0.5 2.0 {file} C"])
+        ran(["units metal", *bond[1:], f"bond_write 1 2 0.5 2.0 {file} C"])
     assert file.read_text().splitlines() == lines
 
 
@@ -120,8 +108,8 @@ def test_appending(tmp_path):
 def test_refused(line, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match=message):
-        execute([*SCENE, *PAIRS, "bond_style hybrid harmonic fene harmonic/restrain", "bond_coeff 1 harmonic 300 1.1",
-                 "bond_coeff 2 fene 30 1.5 1 1", "bond_coeff 3 harmonic/restrain 100", line])
+        ran([*SCENE, *PAIRS, "bond_style hybrid harmonic fene harmonic/restrain", "bond_coeff 1 harmonic 300 1.1",
+             "bond_coeff 2 fene 30 1.5 1 1", "bond_coeff 3 harmonic/restrain 100", line])
     assert not (tmp_path / "t").exists()
 
 
@@ -140,12 +128,7 @@ def test_parts_of_hybrid_pair_styles(name, tmp_path):
              "bond_style lepton", "bond_coeff * 1.0 'v_half*r^2'", "variable half equal 0.8", "bond_write 1 9 0.8 1.5 FILE TWO",
              "pair_write 1 2 9 r 2.0 7.5 FILE THREE 0.5 -0.25"]
     ours, theirs = tmp_path / "ours", tmp_path / "theirs"
-    execute([c.replace("FILE", str(ours)) for c in lines])
-    ask("""
-l = start()
-l.commands_list(given["commands"])
-l.close()
-answer = 0
-""", commands=[c.replace("FILE", str(theirs)) for c in lines])
+    ran([c.replace("FILE", str(ours)) for c in lines])
+    ask("ran(given['commands']).close()\nanswer = 0", commands=[c.replace("FILE", str(theirs)) for c in lines])
     got, want = sections(ours.read_text())[1], sections(theirs.read_text())[1]
     assert got == pytest.approx(want, rel=1e-12, abs=1e-12)

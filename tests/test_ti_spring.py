@@ -31,9 +31,7 @@ CASES = {"linear": SOLID.format("function 1"), "smooth": SOLID.format("function 
 SCRIPT = """
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
+    lmp = ran(lines)
     answer[name] = []
     for steps in given["steps"]:
         lmp.command(f"run {steps}")

@@ -48,12 +48,8 @@ SCRIPT = """
 import numpy as np
 answer = {}
 for name, lines in given["cases"].items():
-    lmp = start()
-    for line in lines:
-        lmp.command(line)
-    n = lmp.extract_setting("nlocal")
-    order = np.argsort(np.array(lmp.numpy.extract_atom("id"))[:n])
-    answer[name] = {key: np.array(lmp.numpy.extract_atom(key))[:n][order].tolist() for key in "xvf"} | {
+    lmp = ran(lines)
+    answer[name] = {key: by_id(lmp, key).tolist() for key in "xvf"} | {
         "values": [lmp.get_thermo(k) for k in ("pe", "press", "pxx", "pzz")] + [lmp.extract_fix("2", 0, 0), lmp.extract_fix("2", 0, 1, 0)]}
     lmp.close()
 """

@@ -7,7 +7,7 @@ import both
 import numpy as np
 import pytest
 from ase import io, units
-from wheel import ask
+from wheel import ask, ran
 
 import asemd
 from asemd.box import Box
@@ -16,7 +16,6 @@ from asemd.engine import Settings
 from asemd.errors import SimulationError
 from asemd.fix.nve import NVE
 from asemd.forcefield import Interactions
-from asemd.lammps import Lammps
 from asemd.lammps.dump_read import frames
 from asemd.lammps.session import Session
 from asemd.lammps.switches import Switches
@@ -226,15 +225,13 @@ def test_runs_of_atoms(tmp_path):
 # ------------------------------------------------------------------------------------------------------- what it leaves alone ---
 
 def finishes(text: str) -> float:
-    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as own:
-        own.commands_string(text)
+    with ran(text) as own:
         return own.get_thermo("temp")
 
 
 def wheel_finishes(text: str) -> float:
     return ask("""
-l = start()
-l.commands_string(given["text"])
+l = ran(given["text"])
 answer = l.get_thermo("temp")
 """, text=text)
 
@@ -330,7 +327,6 @@ def test_switched_off(tmp_path):
     (tmp_path / "log.last_good.dump").unlink()
     main(["run", str(script), "--quiet", "--log", str(log), "--no-watchdog"])
     assert "come apart" not in log.read_text() and not (tmp_path / "log.last_good.dump").exists()
-    with Lammps(cmdargs=["-screen", "none", "-log", "none", "-watchdog", "no"]) as lmp:
-        lmp.commands_string(MELT.format(n=3, dt=0.004) + "run 10")
+    with ran(MELT.format(n=3, dt=0.004) + "run 10", "-watchdog", "no") as lmp:
         dog = lmp.session.loop.watchdog
         assert not dog.on and not dog.frames and dog.seconds == 0.0
