@@ -91,6 +91,8 @@ in_script("another pair style after the coefficients", "run 2 => pair_style lj/c
 line("exclude a type that is not there", "neigh_modify exclude type 1 9", "9")
 line("compute element", "compute p all pressure thermo_temp\nthermo_style custom step c_p[7]", "7", at=())
 line("compute without elements", "compute p all pe\nthermo_style custom step c_p[1]", "p", at=())
+line("thermo of a compute by atom", "compute p all ke/atom\nthermo_style custom step c_p", "p;no global scalar")
+line("deform direction after its keywords", "fix d all deform 1 x erate 0.1 remap x y erate 0.1", "y must stand before remap")
 line("compute in use", "compute p all pe\nthermo_style custom step c_p\nuncompute p", "there is no compute p", at=RUN)
 line("fix replaced by another style", "fix 1 all nvt temp 1 1 1", "fix 1|ID 1|replac")
 line("restart that is text", "clear\nread_restart scene.data", "scene.data", at=("in.scene", "read_restart scene.data"))

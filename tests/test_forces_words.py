@@ -6,7 +6,8 @@ import pytest
 from wheel import ran
 
 import asemd.fix
-from asemd.errors import InputError
+from asemd.errors import InputError, SimulationError
+from asemd.lammps import Lammps
 
 SETUP = """
 units real
@@ -118,3 +119,12 @@ def test_no_energy_no_virial(style, lmp):
         with pytest.raises(InputError, match="does not support"):
             lmp.command(f"fix_modify f {word}")
     lmp.command("unfix f")
+
+
+def test_a_run_does_not_begin_behind_a_wall():
+    """At r = 0 the wall gave no force, and the run came apart some steps later."""
+    with Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+        for line in [*filter(None, SETUP.split("\n")), "fix w all wall/lj93 ylo 4.0 1.0 1.0 2.5 units box"]:
+            lmp.command(line)
+        with pytest.raises(SimulationError, match=r"wall/lj93\): atom 1 is on the wall or behind it \(ylo, 1 in all\)"):
+            lmp.command("run 0")

@@ -117,6 +117,9 @@ class Deform(Fix):
             read[name], words = [style, *values], words[2 + len(values):]
         options = {"remap": "x", "flip": "yes", "units": "lattice"}
         while words:
+            if words[0] in DIMENSIONS:
+                raise InputError(f"fix deform: {words[0]} must stand before {' '.join(KEYWORDS)}" if words[0] not in read
+                                 else f"fix deform: {words[0]} is given twice")
             if words[0] not in KEYWORDS:
                 raise InputError(f"fix deform: unknown keyword {words[0]!r}{nearest(words[0], (*KEYWORDS, *DIMENSIONS))}")
             options[words[0]] = take(words[1:], 1, f"fix deform {words[0]}")[0]

@@ -16,7 +16,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from asemd.errors import InputError, nearest
+from asemd.errors import InputError, SimulationError, nearest
 from asemd.expression import compiled_function
 from asemd.fix import hook
 from asemd.fix.forcing import Forcing
@@ -248,6 +248,23 @@ class Wall(Forcing):
         p = super().parameters(loop)
         p[10] = 0.0
         return p
+
+    def setup(self, loop) -> None:
+        """A run does not begin with atoms that the wall cannot see.
+
+        Raises
+        ------
+        SimulationError
+            Names the first such atom.
+        """
+        super().setup(loop)
+        for m, face in enumerate(self.walls):
+            d, side, place = self.p[FIRST + WALL * m:][:3]
+            behind = loop.groups[self.group] & (side * (place - loop.system.x[:, int(d)]) <= 0.0)
+            if behind.any():
+                first = loop.system.id[int(np.argmax(behind))]
+                raise SimulationError(f"fix {self.id} (style {self.style}): atom {first} is on the wall or behind it "
+                                      f"({face}, {np.count_nonzero(behind)} in all)")
 
     def scalar(self) -> float:
         """Energy of atoms and walls, energy units."""

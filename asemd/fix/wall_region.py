@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, SimulationError
 from asemd.fix.forcing import Forcing
 from asemd.fix.wall import HARMONIC, LJ93, LJ126, LJ1043, wall_energy
 from asemd.words import choice, exactly, number, take
@@ -80,7 +80,6 @@ class WallRegion(Forcing):
             raise InputError(f"fix wall/region: the cutoff must be above 0, got {cutoff:g}")
         self.wall, self.wall_id, self.kind = region, getattr(region, "id", ""), kind
         self.coefficients, self.cutoff = tuple(coefficients), cutoff
-        self.problem = ""
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -101,7 +100,6 @@ class WallRegion(Forcing):
         if self.kind == "colloid" and "radius" not in loop.system.extra:
             raise InputError("Fix wall/region colloid requires atom attribute radius: use an atom style such as sphere")
         self.wall.surface(np.zeros((0, 3)), self.cutoff)
-        self.problem = ""
         return super().parameters(loop)
 
     def energy_of(self, r, radius):
@@ -128,8 +126,8 @@ class WallRegion(Forcing):
         ok = r > radius
         lost = np.concatenate([rows[~self.wall.inside(x)], rows[index[~ok]]])
         if len(lost):
-            self.problem = f"atom {system.id[lost[0]]} is on the surface of region {self.wall_id} or outside of it"
-        index, d, r, radius = index[ok], d[ok], r[ok], radius[ok]
+            raise SimulationError(f"fix {self.id} (style {self.style}): atom {system.id[lost[0]]} is on the surface of region "
+                                  f"{self.wall_id} or outside of it")
         energies, slope = self.energy_of(r, radius)
         f = (-slope / r)[:, None] * d
         slots = loop.engine.slot_of[rows[index]]
@@ -138,9 +136,6 @@ class WallRegion(Forcing):
         self.p[3], self.p[4:7] = energies.sum(), -f.sum(axis=0)
         if self.thermo_virial:
             loop.state.virial[0] += [(f[:, i] * d[:, j]).sum() for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
-
-    def broken_constraint(self, loop) -> str:
-        return self.problem
 
     def scalar(self) -> float:
         """Energy of atoms and wall, energy units."""

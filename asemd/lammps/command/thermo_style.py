@@ -3,7 +3,9 @@ from __future__ import annotations
 
 import re
 
+from asemd.compute import Compute
 from asemd.errors import InputError, nearest
+from asemd.fix import Fix
 from asemd.thermo import Thermo, parse_reference
 from asemd.words import take
 
@@ -22,6 +24,8 @@ def run(session, args):
         if table is not None and reference[1] not in table:
             kind, id = "compute" if reference[0] == "c" else "fix", reference[1]
             raise InputError(f"thermo_style: there is no {kind} {id}{nearest(id, table)}")
+        if table is not None and not reference[2]:
+            _check_scalar(table[reference[1]])
         if reference and reference[0] == "v":
             style, fits = session.variables.find(reference[1]).style, ("vector",) if reference[2] else NUMBERS
             if style not in fits:
@@ -31,6 +35,13 @@ def run(session, args):
     before.set_style(args[0], words)
     if lost:
         session.warn("new thermo_style command, previous thermo_modify settings are lost")
+
+
+def _check_scalar(source) -> None:
+    """Say at once, with the line of ``thermo_style``, that a compute or fix never has a global scalar."""
+    base = Fix if isinstance(source, Fix) else Compute
+    if type(source).scalar is base.scalar:
+        raise InputError(f"thermo_style: {base.__name__.lower()} {source.id} (style {source.style}) has no global scalar")
 
 
 def _expanded(session, word: str) -> list[str]:
