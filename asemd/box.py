@@ -176,7 +176,10 @@ class Box:
         d = x - self.origin
         if self.is_lammps_frame and self.triclinic:
             return tilted.fractional(d, self.cell)
-        return d / np.diag(self.cell) if self.aligned else d @ self.inverse
+        if self.aligned:
+            return d / np.diag(self.cell)
+        a, b, c = self.inverse      # by hand: the digits of a matrix product depend on how many rows there are
+        return d[:, 0, None] * a + d[:, 1, None] * b + d[:, 2, None] * c
 
     # ---- periodicity
     def wrap(self, x: np.ndarray, image: np.ndarray) -> None:

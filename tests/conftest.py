@@ -6,7 +6,8 @@ from collections import Counter
 import pytest
 from hypothesis import settings
 
-settings.register_profile("asemd", deadline=None)
+settings.register_profile("asemd", deadline=None, derandomize=True)     # the same examples each time
+settings.register_profile("search", deadline=None)      # others: pytest --hypothesis-profile=search
 settings.load_profile("asemd")
 
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -28,6 +28,7 @@ def boxes(draw):
 
 
 @given(boxes(), arrays(float, (5, 3), elements=st.floats(-1e4, 1e4)))
+@example(Box(np.array([0.0, 0.0, 1.0]), 3.0 * np.array([[0, 1, 1], [1, 1, 0], [1, 1, 1]]), ["pp", "ff", "pp"]), np.zeros((5, 3)))
 def test_wrap_puts_atoms_inside_and_image_flags_lead_back(box, x):
     new, image = x.copy(), np.zeros(x.shape, np.int32)
     box.wrap(new, image)

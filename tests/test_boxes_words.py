@@ -45,7 +45,7 @@ def test_round_trip(line):
     ("deform 1 x erat 1", "did you mean erate"), ("deform 1 xy volume", "expected one of"), ("deform 1 xy scale 2", "expected one of"),
     ("deform 1 x volume y volume", "another length"), ("deform 1 x erate 1 remap w", "remap"),
     ("deform 1 x erate 1 flip maybe", "yes or no"),
-    ("deform 1 x erate 1 unit box", "did you mean units"), ("deform 1 x erate 1 remap v y erate 1", "unknown keyword 'y'"),
+    ("deform 1 x erate 1 unit box", "did you mean units"), ("deform 1 x erate 1 remap v y erate 1", "y must stand before remap"),
     ("deform 1 x wiggle 1 0", "period"), ("deform 1 x variable d e", "v_name"), ("deform 1 x variable v_q v_e", "undefined variable q"),
     ("deform 1 x erate fast", "number"), ("deform 1 x erate 1 units", "1 value"),
     ("nvt/sllod", "needs temp"), ("nvt/sllod temp 1 1 1 psllod", "1 value"), ("nvt/sllod temp 1 1 1 psllod maybe", "yes or no"),

