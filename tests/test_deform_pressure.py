@@ -71,6 +71,17 @@ def test_like_lammps(name, theirs):
     assert not np.allclose([*box.lengths, *tilt], [4 * (4 / 0.8442) ** (1 / 3)] * 3 + [0.0] * 3)
 
 
+@pytest.mark.parametrize("name", ["box", "balance"])
+def test_goes_on_from_a_restart_file(name, tmp_path):
+    """A second run, and one of a restart file between the two."""
+    head, fixes = text(name).split("pair_style")
+    first = asemd(f"{head}pair_style{fixes}\nwrite_restart {tmp_path}/r\nrun 5")
+    again = asemd(f"read_restart {tmp_path}/r\npair_style{fixes.rpartition('run 6')[0]}\nrun 5")
+    for key in ("Press", "Temp", "Volume"):
+        assert again.last_thermo[key] == pytest.approx(first.last_thermo[key], rel=1e-10)
+    assert first.scene.system.box.lengths == pytest.approx(again.scene.system.box.lengths, rel=1e-13)
+
+
 @pytest.mark.parametrize(("words", "message"), [
     ("1 x pressure 5", "2 values"), ("1 x pressure 5 0.1 max/rate 0", "positive"), ("1 x pressure 5 0.1 couple foo", "one of none"),
     ("1 x pressure 5 0.1 y pressure 4 0.1 couple xy", "identical gain"), ("1 z pressure 5 0.1 couple xy", "at least one coupled"),

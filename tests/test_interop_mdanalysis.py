@@ -196,6 +196,21 @@ def test_scene_is_as_mdanalysis_reads_its_data_file(unit, tmp_path):
     assert np.allclose(u.atoms.velocities, v * (1.0 if unit == "lj" else 1000.0), rtol=1e-5) and len(scene.bonds) == 2
 
 
+def test_atoms_of_a_script_fit_its_dump(tmp_path):
+    """Where atoms are deleted, their order is not that of their ids; MDAnalysis sorts dumps by id, and has the same atoms as we."""
+    with ran(["lattice sc 1.0", "region box block 0 3 0 3 0 3", "create_box 3 box", "create_atoms 1 box", "mass * 1.0",
+              "set group all type/fraction 2 0.5 4711", "set atom 20 type 3", "pair_style zero 1.2", "pair_coeff * *",
+              "group some id 2 3 7", "delete_atoms group some compress no", f"dump 1 all custom 1 {tmp_path}/x.dump id type x y z vx vy vz",
+              "velocity all create 1.0 4711 loop geom", "run 0"]) as lmp:
+        order = lmp.session.scene.system.id.copy()
+        u = asemd.to_mdanalysis(lmp)
+    assert np.any(np.diff(order) < 0)
+    theirs = mda.Universe(str(tmp_path / "x.dump"), format="LAMMPSDUMP")
+    assert u.atoms.ids.tolist() == theirs.atoms.ids.tolist() and u.atoms.types.tolist() == theirs.atoms.types.tolist()
+    assert np.allclose(u.atoms.positions, theirs.atoms.positions, atol=1e-5)
+    assert np.allclose(u.atoms.velocities, theirs.atoms.velocities, atol=1e-4)
+
+
 def test_atoms_that_mdanalysis_read(tmp_path):
     """A universe from elsewhere: types that are words are numbered, and the numbers are explained."""
     (tmp_path / "x.pdb").write_text(

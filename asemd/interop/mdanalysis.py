@@ -39,11 +39,11 @@ def to_mdanalysis(source, dt: float = 1.0):
     MDAnalysis keeps positions in single precision and knows cells that are periodic in all directions or none. The universe remembers
     the atoms it was made of, and `from_mdanalysis` gives what was not changed back to the last bit.
 
-    Atoms stand in the order of the source, which is not that of their ids where a script has deleted some. MDAnalysis sorts dumps by id:
-    compare ``universe.atoms.ids`` before ``universe.load_new`` of a dump, or take the topology from the dump as well.
+    Atoms of a script stand in the order of their ids, as in a dump that MDAnalysis reads: ``universe.load_new`` of the dump of all atoms
+    of the same run fits. Atoms and trajectories of ASE keep their own order.
     """
     mda = library()
-    frames, reduced = frames_of(source, "to_mdanalysis")
+    frames, reduced = frames_of(source, "to_mdanalysis", by_id=True)
     sources = [remembered(atoms) for atoms in frames]
     _share(sources)
     universe = mda.Universe(topology_of(sources[0]), to_guess=())

@@ -12,12 +12,13 @@ from asemd.interop.frames import is_reduced, known_forces
 from asemd.scene import Scene
 
 
-def frames_of(source, what: str) -> tuple[list[Atoms], bool]:
-    """The frames of whatever was given, and whether their numbers are in units lj."""
+def frames_of(source, what: str, by_id: bool = False) -> tuple[list[Atoms], bool]:
+    """The frames of whatever was given (those of a scene by id if wanted), and whether their numbers are in units lj."""
     source = getattr(source, "session", source)             # asemd.Lammps
     scene = getattr(source, "scene", source)                # a session
     if isinstance(scene, Scene):
-        return [_of_scene(scene, what)], scene.units == "lj"
+        atoms = _of_scene(scene, what)
+        return [atoms[np.argsort(atoms.arrays["id"])] if by_id else atoms], scene.units == "lj"
     if isinstance(source, PlainAtoms):
         source = [source]
     try:

@@ -295,7 +295,7 @@ def _written(stem: str, text: str) -> Path:
     folder = cache_dir()
     path = folder / f"{stem}.py"
     if not path.exists():
-        _trim(folder)
+        _trim_once(folder)
         fd, tmp = tempfile.mkstemp(dir=folder, suffix=".tmp")
         try:
             with os.fdopen(fd, "w") as f:
@@ -327,17 +327,22 @@ def _keep_if_there_is_room(kept) -> None:
 def _trim(folder: Path) -> None:
     """Keep the cache bounded: drop the oldest compiled code first."""
     files = []
-    for f in (folder / "__pycache__").glob("*"):
-        try:
-            files.append((f.stat().st_mtime, f.stat().st_size, f))
-        except OSError:
-            continue
+    with contextlib.suppress(FileNotFoundError), os.scandir(folder / "__pycache__") as entries:
+        for f in entries:
+            with contextlib.suppress(FileNotFoundError):
+                files.append((f.stat().st_mtime, f.stat().st_size, Path(f.path)))
     total = sum(size for _, size, _ in files)
     for _, size, f in sorted(files):
         if total <= LIMIT_BYTES:
             break
         f.unlink(missing_ok=True)
         total -= size
+
+
+@functools.cache
+def _trim_once(folder: Path) -> None:
+    """Looking through thousands of files takes longer than compiling a small kernel: a process does it before its first one."""
+    _trim(folder)
 
 
 def digest(constants: Mapping[str, object]) -> str:
