@@ -28,3 +28,11 @@ def test_peptide_like_lammps():
     lmp = ran(lines)
     assert [lmp.get_thermo(w) for w in words] == pytest.approx(want, rel=1e-12, abs=1e-12)
     lmp.close()
+
+
+def test_solvation(tmp_path):
+    """Two programs have the same g(r) of one trajectory; places of first maxima, and hydrogen bonds."""
+    result = run("solvation", tmp_path, cells=7, equil=200, steps=500)
+    assert result["differs from compute rdf by"] < 0.25 and result["temperature"] == pytest.approx(280, abs=40)      # it was at rest before
+    water, oxygen = result["shells"]["water"], result["shells"]["C=O to H of water"]
+    assert water["maximum"] == pytest.approx(2.75, abs=0.11) and 2.2 < water["height"] < 3.4 and 1.5 < oxygen["maximum"] < 2.3
