@@ -36,3 +36,14 @@ def test_solvation(tmp_path):
     assert result["differs from compute rdf by"] < 0.25 and result["temperature"] == pytest.approx(280, abs=40)      # it was at rest before
     water, oxygen = result["shells"]["water"], result["shells"]["C=O to H of water"]
     assert water["maximum"] == pytest.approx(2.75, abs=0.11) and 2.2 < water["height"] < 3.4 and 1.5 < oxygen["maximum"] < 2.3
+
+
+def test_glass_transition(tmp_path):
+    """A small melt that is cooled fast becomes a glass, which shrinks half as fast; numbers of the README file, the bend above its own."""
+    result = run("glass-transition", tmp_path, melts=2, chains=20, equil=4000, steps=20000)
+    (bend, _), (glass, _), (melt, _), (density, _) = (result[name] for name in
+                                                      ("Tg", "expansion of the glass", "expansion of the melt", "density at 0.2"))
+    assert 0.41 < bend < 0.55 and 0.10 < glass < 0.17 and 0.28 < melt < 0.36
+    assert density == pytest.approx(1.060, abs=0.015)
+    curve = result["curves"][0]
+    assert len(curve[0]) > 50 and curve[0][0] == pytest.approx(0.8, abs=0.08) and curve[0][-1] == pytest.approx(0.2, abs=0.03)
