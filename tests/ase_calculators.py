@@ -39,6 +39,7 @@ class LennardJones(OneType):
 
 class MorsePotential(OneType):
     def __init__(self, epsilon=1.0, r0=1.0, rho0=6.0, **_):
+        epsilon, r0, rho0 = float(epsilon), float(r0), float(rho0)
         super().__init__(f"pair_style morse {2.7 * r0!r}", f"pair_coeff 1 1 {epsilon!r} {rho0 / r0!r} {r0!r}")
 
 
