@@ -93,6 +93,29 @@ def test_anything_with_submit(tmp_path):
         assert found.column("area") == [1.0, 2.0]
 
 
+PARSL = """
+import asemd, job
+from parsl import Config
+from parsl.concurrent import ParslPoolExecutor
+from parsl.executors import HighThroughputExecutor
+from parsl.providers import LocalProvider
+here = HighThroughputExecutor(label="here", address="127.0.0.1", max_workers_per_node=2, encrypted=False, provider=LocalProvider())
+with ParslPoolExecutor(config=Config(executors=[here], run_dir="runs", usage_tracking=0)) as pool:
+    found = asemd.campaign(job.square, {"x": [1, 2, -1]}, "a.db", executor=pool)
+print(found.column("area"), [row["error"] for row in found.failed])
+"""
+
+
+def test_parsl(tmp_path):
+    """Worker processes of Parsl on this machine, as it starts them on a cluster."""
+    pytest.importorskip("parsl")
+    (tmp_path / "job.py").write_text("def square(x):\n    if x < 0:\n        raise ValueError('negative')\n    return {'area': x * x}\n")
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(asemd.__file__).parents[1]), str(tmp_path)]),
+           "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
+    done = subprocess.run([sys.executable, "-c", PARSL], cwd=tmp_path, env=env, capture_output=True, text=True, timeout=300)
+    assert done.stdout.strip() == "[1, 4] ['ValueError: negative']", done.stdout + done.stderr[-3000:]
+
+
 def test_a_process_that_dies(tmp_path):
     with ProcessPoolExecutor(1) as pool:
         found = asemd.campaign(deadly, {"x": [1, 2, 3]}, tmp_path / "a.db", executor=pool)
