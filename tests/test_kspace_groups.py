@@ -53,7 +53,7 @@ def lammps(tmp_path_factory):
     return lammps_of(CASES, tmp_path_factory.mktemp("groups"))
 
 
-@pytest.mark.part(5)
+@pytest.mark.part(8)
 @pytest.mark.parametrize("name", CASES)
 def test_against_lammps(name, lammps):
     compare(name, CASES[name], lammps[name])

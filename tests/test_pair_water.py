@@ -83,7 +83,7 @@ def theirs(tmp_path_factory):
     return list(zip(scripts, wheel.ask(ASK, scripts=scripts, columns=COLUMNS), strict=True))
 
 
-@pytest.mark.part(3)
+@pytest.mark.part(6)
 @pytest.mark.parametrize("case", range(len(CASES)), ids=[case[0] for case in CASES])
 def test_against_lammps(theirs, case):
     text, (thermo, forces, energies) = theirs[case]
