@@ -353,11 +353,11 @@ def test_voronoi_cells_fill_the_box():
         system = SimpleNamespace(x=rng.uniform(0.0, 1.0, (n, 3)) * [3, 4, 5], box=box, dimension=3)
         everything = np.arange(n), np.ones(n, bool), 0.0
         cells = _cells(system, *everything)
-        assert sum(volume for _, volume, _ in cells) == pytest.approx(60.0, rel=1e-12), (n, boundary)
-        for (_, volume, faces), (_, alike, others) in zip(cells, _cells(system, *everything, np.full(n, 0.7)), strict=True):
-            assert (volume, len(faces)) == (pytest.approx(alike, rel=1e-11), len(others)), (n, boundary)
+        assert cells.volume.sum() == pytest.approx(60.0, rel=1e-12), (n, boundary)
+        alike = _cells(system, *everything, np.full(n, 0.7))
+        assert cells.volume == pytest.approx(alike.volume, rel=1e-11) and list(cells.owner) == list(alike.owner), (n, boundary)
         cells = _cells(system, *everything, rng.uniform(0.0, 1.0, n))
-        assert sum(volume for _, volume, _ in cells) == pytest.approx(60.0, rel=1e-12), (n, boundary)
+        assert cells.volume.sum() == pytest.approx(60.0, rel=1e-12), (n, boundary)
 
 
 def test_voronoi_cells_of_two_sizes():
@@ -366,6 +366,6 @@ def test_voronoi_cells_of_two_sizes():
     from asemd.compute.voronoi_atom import _cells
     box = Box.from_lammps((0, 0, 0), (10.0, 4.0, 4.0), boundary=("ff", "pp", "pp"))
     system = SimpleNamespace(x=np.array([[3.0, 1.0, 1.0], [6.0, 1.0, 1.0]]), box=box, dimension=3)
-    volumes = [volume for _, volume, _ in _cells(system, np.arange(2), np.ones(2, bool), 0.0, np.array([1.5, 0.5]))]
+    volumes = _cells(system, np.arange(2), np.ones(2, bool), 0.0, np.array([1.5, 0.5])).volume
     plane = 3.0 + (3.0**2 + 1.5**2 - 0.5**2) / (2.0 * 3.0)
     assert volumes == pytest.approx([16.0 * plane, 16.0 * (10.0 - plane)], rel=1e-12)

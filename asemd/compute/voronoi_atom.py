@@ -8,6 +8,7 @@ one among them may have none. Source: LAMMPS manual, compute voronoi/atom. Units
 from __future__ import annotations
 
 import itertools
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,17 @@ from asemd.words import number, take, whole, yes_no
 
 KEYWORDS = ("only_group", "occupation", "surface", "radius", "edge_histo", "edge_threshold", "face_threshold", "neighbors", "peratom")
 CLOSED = 1e-9       # edges shorter than this, relative to the largest cell width, are points
+
+
+class Cells(NamedTuple):
+    """Cells of m atoms and their k faces, those of an atom together."""
+
+    row: np.ndarray         # (m,) of the atom
+    volume: np.ndarray      # (m,)
+    owner: np.ndarray       # (k,) row of the atom whose cell it is
+    other: np.ndarray       # (k,) row of the neighbour; -1 is a wall
+    area: np.ndarray        # (k,)
+    edges: np.ndarray       # (k,) how many
 
 
 class VoronoiAtom(Compute):
@@ -123,14 +135,15 @@ class VoronoiAtom(Compute):
             raise InputError(f"compute {self.id} (voronoi/atom): the radius of atom {state.system.id[bad]} is not a number")
         return radius
 
-    def cells(self, state) -> list[tuple[int, float, list[tuple[int, float, int]]]]:
-        """Of each atom of the group: its row, volume, and faces (row of the neighbour or -1, area, number of edges)."""
+    def cells(self, state) -> Cells:
+        """The cells of the atoms of the group."""
         if self._last[0] is state:
             return self._last[1]
         mask = state.mask(self.group)
         rows = np.flatnonzero(mask) if self.only_group else np.arange(state.system.n)
-        out = [] if not len(rows) else _cells(state.system, rows, mask[rows], self.edge_threshold,
-                                               self._radii(state, rows))
+        none, count = np.zeros(0), np.zeros(0, int)
+        out = _cells(state.system, rows, mask[rows], self.edge_threshold, self._radii(state, rows)) if len(rows) \
+            else Cells(count, none, count, count, none, count)
         self._last = (state, out)
         return out
 
@@ -140,13 +153,13 @@ class VoronoiAtom(Compute):
             return super().per_atom(state)
         if self.occupation:
             return self._occupied(state)
-        out = np.zeros((state.system.n, self.per_atom_columns()))
-        towards = state.mask(self.surface) if self.surface else None
-        for row, volume, faces in self.cells(state):
-            counted = [face for face in faces if face[1] > self.face_threshold]
-            out[row, :2] = volume, len(counted)
-            if self.surface:
-                out[row, 2] = sum(area for other, area, _ in faces if area >= self.face_threshold and (other < 0 or towards[other]))
+        n, cells = state.system.n, self.cells(state)
+        out = np.zeros((n, self.per_atom_columns()))
+        out[cells.row, 0] = cells.volume
+        out[:, 1] = np.bincount(cells.owner[cells.area > self.face_threshold], minlength=n)
+        if self.surface:
+            at = (cells.area >= self.face_threshold) & ((cells.other < 0) | state.mask(self.surface)[cells.other])
+            out[:, 2] = np.bincount(cells.owner[at], cells.area[at], minlength=n)
         return out
 
     def _occupied(self, state) -> np.ndarray:
@@ -171,21 +184,20 @@ class VoronoiAtom(Compute):
         """(edge_histo + 1,) faces by their number of edges."""
         if self.edge_histo is None:
             return super().vector(state)
-        edges = [n for _, _, faces in self.cells(state) for _, _, n in faces if n > 0]
-        return np.bincount(np.minimum(np.array(edges, int), self.edge_histo + 1) - 1, minlength=self.edge_histo + 1).astype(float)
+        edges = self.cells(state).edges
+        return np.bincount(np.minimum(edges[edges > 0], self.edge_histo + 1) - 1, minlength=self.edge_histo + 1).astype(float)
 
     def local(self, state) -> np.ndarray:
         """(m, 3) ID of an atom, of its neighbour, area of the face."""
         if not self.neighbors:
             return super().local(state)
-        ids = state.system.id
-        rows = [(ids[row], ids[other] if other >= 0 else 0, area) for row, _, faces in self.cells(state) for other, area, _ in faces
-                if area > self.face_threshold]
-        return np.array(rows, float).reshape(-1, 3)
+        ids, cells = state.system.id, self.cells(state)
+        rows = np.column_stack([ids[cells.owner], np.where(cells.other < 0, 0, ids[cells.other]), cells.area])
+        return rows[cells.area > self.face_threshold]
 
 
-def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float, radius: np.ndarray | None = None) -> list:
-    """Cells among the atoms `rows` of those that are `wanted`; see `VoronoiAtom.cells`."""
+def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float, radius: np.ndarray | None = None) -> Cells:
+    """Cells among the atoms `rows` of those that are `wanted`."""
     from scipy.spatial import Voronoi
     box, periodic = system.box, np.array(system.box.periodic, bool)
     x, image = system.x[rows].copy(), np.zeros((len(rows), 3), np.int32)
@@ -203,23 +215,33 @@ def _cells(system, rows: np.ndarray, wanted: np.ndarray, shortest: float, radius
         if needed <= reach:      # no atom beyond can cut a cell
             break
         reach = 1.05 * needed if np.isfinite(needed) else 2.0 * reach
-    faces: dict[int, list] = {k: [] for k in np.flatnonzero(wanted).tolist()}
-    volume = dict.fromkeys(faces, 0.0)
-    tiny = max(CLOSED * float(widths.max()), shortest)
-    for (a, b), corners in zip(found.ridge_points, found.ridge_vertices, strict=True):
-        if a not in faces and b not in faces:
-            continue
-        v = found.vertices[corners]
-        area = 0.5 * float(np.linalg.norm(np.cross(v[1:-1] - v[0], v[2:] - v[0]).sum(axis=0)))
-        length = np.linalg.norm(v - np.roll(v, 1, axis=0), axis=1)
-        apart = float(np.linalg.norm(found.points[a] - found.points[b]))
-        for one, other in ((int(a), int(b)), (int(b), int(a))):
-            if one in faces:
-                height = 0.5 * (apart + float(weight[one] - weight[_original(owner[other])]) / apart)
-                volume[one] += area * height / 3.0
-                faces[one].append((int(rows[owner[other]]) if owner[other] >= 0 else -1, area, int((length > tiny).sum())))
-    least = (CLOSED * float(widths.max())) ** 2
-    return [(int(rows[k]), volume[k], [f for f in faces[k] if f[1] > least]) for k in faces]
+    mine = np.zeros(len(points), bool)
+    mine[:len(rows)] = wanted
+    faces = np.flatnonzero(mine[found.ridge_points].any(axis=1))
+    area, edges = _polygons(found.vertices, [found.ridge_vertices[k] for k in faces], max(CLOSED * float(widths.max()), shortest))
+    one = found.ridge_points[faces].ravel()             # each face twice, seen from both sides
+    other = found.ridge_points[faces][:, ::-1].ravel()
+    face = np.repeat(np.arange(len(faces)), 2)[mine[one]]
+    one, other = one[mine[one]], other[mine[one]]
+    apart = np.linalg.norm(found.points[one] - found.points[other], axis=1)
+    height = 0.5 * (apart + (weight[one] - weight[_original(owner[other])]) / apart)
+    volume = np.bincount(one, area[face] * height / 3.0, minlength=len(rows))[wanted]
+    order = np.argsort(one, kind="stable")
+    order = order[area[face[order]] > (CLOSED * float(widths.max())) ** 2]
+    other = owner[other[order]]
+    return Cells(rows[wanted], volume, rows[one[order]], np.where(other < 0, -1, rows[other]), area[face[order]], edges[face[order]])
+
+
+def _polygons(vertices: np.ndarray, corners: list, tiny: float) -> tuple[np.ndarray, np.ndarray]:
+    """Areas of flat polygons, given by their corners in turn, and how many of their edges are not `tiny`; those of a size at once."""
+    size = np.array([len(c) for c in corners], int)
+    area, edges = np.empty(len(corners)), np.empty(len(corners), int)
+    for n in np.unique(size):
+        some = np.flatnonzero(size == n)
+        v = vertices[np.array([corners[k] for k in some])]
+        area[some] = 0.5 * np.linalg.norm(np.cross(v[:, 1:-1] - v[:, :1], v[:, 2:] - v[:, :1]).sum(axis=1), axis=1)
+        edges[some] = (np.linalg.norm(v - np.roll(v, 1, axis=1), axis=2) > tiny).sum(axis=1)
+    return area, edges
 
 
 def _nearest(box, dimension: int, places: np.ndarray, x: np.ndarray, radius: np.ndarray | None) -> np.ndarray:
@@ -277,15 +299,11 @@ def _surrounded(s: np.ndarray, periodic: np.ndarray, margin: np.ndarray) -> tupl
 
 def _reach(found, atoms: np.ndarray, weight: np.ndarray) -> float:
     """How far away an atom may be that cuts a cell: where a corner's power is still larger than that of an atom with the largest weight."""
-    most, needed = float(weight.max()), 0.0
-    for k in atoms:
-        corners = found.regions[k if isinstance(found, Diagram) else found.point_region[k]]
-        if -1 in corners:
-            return np.inf
-        if not corners:         # an empty cell; only those of power diagrams are
-            if isinstance(found, Diagram):
-                continue
-            return np.inf
-        far = float(np.linalg.norm(found.vertices[corners] - found.points[k], axis=1).max())
-        needed = max(needed, far + max(far * far + most - weight[k], 0.0) ** 0.5)
-    return needed
+    ours = isinstance(found, Diagram)
+    regions = [found.regions[k] for k in (atoms if ours else found.point_region[atoms])]
+    size = np.array([len(region) for region in regions], int)
+    corner, atom = np.fromiter(itertools.chain.from_iterable(regions), int, size.sum()), np.repeat(atoms, size)
+    if (corner < 0).any() or not (ours or size.all()):      # an empty cell; only those of power diagrams are
+        return np.inf
+    far = np.linalg.norm(found.vertices[corner] - found.points[atom], axis=1)
+    return float((far + np.sqrt(np.maximum(far * far + weight.max() - weight[atom], 0.0))).max(initial=0.0))
