@@ -47,3 +47,13 @@ def test_glass_transition(tmp_path):
     assert density == pytest.approx(1.060, abs=0.015)
     curve = result["curves"][0]
     assert len(curve[0]) > 50 and curve[0][0] == pytest.approx(0.8, abs=0.08) and curve[0][-1] == pytest.approx(0.2, abs=0.03)
+
+
+def test_melting(tmp_path):
+    """The melting line of R. Agrawal and D. A. Kofke (1995), densities of E. A. Mastny and J. J. de Pablo (2007)."""
+    result = run("melting", tmp_path, cells=4, long=12, equil=1000, steps=4000, start=0.68)
+    assert result["T published"] == pytest.approx(0.768, abs=0.001) and result["T"] == pytest.approx(0.78, abs=0.04)
+    assert result["pressure"] == pytest.approx(1.0, abs=0.15) and result["conserved to"] < 1e-3
+    assert result["crystal"] == pytest.approx(result["crystal published"], rel=0.015)
+    assert result["liquid"] == pytest.approx(result["liquid published"], rel=0.025)
+    assert result["planes in the crystal"] > max(0.35, 2.5 * result["planes in the liquid"])
