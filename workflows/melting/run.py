@@ -28,7 +28,7 @@ def melting_temperature(pressure: float) -> float:
 
 
 def density(t: float, powers: tuple[float, ...]) -> float:
-    """Of the crystal (MELTING) or the liquid (FREEZING) that coexist: E. A. Mastny and J. J. de Pablo, J. Chem. Phys. 127, 104504 (2007)."""
+    """Of crystal (MELTING) or liquid (FREEZING) side by side: E. A. Mastny, J. J. de Pablo, J. Chem. Phys. 127, 104504 (2007)."""
     return float(t**0.25 * np.polynomial.Polynomial(powers)(1 / t))
 
 
