@@ -53,7 +53,7 @@ class Log:
             try:
                 self.file: TextIO | None = open(path, "a" if append else "w", encoding="utf-8")
             except OSError as e:
-                raise InputError(f"cannot open log file {path}: {e.strerror}") from None
+                raise InputError(f"cannot open log file {path}: {e.strerror}; -log FILE puts it elsewhere, -log none: no file") from None
             self.path = path
 
     def set_echo(self, style: str) -> None:
