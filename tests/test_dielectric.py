@@ -13,7 +13,8 @@ from asemd.errors import InputError
 COLUMNS = ("evdwl", "ecoul", "elong", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")
 SHARED = ("q", "q_scaled", "area", "ed", "em", "epsilon", "curvature", "mux", "muy", "muz", "mu")
 MESH = "\nkspace_modify gewald 0.6 mesh 16 16 16"
-DISP = MESH + " gewald/disp 0.5 mesh/disp 12 12 12 mix/disp geom"
+ATTRACTION = " gewald/disp 0.5 mesh/disp 12 12 12 mix/disp geom"
+DISP = MESH + ATTRACTION
 LJ = "pair_coeff * * 0.1 2.5\npair_coeff 2 2 0.2 2.0 "
 TEXT = """units real
 atom_style {atoms}
@@ -41,6 +42,8 @@ CASES = {
                                         + "\nkspace_style pppm/dielectric 1e-4" + MESH,
     "lj/long/coul/long/dielectric long": "pair_style lj/long/coul/long/dielectric long long 4.0\n" + LJ
                                          + "\nkspace_style pppm/disp/dielectric 1e-4" + DISP,
+    "lj/long/coul/long/dielectric mesh": "pair_style lj/long/coul/long/dielectric long long 4.0\n" + LJ
+                                         + "\nkspace_style pppm/disp/dielectric 1e-3\nkspace_modify" + ATTRACTION,
 }
 THEIRS = """
 import numpy as np

@@ -1,20 +1,15 @@
 r"""pppm/disp for charges of which each stands in a medium of its own: charges as in pppm/dielectric, the attraction as in pppm/disp."""
 from __future__ import annotations
 
-import numpy as np
-
 from asemd.kspace.dielectric import Dielectric, DielectricTerm
 from asemd.kspace.pppm_disp import MeshTerm, PPPMDisp
 
 
 class PPPMDispDielectric(Dielectric, PPPMDisp):
-    """``kspace_style pppm/disp/dielectric accuracy``."""
+    """``kspace_style pppm/disp/dielectric accuracy``. The mesh is that of the charges without their constants, as in LAMMPS."""
 
     style = flag = "pppm/disp/dielectric"
     partner = "lj/long/coul/long/dielectric long long"
-
-    def charge_squares(self, system, q):
-        return float(np.sum(q * q / system.extra["epsilon"]))
 
     def terms(self, engine):
         return [(MeshTerm if t.attractive else DielectricMeshTerm)(self, t.attractive) for t in super().terms(engine)]
