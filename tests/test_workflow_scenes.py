@@ -57,3 +57,14 @@ def test_melting(tmp_path):
     assert result["crystal"] == pytest.approx(result["crystal published"], rel=0.015)
     assert result["liquid"] == pytest.approx(result["liquid published"], rel=0.025)
     assert result["planes in the crystal"] > max(0.35, 2.5 * result["planes in the liquid"])
+
+
+def test_stress_strain(tmp_path):
+    """Small glasses, stretched ten times faster: stiff before yield and not after it, at constant volume then; their sides are free."""
+    result = run("stress-strain", tmp_path, glasses=2, chains=20, equil=3000, cool=8000, steps=8000)
+    modulus, poisson, limit, flow, volume, sides = (result[name][0] for name in ("Young's modulus", "Poisson's ratio", "yield stress",
+                                                                                 "flow stress", "volume gained", "stress across"))
+    assert 15 < modulus < 60 and 0.28 < poisson < 0.49 and 0.004 < volume < 0.025
+    assert 0.8 < limit < 2.2 and 0.9 < flow < 2.2 and abs(sides) < 0.02
+    strain, across, *_ = result["curves"][0]
+    assert len(strain) == 200 and strain[-1] == pytest.approx(0.25, abs=0.001) and across[-1] == pytest.approx(-0.1, abs=0.01)
