@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -66,7 +67,7 @@ def draw(result: dict, path: Path) -> None:
 
 
 def main(folder: Path = Path("stress-strain"), glasses: int = 4, chains: int = 100, beads: int = 20, equil: int = 20000,
-         cool: int = 60000, steps: int = 80000, strain: float = 0.25, seed: int = 1) -> dict:
+         cool: int = 60000, steps: int = 80000, strain: Annotated[float, typer.Option(min=0.1)] = 0.25, seed: int = 1) -> dict:
     """Build, cool and stretch; numbers and picture go to the folder."""
     curves = [stretch(folder / f"glass{k + 1}", chains, beads, seed + k, equil=equil, cool=cool, steps=steps, strain=strain)
               for k in range(glasses)]
