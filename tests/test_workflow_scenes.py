@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_workflow_numbers import run
 from wheel import ask, ran
@@ -68,3 +69,16 @@ def test_stress_strain(tmp_path):
     assert 0.8 < limit < 2.2 and 0.9 < flow < 2.2 and abs(sides) < 0.02
     strain, across, *_ = result["curves"][0]
     assert len(strain) == 200 and strain[-1] == pytest.approx(0.25, abs=0.001) and across[-1] == pytest.approx(-0.1, abs=0.01)
+
+
+def test_network_breaking(tmp_path):
+    """No bond breaks long before the strands are taut, then those along the pull do, and the stress falls; the pull of the bond's formula."""
+    result = run("network-breaking", tmp_path, nodes=3, beads=6, squeeze=2000, equil=1000, steps=10000)
+    r = np.linspace(1.0, 1.12, 12001)
+    bond = 1200 * (r - 1.3) ** 2 * (r - 0.75) * (r - 1.55) + 4 * (r**-12 - r**-6)
+    assert result["strongest bond"] == pytest.approx(np.gradient(bond, r).max(), rel=1e-4)
+    taut = result["taut"]
+    assert taut == pytest.approx(3 * 7 * 0.97 / (513 / 0.85) ** (1 / 3)) and result["temperature"] == pytest.approx(1.0, abs=0.15)
+    assert 0.75 * taut < result["first break"] < 1.15 * taut and 0.85 * taut < result["stretch at the peak"] < 1.4 * taut
+    assert 0.2 < result["of all strands at once"] < 0.9 and result["last stress"] < 0.65 * result["peak stress"]
+    assert 9 <= result["broken along x"] <= result["broken"] < 60 and result["broken along x"] > 0.6 * result["broken"]
