@@ -72,7 +72,7 @@ def test_stress_strain(tmp_path):
 
 
 def test_network_breaking(tmp_path):
-    """No bond breaks long before the strands are taut, then those along the pull do, and the stress falls; the pull of the bond's formula."""
+    """No bond breaks until the strands are nearly taut, then those along x do, and the stress falls; the pull is that of the formula."""
     result = run("network-breaking", tmp_path, nodes=3, beads=6, squeeze=2000, equil=1000, steps=10000)
     r = np.linspace(1.0, 1.12, 12001)
     bond = 1200 * (r - 1.3) ** 2 * (r - 0.75) * (r - 1.55) + 4 * (r**-12 - r**-6)
