@@ -80,6 +80,7 @@ def test_network_breaking(tmp_path):
     taut = result["taut"]
     assert taut == pytest.approx(3 * 7 * 0.97 / (513 / 0.85) ** (1 / 3)) and result["temperature"] == pytest.approx(1.0, abs=0.15)
     ratio, _, broken = np.array(result["curve"])
-    assert broken[ratio < 0.75 * taut].max() < 2 and result["first break"] < 1.15 * taut and 0.85 * taut < result["stretch at the peak"] < 1.4 * taut
+    assert broken[ratio < 0.75 * taut].max() < 2 and result["first break"] < 1.15 * taut
+    assert 0.85 * taut < result["stretch at the peak"] < 1.4 * taut
     assert 0.2 < result["of all strands at once"] < 0.9 and result["last stress"] < 0.65 * result["peak stress"]
     assert 9 <= result["broken along x"] <= result["broken"] < 60 and result["broken along x"] > 0.6 * result["broken"]
