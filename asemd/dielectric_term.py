@@ -19,6 +19,7 @@ def kernel(style, energy: bool, per_atom: bool):
     b.line("real = np.float64")
     b.constant("ENERGY", energy)
     b.constant("PER_ATOM", per_atom)
+    b.constant("LONG", bool(style.solvers))
     paste_one(b, style, style.parts, apart=True)
     pair_sums.use(b, "eight", "add")
     b.function(pair_dielectric.dielectric_forces)

@@ -1,10 +1,11 @@
 """Forces between charges of which each stands in a medium of its own, for each pair of a list: those on the two are not opposite.
 
 The force on an atom is its charge times the field of the other one, which is weakened by the dielectric constant where that other one is.
-Energy and virial are those of the mean of both. Forces without charges are as in `asemd.kernels.pair_list`.
+Energy and virial are those of the mean of both; where a long-range solver has the rest, what `special_bonds` takes off a pair is the energy
+of its scaled charges, as in LAMMPS. Forces without charges are as in `asemd.kernels.pair_list`.
 
-Constants of the generated module: ENERGY, PER_ATOM. From the style: `pair_energy_one(r2, qq, lj, coul, whole, rows, constants, arrays, ti,
-tj)` -> force/r without charges, force/r of charges, E_vdwl, E_coul.
+Constants of the generated module: ENERGY, PER_ATOM, LONG. From the style: `pair_energy_one(r2, qq, lj, coul, whole, rows, constants,
+arrays, ti, tj)` -> force/r without charges, force/r of charges, E_vdwl, E_coul.
 """
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from asemd.kernels.pair_sums import add, eight
 
-ENERGY = PER_ATOM = False
+ENERGY = PER_ATOM = LONG = False
 pair_energy_one = None
 
 
@@ -32,7 +33,8 @@ def dielectric_forces(x, f, q, epsilon, type_of, pair_i, pair_j, code, shifts, w
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
         r2 = dx * dx + dy * dy + dz * dz
-        fp, fc, ev, ec = pair_energy_one(r2, qqr2e * q[i] * q[j], weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants,
+        qq = qqr2e * q[i] * q[j]
+        fp, fc, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants,
                                          arrays, type_of[i], type_of[j])
         if not abs(ev + ec) < np.inf or not abs(fp + fc) < np.inf:
             if bad[0] == 0.0:
@@ -48,7 +50,13 @@ def dielectric_forces(x, f, q, epsilon, type_of, pair_i, pair_j, code, shifts, w
         f[0, j] -= on_j * dx
         f[1, j] -= on_j * dy
         f[2, j] -= on_j * dz
-        ec *= 0.5 * (1.0 / epsilon[i] + 1.0 / epsilon[j])
+        part = 0.5 * (1.0 / epsilon[i] + 1.0 / epsilon[j])
+        if LONG and kind != 0:
+            whole = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[0], weight_coul[0], rows, constants, arrays, type_of[i],
+                                    type_of[j])[3]
+            ec = part * whole - (whole - ec) / (epsilon[i] * epsilon[j])
+        else:
+            ec *= part
         mean = 0.5 * (on_i + on_j)
         if ENERGY:
             add(acc, eight(ev, ec, dx, dy, dz, mean * dx, mean * dy, mean * dz))
