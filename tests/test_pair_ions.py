@@ -1,6 +1,7 @@
 """Pair styles of ions whose charges may flow (coul/ctip, coul/streitz) against LAMMPS; forces as the gradient; files with mistakes."""
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -142,6 +143,26 @@ def test_refused(style, file, message, tmp_path):
                          basis=" ".join(f"basis {p}" for p in PLACES))
     with pytest.raises(InputError, match=message):
         Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(lines + "run 0\n")
+
+
+def test_weights_of_bonded_ions(tmp_path):
+    """With a solver the style has none; a warning says so, and weights of 0, for which LAMMPS keeps the pairs too, are refused."""
+    file, energies = tmp_path / "file", []
+    file.write_text(STREITZ)
+    atoms, before, bonds = BONDS
+    pair = f"pair_style coul/streitz 4.0 ewald\npair_coeff * * {file} Al O" + SOLVER
+    lines = SCENE.format(pair=pair, atoms=atoms, before=before, bonds=bonds, cells=2, basis=" ".join(f"basis {p}" for p in PLACES))
+    lines += "bond_coeff *\ncreate_bonds many all all 1 0.1 2.1\nspecial_bonds coul "
+    for weights in ("1 1 1", "0.4 0.3 0.5"):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            mine = Lammps(cmdargs=["-log", "none", "-screen", "none"])
+            mine.commands_string(f"{lines}{weights}\nrun 0\n")
+        energies.append(mine.get_thermo("pe"))
+        assert any("special_bonds has no effect" in str(w.message) for w in told) == (weights != "1 1 1")
+    assert energies[1] == pytest.approx(energies[0], rel=1e-13)
+    with pytest.raises(InputError, match="knows no weights"):
+        Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(f"{lines}0 0.3 0.5\nrun 0\n")
 
 
 def test_coinciding_ions_are_named(tmp_path):

@@ -14,10 +14,11 @@ from __future__ import annotations
 
 import copy
 import math
+import warnings
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.kernels.manybody import add_virial, gather_near, scatter, share_pair
 from asemd.manybody import ManyBody, element_of
 from asemd.pair.coul_wolf import ROOT_PI
@@ -114,8 +115,12 @@ class StreitzMintmire(ManyBody):
     def check_scene(self, interactions, system):
         super().check_scene(interactions, system)
         use = next(use for use in interactions.uses["pair"] if use.style is self)
-        if use.settings["kind"] == "ewald" and set(interactions.special_coul) != {1.0} and len(system.topology.items("bond")[0]):
+        if use.settings["kind"] == "wolf" or set(interactions.special_coul) == {1.0} or not len(system.topology.items("bond")[0]):
+            return
+        if 0.0 in interactions.special_coul:
             raise InputError(f"pair style {self.name} with ewald knows no weights of bonded atoms: use special_bonds coul 1 1 1")
+        warnings.warn(f"pair style {self.name} with ewald knows no weights of bonded atoms: special_bonds has no effect", InputWarning,
+                      stacklevel=2)
 
     def parse_settings(self, words):
         values, what = super().parse_settings(words), f"pair_style {self.name}"
