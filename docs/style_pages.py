@@ -125,8 +125,9 @@ def agreement(category: str, name: str, known: dict) -> list[str]:
     if "gradient" in entry:
         force = entry["gradient"]["force"]
         out += ["", "LAMMPS's force is not minus the gradient of its energy. Here it is by default; LAMMPS's force is then up to "
-                f"{100 * force:.2g} % of the largest force away" + (" (for these coefficients the two agree)" if force < 1e-9 else "") +
-                ". `asemd run --compat lammps` and `compat=\"lammps\"` give LAMMPS's."]
+                f"{100 * force:.2g} % of the largest force away"
+                + (" (for these coefficients and geometries the two agree)" if force < 1e-9 else "")
+                + ". `asemd run --compat lammps` and `compat=\"lammps\"` give LAMMPS's."]
     return [*out, "", f"Measured by `docs/measure.py` on {machine['cpu']} with LAMMPS {machine['lammps']}, numpy {machine['numpy']}, numba "
             f"{machine['numba']}.", ""]
 
