@@ -98,10 +98,11 @@ def _clusters(engine: Engine, t: PairTerm, energies: bool, virials: bool):
         t.share_room = aligned((engine.threads, -(-rows * t.row // 8) * 8)), np.zeros((engine.threads, t.row))
     buffers, saved = t.share_room
     p = pair_kernels.cluster_tuple(t.tables.rows, t.tables.constants, t.uniform, False)
+    coefficients = pair_kernels.varying_rows(t.tables.rows, t.uniform)
 
     def arguments(tid):
         return (s.x, s.q, s.type, c.first[tid], c.entries[tid], c.own, c.span, c.unshifted, c.shifts4, c.excluded_first[tid],
-                c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), p, t.rows, 1e3 * c.reach, engine.qqr2e,
+                c.excluded[tid], int(c.bounds[tid]), int(c.bounds[tid + 1]), p, coefficients, 1e3 * c.reach, engine.qqr2e,
                 buffers[tid], t.types[tid], saved[tid], t.tables4[tid, 0], c.hide[tid], engine.settings.skin, engine.moved,
                 engine.farthest[tid:tid + 1])
     kernel = pair_kernels.shares_kernel(t.style, t.uniform, t.row, energies=energies, virials=virials, exclude=t.exclude,

@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.cheaper import cheaper
 from asemd.errors import SimulationError
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels.pair_cluster import SETS
 from asemd.kernels.state import aligned
-from asemd.pairstyle import with_series
 from asemd.pruned import PrunedList
 from asemd.term import FactorTerm
 
@@ -23,13 +23,13 @@ class PairTerm(FactorTerm):
     def __init__(self, term, single: bool):
         self.owner, self.style, self.tables, self.single = term, term.style, term.tables, single
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
-        self.fast = with_series(self.style, self.tables, single)[0]
+        self.fast, _, self.same = cheaper(self.style, self.tables, self.uniform, single)
         self.row = 0
         self.tables4 = np.zeros((1, 2, 0, 4))
         self._views: dict[tuple[int, int], tuple] = {}
 
     def kernel(self, energy, per_atom, virial=False):
-        return self._scaled(pair_kernels.cluster_kernel(self.fast, self.uniform, self.row, energy=energy, exclude=self.exclude,
+        return self._scaled(pair_kernels.cluster_kernel(self.fast, self.same, self.row, energy=energy, exclude=self.exclude,
                                                         single=self.single, outdated=self.outdated, piece=self.piece,
                                                         pruned=self.pruned is not None, virial=virial or energy and not self.single)[0],
                             energy or virial)
@@ -59,13 +59,12 @@ class PairTerm(FactorTerm):
             self.row = pair_kernels.row_length(int(1.15 * clusters.longest()))
             real = np.float32 if self.single else np.float64
             self.buffer = aligned((engine.threads, 8 * self.row), real)
-            sets = SETS * pair_kernels.buffer_rows(len(self.uniform) - sum(self.uniform))
+            sets = SETS * pair_kernels.buffer_rows(len(self.same) - sum(self.same))
             self.coefficients = aligned((engine.threads, sets * self.row + 16), real)
             self.held = np.zeros((engine.threads, SETS), np.uint32)
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
-            self.rows = pair_kernels.varying_rows(self.tables.rows, self.uniform)
-            self.p = self.scalars()
+            self.take_tables()
         if self.pruned is None and self.prunes(engine):
             skin = engine.settings.skin
             self.pruned = PrunedList(engine.threads, skin, clusters.reach - skin, self.fast)
@@ -75,9 +74,11 @@ class PairTerm(FactorTerm):
     def relisted(self, engine):
         return None if self.pruned is not None else [("look_at_rows", (engine.list.row_length, pair_kernels.most_neighbours(self.row)))]
 
-    def scalars(self) -> tuple:
-        """Coefficients that are the same for all pairs of types, and constants, as the kernel takes them."""
-        return pair_kernels.cluster_tuple(self.tables.rows, with_series(self.style, self.tables, self.single)[1], self.uniform, self.single)
+    def take_tables(self) -> None:
+        """Coefficients and constants of the tables as the kernel takes them."""
+        _, tables, same = cheaper(self.style, self.tables, self.uniform, self.single)
+        self.rows = pair_kernels.varying_rows(tables.rows, same)
+        self.p = pair_kernels.cluster_tuple(tables.rows, tables.constants, same, self.single)
 
     def arguments(self, engine, tid):
         s, c = engine.state, self.clusters(engine)

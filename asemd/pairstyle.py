@@ -12,12 +12,10 @@ Annotations and bodies follow the rules of `asemd.style`.
 """
 from __future__ import annotations
 
-import copy
 import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -346,32 +344,6 @@ def largest_radii(system) -> tuple[float, ...]:
     return tuple(out.tolist())
 
 
-def with_series(style: PairStyle, tables: PairTables, single: bool = False) -> tuple[PairStyle, np.ndarray]:
-    """The style for kernels over clusters, and its constants: functions that have a twin which costs less there give way to it.
-
-    A function's attribute ``series`` holds, for double and for `single` precision, the twin, which takes other constants, and what makes
-    these of its own and the cutoff (None: the twin is not good enough). What follows the constants of the parts stays at the end.
-    """
-    parts, numbers, at, row = [], [], 0, 0
-    for part in style.parts:
-        own = tables.constants[at:at + len(part.constants)]
-        twin, make = getattr(part.function, "series", {}).get(single, (None, None))
-        values = make(*own, math.sqrt(float(tables.rows[row].max()))) if twin else None
-        parts.append(part if values is None else replace(make_part(twin, part.cut, set(part.rows)), long=part.long))
-        numbers += list(own) if values is None else values
-        at, row = at + len(part.constants), row + 2 + len(part.rows)
-    return _of_parts(style, tuple(parts)), np.array([*numbers, *tables.constants[at:]])
-
-
-@cache
-def _of_parts(style: PairStyle, parts: tuple[Part, ...]) -> PairStyle:
-    if parts == style.parts:
-        return style
-    out = copy.copy(style)
-    out.parts = parts
-    return out
-
-
 def missing_pairs(pairs) -> str:
     """The message for type pairs without coefficients."""
     listed = ", ".join(f"{i} {j}" for i, j in pairs[:6]) + (", ..." if len(pairs) > 6 else "")
@@ -382,12 +354,11 @@ def pair(name: str, **options):
     """Register one function as pair style `name`; its cutoff is the setting or coefficient ``cut``. Options as in `PairStyle`.
 
     `d2`, a function with the same arguments, gives the second derivative of the energy by the function's coordinate (for `asemd.hessian`).
-    `alike`, another one, takes the function's place in kernels of double precision where all pairs of types have the same coefficients.
     """
     cls = options.pop("cls", PairStyle)
 
     def decorate(function):
-        function.d2, function.alike = options.pop("d2", None), options.pop("alike", None)
+        function.d2 = options.pop("d2", None)
         cut = options.pop("cut", "cut")
         register(cls(name, [(function, cut)], doc=inspect.getdoc(inspect.getmodule(function)) or "", **options))
         return function

@@ -173,11 +173,12 @@ class PairRowsTerm(FactorTerm):
     def __init__(self, term):
         self.owner, self.style, self.tables = term, term.style, term.tables
         self.uniform = pair_kernels.uniform_rows(self.tables.rows)
-        self.p, self.room = self.scalars(), ()
+        self.room = ()
+        self.take_tables()
 
-    def scalars(self) -> tuple:
-        """As of `PairTerm`."""
-        return pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
+    def take_tables(self) -> None:
+        """As of `PairTerm`; the kernel takes the table of coefficients itself."""
+        self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)
 
     def kernel(self, energy, per_atom):
         return self._scaled(pair_kernels.rows_kernel(self.style, self.uniform, energy=energy, piece=self.piece)[0], energy)

@@ -163,17 +163,19 @@ def test_huge_and_tiny_distances():
     assert energy_force(s, tables, 3.4e-10 * 2**(1 / 6))[0] == pytest.approx(-1.65e-21, rel=1e-14)
 
 
-def test_formulas_for_equal_coefficients():
-    """`alike` of a part is the part, to a few roundings of its larger term, at any distance where that is a number."""
+def test_formulas_by_powers():
+    """The twin of a part by powers is the part, to a few roundings of its larger term, at any distance where that is a number."""
     for part in {part.function: part for name in STYLES for part in style.find("pair", name).parts}.values():
-        if getattr(part.function, "alike", None):
+        if "powers" in vars(part.function):
+            (twin, powers), = part.function.powers[False]
+            numbers = (12.0**2, 14.0**2, 52.0**-3) if len(part.constants) else ()
             for epsilon, sigma in ((1.0, 1.0), (0.15, 3.4), (1.65e-21, 3.4e-10), (0.0, 1.0), (2.0, 0.0)):
                 for r in sigma * np.geomspace(0.01, 100.0, 41) if sigma else (0.1, 1.0):
                     r2, s6 = float(r * r), (sigma / r)**6
-                    e, d = part.function(r2, epsilon, sigma)
-                    other_e, other_d = part.function.alike(r2, epsilon, sigma)
-                    assert other_e == pytest.approx(e, rel=0.0, abs=1e-14 * 4.0 * epsilon * (s6 * s6 + s6))
-                    assert other_d == pytest.approx(d, rel=0.0, abs=1e-14 * 12.0 * epsilon * (2.0 * s6 * s6 + s6) / r2)
+                    e, d = part.function(r2, epsilon, sigma, *numbers)
+                    other_e, other_d = twin(r2, *powers(epsilon, sigma), *numbers)
+                    assert other_e == pytest.approx(e, rel=1e-14, abs=1e-14 * 4.0 * epsilon * (s6 * s6 + s6))
+                    assert other_d == pytest.approx(d, rel=1e-12, abs=1e-14 * 12.0 * epsilon * (2.0 * s6 * s6 + s6) / r2)
 
 
 def test_soft_is_finite_when_atoms_coincide():

@@ -17,7 +17,7 @@ from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
 from asemd.fix.formula import Formula
-from asemd.kernels.pair import uniform_rows, varying_rows
+from asemd.kernels.pair import uniform_rows
 from asemd.kspace.term import KSpaceTerm
 from asemd.population import retie
 from asemd.words import bounds, take, whole, yes_no
@@ -283,9 +283,7 @@ def _in_place(e: Engine, interactions, system) -> bool:
         old.filled.update(fresh.filled)
         for t in e.terms:
             if getattr(t, "owner", None) is old and hasattr(t, "uniform"):
-                if hasattr(t, "rows"):
-                    t.rows = varying_rows(old.tables.rows, t.uniform)
-                t.p = t.scalars()
+                t.take_tables()
     for t in e.terms:
         if hasattr(getattr(t, "packed", None), "coeff"):
             fresh = t.style.pack(t.use.settings, t.use.coeff, t.packed.coeff.shape[1] - 1, e.units)

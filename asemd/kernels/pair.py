@@ -30,15 +30,12 @@ def most_neighbours(row: int) -> int:
     return row - 2 * pair_cluster.CLUSTER - 16
 
 
-def _paste_style(b: Builder, parts, real: bool, vector: bool, uniform: Sequence[bool] = ()) -> list[str]:
-    """Paste the formulas of the parts; returns their names. Where all coefficients of a part are `uniform`, its ``alike`` in double
-    precision (single has no room for the powers of lengths in ``units si``)."""
-    names, row = [], 0
+def _paste_style(b: Builder, parts, real: bool, vector: bool) -> list[str]:
+    """Paste the formulas of the parts; returns their names."""
+    names = []
     for k, part in enumerate(parts):
-        same, row = uniform[row:row + 2 + len(part.rows)], row + 2 + len(part.rows)
-        function = (not real and same and all(same[2:]) and getattr(part.function, "alike", None)) or part.function
-        name = f"part{k}_{re.sub(r'[^0-9a-zA-Z]', '_', function.__name__)}"
-        b.function(function, name, fast=vector, real=real, vector=vector, inline=vector)
+        name = f"part{k}_{re.sub(r'[^0-9a-zA-Z]', '_', part.function.__name__)}"
+        b.function(part.function, name, fast=vector, real=real, vector=vector, inline=vector)
         names.append(name)
     return names
 
@@ -110,18 +107,18 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
                    constants: dict) -> Builder:
     """What kernels over cluster lists have in common: constants, the style's formulas, coefficients of the neighbours."""
     b = Builder(f"pair {style.name}: {title}")
-    b.line("from asemd.kernels.fuse import madd")
+    b.line("from asemd.kernels.fuse import madd, rough_roots")
     b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in constants.items():
         b.constant(name, value)
-    b.constant("ROOT", not single and takes_roots(style))
-    if not single:
-        vector_math.paste_roots(b)
+    b.constant("ROOT", takes_roots(style))
+    b.constant("ROUGH", not single and takes_roots(style))
+    vector_math.paste_roots(b, single)
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
         vector_math.paste(b, single)
-    names = _paste_style(b, style.parts, single, True, uniform)
+    names = _paste_style(b, style.parts, single, True)
     b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
     varying = len(uniform) - sum(uniform)
     if varying:

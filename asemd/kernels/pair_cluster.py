@@ -13,9 +13,9 @@ The virial (VIRIAL) is the sum over the places of the buffer of position times f
 In single precision, where that would cost digits, energies come with a virial summed over pairs.
 
 Constants of the generated module: CLUSTER, ROW, WIDTH (vector width), NROWS (coefficient rows), SETS, ENERGY, VIRIAL, CHARGED, VARYING
-(some coefficient differs between type pairs), EXCLUDE, PAIRED, SHARE (one division for two pairs), ROOT (formulas take 1/r), OUTDATED (the
-list may be), PRUNED (the list is a part of another, and made here); `real` is the working precision; `pair_force`, `pair_energy` and
-`fill_rows` are made from the style.
+(some coefficient differs between type pairs), EXCLUDE, PAIRED, SHARE (one division for two pairs), ROOT (formulas take 1/r), ROUGH (and
+mend rough estimates of it), OUTDATED (the list may be), PRUNED (the list is a part of another, and made here); `real` is the working
+precision; `pair_force`, `pair_energy` and `fill_rows` are made from the style.
 """
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from asemd.kernels.fuse import madd
+from asemd.kernels.fuse import madd, rough_roots
 from asemd.kernels.gather import gather8, give8, scatter8, take8
 from asemd.kernels.pair_sums import add, eight, plus
 
@@ -31,7 +31,7 @@ CLUSTER = 8
 ROW = 1048
 WIDTH = 8
 NROWS, SETS = 0, 4
-ENERGY = VIRIAL = CHARGED = VARYING = SHARE = ROOT = False
+ENERGY = VIRIAL = CHARGED = VARYING = SHARE = ROOT = ROUGH = False
 EXCLUDE = OUTDATED = HIDE = PRUNED = PAIRED = True
 SLOT_BITS = 0x3FFFFFF
 CHARGE_ROW = 0           # where charges stand in the buffer, 0 for nowhere
@@ -47,6 +47,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
     With HIDE the bits `a0` and `a0 + 1` of ``hide[h + k]`` say which of the two must not meet place k. Returns the forces on a and b,
     energies and virial.
     """
+    if ROUGH:
+        rough_roots()
     if HIDE:
         bit_a = np.uint8(1 << a0)
         bit_b = np.uint8(2 << a0)
@@ -122,6 +124,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
 
 def inner_one(b, o, n, x, y, z, q, p, hide, h, a, c, ca):
     """As `inner_two` for one atom, whose bit of `hide` is `a`: half as many numbers at hand, for processors with few vector registers."""
+    if ROUGH:
+        rough_roots()
     if HIDE:
         bit = np.uint8(1 << a)
     meet = True

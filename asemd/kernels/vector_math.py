@@ -151,11 +151,17 @@ def vector_atan2(y, x):
 def vector_root(x):
     """1 / sqrt(x) for double x from 1e-37 to 1e37, to 1 unit of the last digit.
 
-    Roots and divisions of vectors of doubles take three times as long as those in single precision, which one step of third order mends.
+    Roots and divisions of vectors of doubles take three times as long as estimates in single precision, which one step of fifth order mends
+    (an estimate has at least eleven bits, see `rough_roots`).
     """
     y = np.float64(np.float32(1.0) / math.sqrt(np.float32(x)))
     e = madd(-x, y * y, 1.0)
-    return madd(y * e, madd(0.375, e, 0.5), y)
+    return madd(y * e, madd(madd(madd(0.2734375, e, 0.3125), e, 0.375), e, 0.5), y)
+
+
+def single_root(x):
+    """1 / sqrt(x) in single precision: an estimate and one step."""
+    return np.float32(1.0) / math.sqrt(x)
 
 
 def vector_inverse(x):
@@ -242,7 +248,8 @@ def paste(b: Builder, single: bool = False) -> None:
         b.text(plain_source(function, f"vector_{name}", real=single), OPTIONS)
 
 
-def paste_roots(b: Builder) -> None:
-    """Put ``vector_root`` and ``vector_inverse`` into a module; it must define ``madd``."""
-    for function in (vector_root, vector_inverse):
-        b.text(plain_source(function), "fastmath={'contract', 'arcp', 'afn', 'ninf'}, forceinline=True")    # estimates will do
+def paste_roots(b: Builder, single: bool = False) -> None:
+    """Put ``vector_root`` and, for doubles, ``vector_inverse`` into a module; it must define ``madd``."""
+    for function in (single_root,) if single else (vector_root, vector_inverse):
+        b.text(plain_source(function, "vector_root" if single else None),
+               "fastmath={'contract', 'arcp', 'afn', 'ninf'}, forceinline=True")    # estimates will do

@@ -51,8 +51,8 @@ def coul_long(r2, qq, g_ewald):
 coul_long.table = coul_long_table
 
 
-DEGREES = {False: 24, True: 14}      # in double and in single precision
-FARTHEST = 3.2      # of g r: up to there the series below are good to 1e-12, and to 1e-6
+# g r and degree of the series below that are good up to there: to 1e-12 in double, to 1e-6 in single precision
+DEGREES = {False: ((2.68, 22), (3.2, 24)), True: ((2.68, 13), (3.2, 14))}
 
 
 def _nested(names: list[str]) -> str:
@@ -80,10 +80,10 @@ def _series(degree: int):
     return function
 
 
-def _numbers(degree: int, g_ewald: float, cut: float) -> list[float] | None:
+def _numbers(farthest: float, degree: int, g_ewald: float, cut: float) -> list[float] | None:
     """Constants of `coul_long_series` for a splitting parameter and a cutoff; None where the series is not good enough."""
     x = g_ewald * cut
-    if not 0.0 < x <= FARTHEST:
+    if not 0.0 < x <= farthest:
         return None
 
     def both(s, k):
@@ -94,4 +94,5 @@ def _numbers(degree: int, g_ewald: float, cut: float) -> list[float] | None:
     return [2.0 / cut, *(c for k in (0, 1) for c in chebyshev.cheb2poly(chebyshev.chebinterpolate(both, degree, (k,))))]
 
 
-coul_long.series = {single: (_series(degree), partial(_numbers, degree)) for single, degree in DEGREES.items()}
+coul_long.series = {single: [(_series(degree), partial(_numbers, farthest, degree)) for farthest, degree in limits]
+                    for single, limits in DEGREES.items()}

@@ -12,7 +12,7 @@ import math
 
 from asemd.errors import InputError
 from asemd.pair.coul_cut import coul_cut
-from asemd.pair.lj_cut import lj_cut
+from asemd.pair.lj_cut import lj_cut, powers, small_powers
 from asemd.pairstyle import PairStyle, make_part, pack_parts, pair_sum
 
 
@@ -74,6 +74,20 @@ def coul_charmm_d2(r2, qq, coul_inner2, coul_outer2, coul_scale):
             + 6.0 * e * (2.0 * r2 - coul_inner2 - coul_outer2) * coul_scale)
 
 
+def lj_charmm_powers(r2, a12, a6, inner2, outer2, scale):
+    """`lj_charmm` by the numbers of `powers`."""
+    r2inv = 1.0 / r2
+    r6inv = r2inv * r2inv * r2inv
+    e = r6inv * (a12 * r6inv - 2.0 * a6) * (1.0 / 12.0)
+    d = -0.5 * r2inv * r6inv * (a12 * r6inv - a6)
+    gap = outer2 - r2
+    switch = gap * gap * (outer2 + 2.0 * r2 - 3.0 * inner2) * scale
+    slope = 6.0 * gap * (inner2 - r2) * scale
+    inside = r2 <= inner2
+    return (e if inside else e * switch), (d if inside else d * switch + e * slope)
+
+
+lj_charmm.powers = {False: ((lj_charmm_powers, powers),), True: ((lj_charmm_powers, small_powers),)}
 lj_charmm.d2, coul_charmm.d2 = lj_charmm_d2, coul_charmm_d2
 
 
