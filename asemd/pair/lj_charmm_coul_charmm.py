@@ -75,16 +75,18 @@ def coul_charmm_d2(r2, qq, coul_inner2, coul_outer2, coul_scale):
 
 
 def lj_charmm_powers(r2, a12, a6, inner2, outer2, scale):
-    """`lj_charmm` by the numbers of `powers`."""
+    """`lj_charmm` by the numbers of `powers`; what depends on the settings only is said apart, so that it leaves the loop."""
+    width = scale * (outer2 - inner2)
+    three, two = 3.0 * width, 2.0 * scale
     r2inv = 1.0 / r2
     r6inv = r2inv * r2inv * r2inv
-    e = r6inv * (a12 * r6inv - 2.0 * a6) * (1.0 / 12.0)
-    d = -0.5 * r2inv * r6inv * (a12 * r6inv - a6)
     gap = outer2 - r2
-    switch = gap * gap * (outer2 + 2.0 * r2 - 3.0 * inner2) * scale
-    slope = 6.0 * gap * (inner2 - r2) * scale
     inside = r2 <= inner2
-    return (e if inside else e * switch), (d if inside else d * switch + e * slope)
+    switch = 1.0 if inside else gap * gap * (three - two * gap)
+    sixth = 0.0 if inside else gap * (scale * gap - width)      # of the slope of the switch
+    force = a12 * r6inv - a6
+    energy = force - a6
+    return r6inv * energy * switch * (1.0 / 12.0), -0.5 * r6inv * (r2inv * force * switch - energy * sixth)
 
 
 lj_charmm.powers = {False: ((lj_charmm_powers, powers),), True: ((lj_charmm_powers, small_powers),)}
