@@ -74,6 +74,11 @@ class PairTerm(FactorTerm):
     def relisted(self, engine):
         return None if self.pruned is not None else [("look_at_rows", (engine.list.row_length, pair_kernels.most_neighbours(self.row)))]
 
+    def fits(self, tables) -> bool:
+        """Whether the kernel can go on with other coefficients and constants."""
+        return (pair_kernels.uniform_rows(tables.rows) == self.uniform
+                and cheaper(self.style, tables, self.uniform, self.single)[0] is self.fast)
+
     def take_tables(self) -> None:
         """Coefficients and constants of the tables as the kernel takes them."""
         _, tables, same = cheaper(self.style, self.tables, self.uniform, self.single)

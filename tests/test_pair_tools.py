@@ -7,9 +7,11 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from wheel import ask
 
 from asemd import registry, style
+from asemd.lammps import Lammps
 
 SCENE = """units real
 atom_style full
@@ -107,3 +109,26 @@ def test_energies_and_tables(tmp_path):
     assert not wrong, "\n".join(wrong)
     assert sum(e[2] != 0.0 for e in ours.values()) > 0.95 * len(ours) > 200, [n for n, e in ours.items() if e[2] == 0.0]
     assert sum(len(e) == 3 + 36 for e in ours.values()) > 70
+
+
+@pytest.mark.parametrize("precision", ["double", "mixed"])
+def test_coefficients_that_leave_single_precision(precision):
+    """Powers of coefficients too small for single precision take another formula, and another kernel."""
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-precision", precision])
+    lmp.commands_string("""units lj
+lattice fcc 0.8442
+region b block 0 4 0 4 0 4
+create_box 1 b
+create_atoms 1 box
+mass 1 1
+displace_atoms all random 0.1 0.1 0.1 4711
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+fix move all nve
+run 0 post no""")
+    energy = lmp.get_thermo("pe")
+    lmp.commands_string("""variable e equal 1.0*(step<1)+1.0e-24*(step>0)
+fix a all adapt 1 pair lj/cut epsilon 1 1 v_e
+timestep 0.0
+run 2 post no""")
+    assert lmp.get_thermo("pe") == pytest.approx(1e-24 * energy, rel=1e-6 if precision == "mixed" else 1e-12, abs=0.0)

@@ -194,3 +194,25 @@ def test_loops_are_vectorised(name, double):
         pytest.skip("looks at x86 registers only")
     code = "".join(loop.inspect_asm().values())
     assert re.search(r"mulpd|fmadd\d+pd", code), f"{name}: no packed arithmetic"
+
+
+ROOTS = """
+def roots(x, out):
+    rough_roots()
+    for k in range(x.size):
+        out[k] = vector_root(x[k])
+"""
+
+
+@pytest.mark.parametrize("count", [4096, 3])
+def test_roots_of_doubles(count):
+    """1 / sqrt(x) by estimates, in vectors and one by one, to two units of the last digit."""
+    b = Builder("roots in a loop")
+    b.line("from asemd.kernels.fuse import madd, rough_roots")
+    vector_math.paste_roots(b)
+    b.text(ROOTS.strip())
+    x = 10.0 ** np.random.default_rng(5).uniform(-36, 36, count)
+    out = np.empty_like(x)
+    b.build().roots(x, out)
+    exact = np.array([float(1 / mp.sqrt(mp.mpf(float(v)))) for v in x])
+    assert np.abs(out / exact - 1.0).max() < 4.5e-16

@@ -17,7 +17,6 @@ from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
 from asemd.fix.formula import Formula
-from asemd.kernels.pair import uniform_rows
 from asemd.kspace.term import KSpaceTerm
 from asemd.population import retie
 from asemd.words import bounds, take, whole, yes_no
@@ -275,14 +274,14 @@ def _in_place(e: Engine, interactions, system) -> bool:
         same = fresh.style is old.style and a.rows.shape == b.rows.shape and np.shape(a.constants) == np.shape(b.constants)
         if not same or np.abs(a.rows[old.cut_rows] - b.rows[old.cut_rows]).max(initial=0.0) or len(a.arrays):
             return False
-        if any(getattr(t, "uniform", None) not in (None, uniform_rows(b.rows)) for t in e.terms if getattr(t, "owner", None) is old):
+        if not all(t.fits(b) for t in e.terms if getattr(t, "owner", None) is old and hasattr(t, "fits")):
             return False
     for old, fresh in zip(e.pair_terms, new):
         old.tables.rows[:] = fresh.tables.rows
         np.copyto(np.asarray(old.tables.constants), fresh.tables.constants)
         old.filled.update(fresh.filled)
         for t in e.terms:
-            if getattr(t, "owner", None) is old and hasattr(t, "uniform"):
+            if getattr(t, "owner", None) is old and hasattr(t, "take_tables"):
                 t.take_tables()
     for t in e.terms:
         if hasattr(getattr(t, "packed", None), "coeff"):
