@@ -85,6 +85,19 @@ def test_commands_run(name, tmp_path):
     python("-c", f"from asemd.cli import main\nfor line in {lines}:\n    assert main(line.split()[1:]) == 0, line", cwd=tmp_path)
 
 
+def test_lines_of_scripts_run(tmp_path):
+    """Pages that show lines of a script, not all of it: by themselves, or before the run of another one."""
+    page = ROOT / "docs" / "lammps-users.md"
+    for file, text in files(page).items():
+        (tmp_path / file).write_text(text)
+    (tmp_path / "in.half").write_text(scripts(ROOT / "docs" / "scripts.md")["in.half"])
+    pictures, = blocks(ROOT / "docs" / "output.md", "lammps")
+    (tmp_path / "in.chains").write_text(re.sub("^run ", lambda run: pictures + run[0], scripts(page)["in.chains"], flags=re.M))
+    assert "half of" in python("-m", "asemd.cli", "run", "in.half", cwd=tmp_path)
+    python("-m", "asemd.cli", "run", "in.chains", cwd=tmp_path)
+    assert (tmp_path / "melt.0.png").stat().st_size > 1000 and (tmp_path / "melt.gif").stat().st_size > 1000
+
+
 @pytest.mark.parametrize("name", ["custom-fix", "custom-compute"])
 def test_commands_with_own_files(name, tmp_path):
     """The line that brings a page's Python file into `asemd run`; what asemd has already cannot be defined again."""
