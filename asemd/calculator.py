@@ -52,7 +52,8 @@ class ForceField(Calculator):
     precision : str
         ``double`` or ``mixed``.
     shift, tail, mix, dielectric, compat, kspace, kspace_modify
-        As in LAMMPS's commands (``kspace="pppm 1e-4"``); ``compat="lammps"``: its forces also where they are no gradient of its energy.
+        As in LAMMPS's commands (``kspace="pppm 1e-4"``); ``compat="lammps"``: its tables of charges, and its forces also
+        where they are no gradient of its energy.
     commands : str or sequence of str, optional
         In the place of all these: styles and coefficients as LAMMPS commands, whose numbers are in the unit style `units`.
     types : sequence of str, mapping or int, optional

@@ -13,7 +13,7 @@ from asemd.lammps.switches import Switches, one_of
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Tolerance = Annotated[float | None, typer.Option(help="Largest relative difference that counts as agreement [1e-9].", min=0.0)]
 Script = Annotated[str | None, typer.Argument(help="LAMMPS input script.")]
-Compat = Annotated[str | None, typer.Option(help="lammps: its forces also where they are not the gradient of its energy.")]
+Compat = Annotated[str | None, typer.Option(help="lammps: its tables of charges, its forces that are no gradient.")]
 Precision = Annotated[str, typer.Option(help="double, or mixed: pair forces in single precision.")]
 Import = Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")]
 Threads = Annotated[int, typer.Option(help="Number of threads.", min=1)]

@@ -25,7 +25,7 @@ def report(context: typer.Context,
            lammps: Annotated[bool, typer.Option("--lammps/--no-lammps", help="Compare with real LAMMPS if it is installed.")] = True,
            threads: Annotated[int, typer.Option(help="Number of threads.", min=1)] = 1,
            precision: Annotated[str, typer.Option(help="double, or mixed: pair forces in single precision.")] = "double",
-           compat: Annotated[str | None, typer.Option(help="lammps: its forces also where they are no gradient of its energy.")] = None,
+           compat: Annotated[str | None, typer.Option(help="lammps: its tables of charges, its forces that are no gradient.")] = None,
            import_: Annotated[list[str] | None, typer.Option("--import", help="Python file with styles of your own.")] = None,
            as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False) -> int:
     """Measure error against run time over the settings that trade one for the other, and recommend; writes a folder with plots."""

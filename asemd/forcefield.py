@@ -50,7 +50,8 @@ class Interactions:
     table : dict
         ``pair_modify table tabinner table/disp tabinner/disp``, for styles with a long-range part.
     compat : str
-        ``"lammps"``: LAMMPS's forces also where they are not minus the gradient of its energy.
+        ``"lammps"``: LAMMPS's forces also where they are not minus the gradient of its energy, and its tables of what a long-range
+        solver leaves where none are asked for.
     dielectric : float
     kspace : str
         Words of ``kspace_style``.

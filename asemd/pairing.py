@@ -141,9 +141,11 @@ def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]
                 molecules = ("same", "other")[k] if interactions.hybrid["pair"] == "hybrid/molecular" else style.molecules
                 settings = {**use.settings, **interactions.long_range} if style.solvers or style.needs(use.settings) else use.settings
                 arrays: tuple = ()
-                if interactions.table.get("table") and not settings.keys().isdisjoint(("g_ewald", "smooth0")):
-                    style = coulomb_table.tabled(style)
-                    settings, arrays = coulomb_table.settings_of(style, settings, interactions.table)
+                table = coulomb_table.in_use(interactions.table, interactions.compat)
+                if known := frozenset(key for key, of in coulomb_table.SPLIT.items() if table.get(key) and of & settings.keys()):
+                    style = coulomb_table.tabled(style, known)
+                    settings, arrays = coulomb_table.settings_of(
+                        style, settings, table, interactions.coulomb_constant(units) / interactions.dielectric)
                 if use.coulomb:
                     style, filled = coulomb_scale.factored(style), coulomb_scale.with_factors(filled, use.coulomb)
                 tables = style.pack_pairs(settings, filled, ntypes, units, shift)

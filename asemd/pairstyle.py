@@ -124,6 +124,7 @@ class PairStyle(Style):
     extra = 0                        # numbers that compute pair gives beside the energy
     restarts = True                  # restart files keep settings and coefficients
     takes_tables = True              # ``pair_modify table`` has an effect, as in LAMMPS
+    tables: dict[Callable, Callable] = {}       # functions looked up in a table by others than their own ``table``
     needs_newton = False             # newton off is refused, as by LAMMPS
     on_sites = False                 # it acts on charges that are not on atoms, see `asemd.charge_sites`
 

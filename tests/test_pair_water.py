@@ -74,6 +74,7 @@ CASES = [
     ("hybrid/overlay lj/cut 4.5 hbond/dreiding/morse/angleoffset 2 5.4 5.5 90 180",
      ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/morse/angleoffset * j 3.9 1.7 2.9 3 4.5 5.5 95 150"), ()),
 ]
+CASES += [(style, coeffs, more[:-1]) for style, coeffs, more in CASES if more and "table" in more[-1]]      # LAMMPS's tables
 
 
 @pytest.fixture(scope="module")

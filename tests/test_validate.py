@@ -4,8 +4,10 @@ from __future__ import annotations
 import importlib.util
 import json
 
+import ase.build
 import numpy as np
 import pytest
+import shake_scene
 from lj_cell import BASE
 
 import asemd
@@ -113,6 +115,47 @@ def test_atoms_in_any_frame(left_handed):
     assert sum(e.asemd for e in report.energies[:-1]) == pytest.approx(atoms.get_potential_energy(), rel=1e-13)
     volume = abs(np.linalg.det(atoms.cell))
     np.testing.assert_allclose(np.array(report.forces[-1].virial_lammps)[[0, 1, 2, 5, 4, 3]], -atoms.get_stress() * volume, rtol=1e-9)
+
+
+def water(folder, more: str = "") -> str:
+    """Constrained molecules with a mesh: bonds that a fix switches off, tables, virials of a solver, rows of thermo_style multi."""
+    shake_scene.write_data(folder / "data.x")
+    text = shake_scene.SCRIPT.format(data="data.x", water="1:3").replace("lj/cut/coul/cut 5.2", "lj/cut/coul/long 5.2")
+    (folder / "in.w").write_text(f"{text}\nkspace_style pppm 1e-4\nfix h all shake 1e-4 100 0 b 1 4 a 1\nfix 1 all nve\n{more}\nrun 3\n")
+    return "in.w"
+
+
+@needs_lammps
+def test_constraints_and_a_mesh(folder, capsys):
+    script = water(folder, "thermo_style multi\nthermo 1")
+    report = validate(script)
+    assert report.ok and report.worst < 1e-10, str(report)
+    assert [f.term for f in report.forces] == ["k-space", "pair", "bond", "angle", "all"] and all(f.largest > 1e-3 for f in report.forces)
+    assert {r.step for r in report.rows} == {0, 1, 2, 3} and any("table 0" in n for n in report.notes)
+    exact, tables = report.energies, validate(script, compat="lammps")
+    assert tables.ok and not any("table 0" in n for n in tables.notes)
+    coul = [next(e.asemd for e in energies if e.term == "pair coul") for energies in (exact, tables.energies)]
+    assert 1e-9 < abs(coul[0] / coul[1] - 1.0) < 1e-5
+    assert cli.main(["run", script, "--engine", "lammps", "--quiet"]) == 0
+
+
+@needs_lammps
+def test_a_script_that_needs_its_files_is_compared_up_to_there(folder):
+    script = water(folder, "run 2\nwrite_restart r\nclear\nread_restart r")
+    report = validate(script)
+    assert report.ok and {r.run for r in report.rows} == {0} and any("r: No such file" in n for n in report.notes), report.notes
+
+
+@needs_lammps
+def test_atoms_with_a_mesh():
+    salt = ase.build.bulk("NaCl", "rocksalt", a=5.64, cubic=True).repeat(2)
+    salt.rattle(0.1, seed=3)
+    salt.set_initial_charges([1.0 if symbol == "Na" else -1.0 for symbol in salt.symbols])
+    born = {("Na", "Na"): (0.26, 0.3, 2.3, 1.0, -0.5), ("Cl", "Cl"): (0.16, 0.3, 3.1, 72.0, -145.0),
+            ("Cl", "Na"): (0.2, 0.3, 2.7, 7.0, -8.0)}
+    for compat in ("", "lammps"):
+        salt.calc = asemd.ForceField(pair={"born/coul/long 5.5": born}, kspace="pppm 1.0e-5", compat=compat)
+        assert (report := asemd.validate(salt)).ok, str(report)
 
 
 @needs_lammps

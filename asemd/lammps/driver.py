@@ -335,8 +335,8 @@ class Driver:
         norm = scene.thermo.is_normalised(scene.units)
         values = [evaluate(session.moment, w, norm) for w in self.words]
         session.log.write(scene.thermo.row(self.words, values, step, self.progress.cpu() if step > self.progress.begin else 0.0) + "\n")
-        session.last_thermo = {scene.thermo.name(k, w): v for k, (w, v) in enumerate(zip(self.words, values), 1)}
         session.last_words, session.last_thermo_step = self.words, step
+        session.last_thermo = {scene.thermo.name(k, w): v for k, (w, v) in enumerate(zip(self.words, values), 1)}
         if session.record is not None:
             session.record.row(self, values)
         if scene.thermo.flush or session.watched:

@@ -31,7 +31,7 @@ class Switches:
     nonbuf : bool
         Write the log at once, line by line.
     compat : str
-        ``lammps``: follow LAMMPS where its forces are not the gradient of its energy.
+        ``lammps``: follow LAMMPS where its forces are not the gradient of its energy, and in its tables of charges.
     """
 
     input: str | None = None

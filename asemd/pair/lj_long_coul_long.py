@@ -10,6 +10,7 @@ from __future__ import annotations
 import inspect
 import math
 
+from asemd.coulomb_table import coul_between_table, dispersion_table
 from asemd.errors import InputError
 from asemd.pair.coul_long import EWALD, coul_long, long_range
 from asemd.pair.lj_cut import lj_cut
@@ -52,7 +53,7 @@ def repulsion(r2, epsilon: "energy", sigma: "distance"):
     return e, -6.0 * e * r2inv
 
 
-dispersion.d2, repulsion.d2 = dispersion_d2, repulsion_d2
+dispersion.d2, repulsion.d2, dispersion.table = dispersion_d2, repulsion_d2, dispersion_table
 
 
 class DispersionPair(PairStyle):
@@ -94,7 +95,8 @@ class DispersionPair(PairStyle):
         if key not in self.forms:
             long = key[0] == "long"
             parts = [(f, self.first) for f in (self.far if long else self.near)] + [(coul_long, "cut_coul")] * (key[1] == "long")
-            self.forms[key] = self.form(key[1])(self.name, parts, **{**self.made, "shifts": not long})
+            made = self.forms[key] = self.form(key[1])(self.name, parts, **{**self.made, "shifts": not long})
+            made.tables = {coul_long: coul_between_table}
         return self.forms[key]
 
     def needs(self, settings):

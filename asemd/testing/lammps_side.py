@@ -29,8 +29,10 @@ if not answer:
         if category == order[-1]:
             answer["forces"].append(np.zeros_like(answer["forces"][0]))
             break
-        if category == "pair":
-            lines = [f"pair_style zero {given['cutoff']!r} nocoeff", "pair_coeff * *"]
+        if category == "kspace":
+            lines = ["kspace_modify compute no"]
+        elif category == "pair":
+            lines = ["kspace_style none", f"pair_style zero {given['cutoff']!r} nocoeff", "pair_coeff * *"]
         else:
             lines = [f"{category}_style zero nocoeff", f"{category}_coeff *"]
         failed = execute(lmp, [*lines, "run 0 post no"])

@@ -6,7 +6,8 @@ import importlib
 from collections.abc import Sequence
 from typing import Any
 
-from asemd.errors import SimulationError
+from asemd import coulomb_table
+from asemd.errors import InputError, SimulationError
 from asemd.lammps.export import quoted
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
@@ -38,8 +39,8 @@ class Recorder(Session):
         How many of them come before the first run.
     first : Scene or None
         A copy of the scene before the first run.
-    rows : list of (int, dict)
-        Number of the run and values by column of each thermo row.
+    rows : list of (int, int, dict)
+        Number of the run, step and values by column of each thermo row.
     runs : list of str
         The run and minimize commands that were carried out, as given to LAMMPS.
     notes : list of str
@@ -49,7 +50,7 @@ class Recorder(Session):
     """
 
     def __init__(self, switches: Switches):
-        self.rows: list[tuple[int, dict[str, Any]]] = []
+        self.rows: list[tuple[int, int, dict[str, Any]]] = []
         self.commands: list[str] = []
         self.runs: list[str] = []
         self.notes: list[str] = []
@@ -61,12 +62,12 @@ class Recorder(Session):
 
     @property
     def last_thermo(self) -> dict[str, Any]:
-        return self.rows[-1][1] if self.rows else {}
+        return self.rows[-1][2] if self.rows else {}
 
     @last_thermo.setter
     def last_thermo(self, row: dict[str, Any]) -> None:
         if row:
-            self.rows.append((len(self.runs) - 1, row))
+            self.rows.append((len(self.runs) - 1, self.last_thermo_step, row))
 
     def call(self, name: str, args: Sequence[str]) -> None:
         if name in ACTIONS and not self._acting:
@@ -78,9 +79,15 @@ class Recorder(Session):
         if self.runs and ((name == "velocity" and "geom" in args) or (name == "displace_atoms" and "random" in args)
                           or (name == "set" and "type/fraction" in args)):
             self._end(f"nothing is compared from {' '.join([name, *args])!r} on: its random numbers follow from the last bits of positions")
-        if name not in CONTROL and name not in LEFT_OUT and not self._acting:
+        told, noted = len(self.commands), name not in CONTROL and name not in LEFT_OUT and not self._acting
+        if noted:
             self.commands.append(" ".join([name, *map(quoted, args)]))
-        super().call(name, args)
+        try:
+            super().call(name, args)
+        except InputError:
+            if noted:
+                del self.commands[told:]
+            raise
 
     def _check(self, name: str) -> None:
         """Commands that are left out must exist all the same."""
@@ -103,6 +110,7 @@ class Recorder(Session):
         if noisy and name == "run":
             args = ["0"]
         self._rebuild_in_time()
+        self._compute_tabled()
         words = self._capped(name, args)
         self.runs.append(" ".join([name, *map(quoted, words)]))
         self.commands.append(self.runs[-1])
@@ -131,6 +139,14 @@ class Recorder(Session):
                               "both sides: with lists that are too old each program misses other pairs")
             n.every, n.delay, n.check = 1, 0, True
             self.commands.append("neigh_modify every 1 delay 0 check yes")
+
+    def _compute_tabled(self) -> None:
+        """Let LAMMPS compute the short range of charges and dispersion, too, unless its tables are asked for."""
+        self.commands += [c for c in coulomb_table.without(self.scene.interactions) if c not in self.commands[self._styled():]]
+
+    def _styled(self) -> int:
+        """Where the pair style was chosen last: a new one starts with tables."""
+        return max((k for k, c in enumerate(self.commands) if c.split()[0] == "pair_style"), default=0)
 
     def _end(self, note: str) -> None:
         self.notes.append(note)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from asemd import units as unit_styles
+from asemd import coulomb_table
 from asemd.engine import Engine, Settings
 from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
@@ -19,8 +19,10 @@ from asemd.lammps.session import Stop
 from asemd.lammps.switches import Switches
 from asemd.scene import Scene
 from asemd.system import System
-from asemd.testing.lammps_side import ROWS, ZERO_STEP
+from asemd.testing import thermo_rows
+from asemd.testing.lammps_side import ZERO_STEP
 from asemd.testing.oracle import OracleError, ask, lammps_available, lammps_version, why_not
+from asemd.testing.thermo_rows import Cell, relative
 from asemd.text_table import Table
 
 TOLERANCE = {"double": 1e-9, "mixed": 1e-4}
@@ -28,9 +30,7 @@ ENERGIES = {"evdwl": "pair vdwl", "ecoul": "pair coul", "ebond": "bond", "eangle
             "elong": "k-space", "etail": "tail"}
 SETTINGS = frozenset("""fix fix_modify unfix compute compute_modify uncompute thermo thermo_style thermo_modify velocity min_style
                      min_modify run_style timestep reset_timestep""".split())
-FAMILIES = dict.fromkeys(("PotEng", "KinEng", "TotEng", "Enthalpy", "Ecouple", "Econserve"), "energy") | dict.fromkeys(
-    ("Press", "Pxx", "Pyy", "Pzz", "Pxy", "Pxz", "Pyz"), "pressure") | {"Temp": "temperature", "Fmax": "force", "Fnorm": "force"}
-CLOCK = frozenset(("CPU", "T/CPU", "S/CPU", "CPULeft", "TimeoutLeft", "Nbuild", "Ndanger", "Part"))
+HOLDERS, FILLED = {"property/atom"}, {"cmap"}       # fixes that hold what belongs to atoms, and those that read_data fills with forces
 VIRIAL = ("xx", "yy", "zz", "xy", "xz", "yz")
 
 
@@ -60,18 +60,6 @@ class Force:
     virial_asemd: list[float]
     virial_lammps: list[float]
     virial_error: float
-
-
-@dataclass
-class Cell:
-    """One column of one thermo row."""
-
-    run: int
-    step: int
-    column: str
-    asemd: float
-    lammps: float
-    error: float
 
 
 @dataclass
@@ -228,13 +216,20 @@ def _script(path: str, switches: Switches, tolerance: float | None) -> Report:
         session.file(path)
     except Stop:
         session.label = None
+    except InputError as e:
+        if not session.runs:
+            raise
+        session.notes.append(f"the script is compared no further, after runs of few steps and without files written it stops: {e}")
     if session.first is None:
         if session.scene.system is None:
             raise InputError(f"validate: {path} defines no atoms")
         session.first, session.start = session.scene, len(session.commands)
     words = [w for name, values in switches.variables for w in ("-var", name, *values)]
-    setup = [c for c in session.commands[:session.start] if c.split()[0] not in SETTINGS]
+    setup = first_step(session.commands[:session.start])
     scene = session.first
+    for fix in scene.fixes.values():        # LAMMPS gets none for the first step but those that hold what is read
+        if fix.style not in HOLDERS:
+            fix.detach(scene.system)
     report = _zero_step(path, scene.system, scene.interactions, scene.settings(), setup, words,
                         TOLERANCE[switches.precision] if tolerance is None else tolerance)
     report.notes += dict.fromkeys(session.notes)
@@ -245,8 +240,22 @@ def _script(path: str, switches: Switches, tolerance: float | None) -> Report:
         norm = scene.thermo.is_normalised(scene.units)
         energies = sum(abs(e.lammps) for e in report.energies[:-1])
         virials = sum(max(map(abs, f.virial_lammps)) for f in report.forces[:-1])
-        _rows(report, session, words, _floors(scene.system, norm, energies, virials, max(report.scale, result.largest)))
+        thermo_rows.compare(report, session, words,
+                            thermo_rows.floors(scene.system, norm, energies, virials, max(report.scale, result.largest)))
     return report
+
+
+def first_step(commands: list[str]) -> list[str]:
+    """Commands without those that forces of the first step do not depend on; fixes that read_data fills stay until they have been."""
+    kept, left = [], []
+    for command in commands:
+        name, *words = command.split()
+        if name == "fix" and words[2] in HOLDERS | FILLED:
+            kept.append(command)
+            left += [f"unfix {words[0]}"] * (words[2] in FILLED)
+        elif name not in SETTINGS:
+            kept.append(command)
+    return kept + left
 
 
 def _atoms(atoms, tolerance: float | None, compat: str) -> Report:
@@ -272,25 +281,29 @@ def _exported(name: str, system: System, interactions: Interactions, settings: S
 def removal_order(interactions: Interactions) -> list[str]:
     """Categories in the order in which they are taken away to see the forces of each.
 
-    The pair style goes last if a dihedral style needs it.
+    The pair style goes last if a dihedral style needs it, after the long-range solver in any case.
     """
     weighted = any(use.style.weight_14 for use in interactions.uses["dihedral"])
     order = "bond angle improper dihedral pair" if weighted else "pair bond angle dihedral improper"
-    return [c for c in order.split() if interactions.uses[c]]
+    return ["kspace"] * (interactions.kspace != "none") + [c for c in order.split() if interactions.uses[c]]
 
 
 def _zero_step(source: str, system: System, interactions: Interactions, settings: Settings, setup: list[str], switches: list[str],
                tolerance: float) -> Report:
-    order = removal_order(interactions)
+    order, exact = removal_order(interactions), coulomb_table.without(interactions)
     ours = [_evaluate(system, interactions, settings)]
     less = copy.deepcopy(interactions)
     for category in order[:-1]:
-        less.uses[category], less.hybrid[category] = [], ""
-        less.tail = less.tail and bool(less.uses["pair"])
+        if category == "kspace":
+            less.kspace_modify["compute"] = False
+        else:
+            less.uses[category], less.hybrid[category] = [], ""
+        if category == "pair":
+            less.tail, less.kspace = False, "none"
         ours.append(_evaluate(system, less, settings))
     cutoff = interactions.cutoff(system.counts["ntypes"], None) if interactions.uses["pair"] else 0.0
-    theirs = ask(ZERO_STEP, commands=setup, order=order, categories=list(CATEGORIES), cutoff=max(cutoff, 1e-6), switches=switches,
-                 energies=list(ENERGIES))
+    theirs = ask(ZERO_STEP, commands=[*setup, *exact], order=order, categories=[*CATEGORIES, "kspace"],
+                 cutoff=max(cutoff, 1e-6), switches=switches, energies=list(ENERGIES))
     if "error" in theirs:
         raise OracleError(f"LAMMPS stops at {theirs['command']!r}: {theirs['error']}")
     rows = np.argsort(system.id)
@@ -300,21 +313,25 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
     result = ours[0]
     report = Report(source, system.n, system.units, lammps_version() or "", tolerance, 0.0,
                     documented=documented(interactions) if interactions.compat != "lammps" else [])
+    if exact:
+        report.notes.append(f"LAMMPS is told {exact[0]}: asemd computes what LAMMPS looks up in tables of 4096 distances, which changes "
+                            "forces between charges by 1e-6; with --compat lammps both look it up")
     _energies(report, result, theirs["energy"], interactions)
     to_virial = theirs["volume"] / theirs["nktv2p"]
     their_virial = {c: _back(rotation, np.asarray(v) * to_virial) for c, v in theirs["virial"].items()}
     our_virial = dict(result.virial_of)
     our_virial["pair"] = our_virial.get("pair", np.zeros(6)) + our_virial.pop("tail", np.zeros(6))
-    sizes = [np.abs(v).max() for v in our_virial.values()]
+    energy = sum(map(abs, theirs["energy"].values()))
+    size = max(sum(np.abs(v).max() for v in our_virial.values()), 1e-3 * energy)       # of a crystal at rest there is only the energy
     length = (system.box.volume / max(system.n, 1)) ** (1 / 3)
     their_forces = [f @ rotation.T for f in theirs["forces"]]
-    report.scale = max(float(np.abs(their_forces[0]).max(initial=0.0)), sum(sizes) / max(system.n, 1) / length, 1e-300)
+    report.scale = max(float(np.abs(their_forces[0]).max(initial=0.0)), size / max(system.n, 1) / length, 1e-300)
     for k, category in enumerate(order):
         rest = ours[k + 1].forces if k + 1 < len(ours) else 0.0
-        _forces(report, category, (ours[k].forces - rest)[rows], their_forces[k] - their_forces[k + 1],
-                our_virial.get(category, np.zeros(6)), their_virial[category], sum(sizes))
+        _forces(report, "k-space" if category == "kspace" else category, (ours[k].forces - rest)[rows],
+                their_forces[k] - their_forces[k + 1], our_virial.get(category, np.zeros(6)), their_virial[category], size)
     whole = result.virial + result.virial_of.get("tail", 0.0)
-    _forces(report, "all", result.forces[rows], their_forces[0], whole, sum(their_virial.values(), np.zeros(6)), sum(sizes))
+    _forces(report, "all", result.forces[rows], their_forces[0], whole, sum(their_virial.values(), np.zeros(6)), size)
     return report
 
 
@@ -330,9 +347,9 @@ def _energies(report: Report, result, theirs: dict[str, float], interactions: In
     for key, name in ENERGIES.items():
         a, b = result.energy[key], theirs[key]
         if a or b or key in shown or (key[1:] in ("bond", "angle") and interactions.uses[key[1:]]):
-            report.energies.append(Energy(name, a, b, _relative(a, b, max(abs(a), abs(b), 1e-3 * total))))
+            report.energies.append(Energy(name, a, b, relative(a, b, max(abs(a), abs(b), 1e-3 * total))))
     a, b = result.potential, sum(theirs.values())
-    report.energies.append(Energy("all", a, b, _relative(a, b, max(abs(b), 1e-3 * total))))
+    report.energies.append(Energy("all", a, b, relative(a, b, max(abs(b), 1e-3 * total))))
 
 
 def _forces(report: Report, term: str, a, b, virial_a, virial_b, size: float) -> None:
@@ -340,8 +357,8 @@ def _forces(report: Report, term: str, a, b, virial_a, virial_b, size: float) ->
     worst = float(np.abs(d).max(initial=0.0))
     largest = float(np.abs(b).max(initial=0.0))
     scale = max(report.scale, largest)
-    virial_error = _relative(float(np.abs(virial_a - virial_b).max()), 0.0, size)
-    report.forces.append(Force(term, largest, worst, float(np.sqrt((d * d).mean())) if d.size else 0.0, _relative(worst, 0.0, scale),
+    virial_error = relative(float(np.abs(virial_a - virial_b).max()), 0.0, size)
+    report.forces.append(Force(term, largest, worst, float(np.sqrt((d * d).mean())) if d.size else 0.0, relative(worst, 0.0, scale),
                                np.asarray(virial_a).tolist(), np.asarray(virial_b).tolist(), virial_error))
 
 
@@ -357,43 +374,3 @@ def documented(interactions: Interactions) -> list[str]:
     return [f"{category} style {use.style.name}: asemd's force is minus the gradient of the energy, LAMMPS's is not everywhere "
             "(the style's page says where); --compat lammps takes LAMMPS's"
             for category, uses in interactions.uses.items() for use in uses if getattr(use.style, "twin", None) is not None]
-
-
-# ------------------------------------------------------------------------------------------------------------ thermo rows ---
-
-def _rows(report: Report, session, switches: list[str], floors: dict[str, float]) -> None:
-    theirs = ask(ROWS, commands=session.commands, switches=switches, timeout=3600)
-    if "error" in theirs:
-        report.failures.append(f"LAMMPS stopped at {theirs['command']!r}: {theirs['error']}")
-    by_step = {(run, int(row["Step"])): row for run, row in theirs["rows"] if "Step" in row}
-    ours = [(run, row) for run, row in session.rows if "Step" in row]
-    if len(ours) < len(session.rows):
-        report.notes.append("thermo rows without the column Step are not compared")
-    pairs = [(run, row, by_step[run, int(row["Step"])]) for run, row in ours if (run, int(row["Step"])) in by_step]
-    if len(pairs) < len(ours) and not report.failures:
-        report.notes.append(f"{len(ours) - len(pairs)} thermo rows of asemd are on steps that LAMMPS did not print (a minimisation that "
-                            "ends elsewhere)")
-    columns = {c for _, a, b in pairs for c in a if c in b} - CLOCK - {"Step"}
-    sizes = {c: max((abs(float(r[c])) for _, a, b in pairs for r in (a, b) if c in r), default=0.0) for c in columns}
-    for column in columns:        # a small number among energies (pressures) is as uncertain as a large one
-        family = FAMILIES.get(column, "energy" if column.startswith("E_") else column)
-        sizes[column] = max(sizes[column], 1e-3 * floors.get(family, 0.0))
-    for run, a, b in pairs:
-        for column, value in a.items():
-            if column in columns and column in b:
-                x, y = float(value), float(b[column])
-                report.rows.append(Cell(run, int(a["Step"]), column, x, y, _relative(x, y, sizes[column])))
-
-
-def _floors(system: System, norm: bool, energies: float, virials: float, force: float) -> dict[str, float]:
-    """Sizes of energies, pressures, temperatures and forces of a scene: what small values of thermo columns are compared with."""
-    u, n = unit_styles.get(system.units), max(system.n, 1)
-    return {"energy": energies / n if norm else energies, "pressure": virials / system.box.volume * u.nktv2p,
-            "temperature": energies / n / u.boltz, "force": force}
-
-
-def _relative(a: float, b: float, scale: float) -> float:
-    """Difference by size; infinite if one of the two is not a number."""
-    if a != a or b != b:
-        return 0.0 if a != a and b != b else float("inf")
-    return abs(a - b) / max(scale, 1e-300)
