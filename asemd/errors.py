@@ -63,6 +63,10 @@ class NotYet(InputError):
     """A quantity that is known once a run has begun."""
 
 
+class Undefined(InputError):
+    """A formula that has no value for the numbers it met, such as a division by 0."""
+
+
 class InputWarning(UserWarning):
     """Something in the input that is probably not meant; the run goes on."""
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, Undefined
 
 Value = float | np.ndarray
 NEVER = 2.0**63 - 1024     # the step that no run reaches
@@ -47,19 +47,19 @@ def each(function: Callable[..., float], *values: Value) -> Value:
 def whole(value: float, what: str) -> int:
     """The whole part of a finite number."""
     if not math.isfinite(value):
-        raise InputError(f"{what}: {value:g} is not a whole number")
+        raise Undefined(f"{what}: {value:g} is not a whole number")
     return int(value)
 
 
 def _divide(a: float, b: float) -> float:
     if b == 0.0:
-        raise InputError("division by 0 in a formula")
+        raise Undefined("division by 0 in a formula")
     return a / b
 
 
 def _modulo(a: float, b: float) -> float:
     if b == 0.0:
-        raise InputError("modulo 0 in a formula")
+        raise Undefined("modulo 0 in a formula")
     return math.fmod(a, b) if math.isfinite(a) and not math.isnan(b) else math.nan
 
 
@@ -69,7 +69,7 @@ def _power(a: float, b: float) -> float:
     except OverflowError:
         return math.inf if a > 0 or b % 2 == 0 else -math.inf
     except ValueError:
-        raise InputError(f"invalid power {a:g} ^ {b:g} in a formula") from None
+        raise Undefined(f"invalid power {a:g} ^ {b:g} in a formula") from None
 
 
 def _minus(a: float, b: float) -> float:
@@ -101,7 +101,7 @@ BINARY = (
 def _domain(name: str, function: Callable[[float], float], ok: Callable[[float], bool]) -> Callable[[float], float]:
     def checked(x: float) -> float:
         if not ok(x):
-            raise InputError(f"{name}({x:g}) is not defined")
+            raise Undefined(f"{name}({x:g}) is not defined")
         try:
             return function(x)
         except OverflowError:

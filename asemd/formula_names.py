@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from asemd.errors import InputError
+from asemd.errors import InputError, Undefined
 from asemd.formula_functions import REDUCE, Value
 
 
@@ -28,7 +28,7 @@ def values_of(parser, name: str, words: list[str]) -> np.ndarray:
     else:
         values = np.asarray(parser.provider.vector(match[1], match[2], int(match[3]) if match[3] else None), float)
     if not values.size:
-        raise InputError(f"{name}({words[0]}): the vector is empty")
+        raise Undefined(f"{name}({words[0]}): the vector is empty")
     return values
 
 

@@ -47,7 +47,7 @@ class ManyBodyTerm(FactorTerm):
         self.uniform = bool((cut2[1:, 1:] == cut2[1, 1]).all())
         self.first = self.middle = self.last = np.zeros(0, np.int64)
         self.neighbors, self.codes = np.zeros(0, np.int32), np.zeros(0, np.uint8)
-        self.width, self.blocks = 0, self.style.block is not None and self.style.fits(self.tables)
+        self.width, self.blocks = 0, self.style.block is not None and bool(self.style.fits(self.tables))
 
     def kernel(self, energy, per_atom):
         row = self.width if self.blocks and not per_atom else 0

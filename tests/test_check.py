@@ -336,6 +336,17 @@ def test_later_lines_do_not_hide_the_first_run(folder):
         check(edit(LJ, ("run 10", "fix 9 all nonsense\nrun 10")))
 
 
+def test_a_script_that_begins_anew(folder):
+    report = check(LJ + "write_restart r.end\nclear\nread_restart r.end\nrun 10\n")
+    assert report.worst == "ok" and report.of("time step")
+
+
+def test_forces_of_a_run_alone(folder):
+    """Friction and noise."""
+    report = check(edit(LJ, ("pair_style lj/cut 2.5", "pair_style dpd 1.0 1.5 4711"), ("pair_coeff 1 1 1.0 1.0", "pair_coeff 1 1 3.0 1.0")))
+    assert report.ok and not report.of("first step")
+
+
 def test_one_atom_and_none(folder):
     one = edit(LJ, ("create_atoms 1 box", "create_atoms 1 single 1 1 1"), ("velocity all create 1.44 87287 loop geom", ""))
     report = check(one)

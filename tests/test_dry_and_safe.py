@@ -71,6 +71,15 @@ def test_dry_reports_every_problem_once_with_its_line(folder, capsys):
     assert "v_x" in told[4]      # that the mass is missing follows from line 6
 
 
+def test_dry_expects_other_numbers_after_a_run(folder, capsys):
+    averages = RIGHT.split("dump")[0] + "fix 2 all ave/time 1 5 5 c_thermo_temp\nvariable x equal 1/f_2\nthermo_style custom step v_x\n"
+    (folder / "in.x").write_text(averages + "run 10\nprint $(v_x)\nprint $(ln(f_2))\nvariable y equal ${x}\n")
+    assert cli.main(["run", "--dry", "in.x"]) == 0
+    (folder / "in.x").write_text(averages + "print $(v_x)\nrun 10\n")
+    assert cli.main(["run", "--dry", "in.x"]) == 1
+    assert "division by 0" in capsys.readouterr().err
+
+
 def test_dry_runs_and_writes_nothing(folder, capsys):
     (folder / "in.x").write_text(RIGHT)
     assert cli.main(["run", "--dry", "in.x"]) == 0

@@ -35,15 +35,21 @@ SCENES = {
         "0.1 3.0", "0.1 3.0 1.2"),
     "noise": "pair_style dpd 300.0 6.0 4711\npair_coeff * * 3.0 1.0",
     "many bodies": "pair_style sw\npair_coeff * * two.sw A A",
+    "many bodies, tersoff": "pair_style tersoff\npair_coeff * * two.tersoff A A",
 }
 SW = "A A A 2.1683 2.0951 1.80 21.0 1.20 -0.333333333333 7.049556277 0.6022245584 4.0 0.0 0.0\n"
+
+
+TERSOFF = "A A A 3.0 1.0 1.3258 4.8381 2.0417 0.0 22.956 0.33675 1.3258 95.373 3.0 0.2 3.2394 3264.7\n"
 
 
 @pytest.fixture(params=SCENES)
 def script(request, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.sw").write_text(SW)
-    units = dict(SALT) if request.param != "many bodies" else dict(SALT, lattice=SALT["lattice"].replace("6.0", "3.0"), cells=6)
+    (tmp_path / "two.tersoff").write_text(TERSOFF)
+    dense = dict(SALT, lattice=SALT["lattice"].replace("6.0", "3.0"), cells=6)
+    units = dense if request.param.startswith("many bodies") else SALT
     (tmp_path / "in.x").write_text(ATOMS.format(**units, more=SCENES[request.param]) + "run 2\n")
     return request.param
 

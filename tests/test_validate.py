@@ -147,6 +147,15 @@ def test_a_script_that_needs_its_files_is_compared_up_to_there(folder):
 
 
 @needs_lammps
+def test_friction_and_noise(folder):
+    lines = [line for line in BASE.splitlines() if not line.startswith("pair_")]
+    (folder / "in.d").write_text("\n".join([*lines, "comm_modify vel yes", "pair_style dpd 1.0 1.5 4711", "pair_coeff 1 1 3.0 1.0"])
+                                 + "\nthermo 1\nrun 3\n")
+    report = validate("in.d")
+    assert report.ok and not report.forces and {r.step for r in report.rows} == {0, 1, 2, 3} and "friction" in str(report)
+
+
+@needs_lammps
 def test_atoms_with_a_mesh():
     salt = ase.build.bulk("NaCl", "rocksalt", a=5.64, cubic=True).repeat(2)
     salt.rattle(0.1, seed=3)

@@ -89,7 +89,8 @@ def of_script(path: str, switches=None) -> Case:
     session.rehearse(path)
     has_run = bool(session.cases or session.empty)
     script.raise_problems(session.blocking if has_run else session.problems)
-    session.scene.need_system("check")
+    if not has_run:
+        session.scene.need_system("check")
     cases = session.cases or [session.empty or session._case()]
     case = cases[0]
     case.source, case.where = path, ""

@@ -8,7 +8,7 @@ from ase.geometry import minkowski_reduce
 
 from asemd.atoms import Atoms
 from asemd.box import Box
-from asemd.errors import InputError, SimulationError
+from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.interop.cells import Places, codes, folded, groups, recell
 from asemd.interop.sources import frames_of, remembered
 from asemd.interop.symmetric import Reduced
@@ -18,6 +18,7 @@ from asemd.topology import cells_apart
 BY = ("type", "initial_charges", "masses", "radius", "groups")      # arrays in which equivalent atoms agree
 DIRECTED = {"mu": "point dipoles", "shape": "ellipsoids"}
 DIGITS = 9
+MANY = 3000       # atoms; so many in no order take about 10 s
 
 
 class Symmetry(Reduced):
@@ -68,6 +69,9 @@ class Symmetry(Reduced):
         for name, what in DIRECTED.items():
             if name in atoms.arrays and np.any(atoms.arrays[name]):
                 raise InputError(f"Symmetry: {what} have directions of their own, of which spglib knows nothing")
+        if len(atoms) > MANY:
+            warnings.warn(f"Symmetry: spglib's time grows with the square of the number of atoms that are in no order, to minutes for "
+                          f"{len(atoms)}", InputWarning, stacklevel=2)
         self.atoms, self.tolerance = atoms, tolerance
         self._s = (atoms.positions - np.ravel(atoms.get_celldisp())) @ np.linalg.inv(atoms.cell.array)
         self._places = Places(self._s, atoms.cell.array)

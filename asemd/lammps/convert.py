@@ -180,7 +180,7 @@ def _written(path: Path, lines: list[str]) -> Path:
 
 def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
     """Write atoms with energy and forces in a format of ASE, by the ending of the file's name; the force field stays behind,
-    bonds too in formats that do not keep ``atoms.info``.
+    bonds too in formats that do not keep ``atoms.info``. Forces with friction and noise, which take a run, are left out.
 
     Raises
     ------
@@ -195,7 +195,10 @@ def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputWarning)       # what is not part of the calculator does not go into the file anyway
         atoms = scene.to_atoms()
-    atoms.get_forces()
+    if any(use.style.stirred for use in scene.interactions.uses["pair"]):
+        atoms.calc = None
+    else:
+        atoms.get_forces()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         ase.io.write(path, atoms)

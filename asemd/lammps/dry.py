@@ -6,7 +6,7 @@ import re
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
-from asemd.errors import AsemdError, InputError, NotYet, Where
+from asemd.errors import AsemdError, InputError, NotYet, Undefined, Where
 from asemd.lammps import script
 from asemd.lammps.driver import Driver, check
 from asemd.lammps.names import COMMANDS
@@ -47,7 +47,7 @@ class DrySession(Session):
         self.notes: list[str] = []
         self.log.warn = lambda message: self.notes.append(message) if message not in self.notes else None
         self._doubtful: set[tuple[str, str]] = set()      # kind and name whose definitions failed, or could not be evaluated
-        self._no_box = False
+        self._no_box = self._ran = False
         self._failed: set[str] = set()          # names of commands that failed, or could not be followed
         self._written: list[str] = []           # names of files that the script would have made, with * for any text
         self._jumps: dict[Where, int] = {}
@@ -93,7 +93,8 @@ class DrySession(Session):
         except NotYet:
             self._doubt(command)
         except InputError as e:
-            self._add(e)
+            if not (self._ran and isinstance(e, Undefined)):      # runs that were passed over would have made other numbers
+                self._add(e)
             self._doubt(command)
         except AsemdError as e:
             self._add(InputError(str(e)))
@@ -128,11 +129,12 @@ class DrySession(Session):
         for word in driver.words:
             try:
                 self._bind(word)
-            except NotYet:
+            except (NotYet, Undefined):
                 continue        # known once the run has begun
             except InputError as e:
                 self._add(InputError(f"thermo_style: column {word}: {e.message}", self._position))
         self.scene.step += driver.plan.steps
+        self._ran = True
 
     def _bind(self, word: str) -> None:
         """Look whether what a thermo column refers to is there."""

@@ -61,6 +61,8 @@ def overlaps(case: Case) -> list[Finding]:
 def first_step(case: Case) -> list[Finding]:
     """How far the first forces move an atom in one step: the sum of everything, bonded forces too."""
     name = "first step"
+    if case.result is None and any(use.style.stirred for use in case.interactions.uses["pair"]):
+        raise DoesNotApply("forces of friction and noise are those of a run")
     if case.result is None:
         severity = "note" if case.relaxes else "error"
         return [Finding(severity, name, f"There are no forces: {case.failure}.", advice="nothing can run before this is mended")]
