@@ -7,6 +7,7 @@ import pytest
 from test_conformance import folder
 
 from asemd import cli
+from asemd.testing import oracle
 
 EXAMPLES = folder() / "files" / "examples" if folder() else None
 SCRIPTS = sorted(str(p.relative_to(EXAMPLES)) for p in EXAMPLES.rglob("in.*")) if EXAMPLES and EXAMPLES.is_dir() else []
@@ -22,7 +23,7 @@ def script(request, tmp_path, monkeypatch):
 
 @pytest.mark.skipif(not SCRIPTS, reason="ASEMD_CONFORMANCE names no folder with examples")
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("command", ["run --dry", "plan", "cite", "convert --to data", "convert --to ase"])
+@pytest.mark.parametrize("command", ["run --dry", "plan", "cite", "convert --to data"])
 @pytest.mark.parametrize("script", SCRIPTS, indirect=True)
 def test_it_is_read(script, command, capsys):
     name, *options = command.split()
@@ -32,6 +33,20 @@ def test_it_is_read(script, command, capsys):
 @pytest.mark.slow
 @pytest.mark.skipif(not SCRIPTS, reason="ASEMD_CONFORMANCE names no folder with examples")
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("command", ["check", "convert --to ase"])
 @pytest.mark.parametrize("script", SCRIPTS, indirect=True)
-def test_it_passes_the_check(script, capsys):
-    assert cli.main(["check", script]) == 0, capsys.readouterr().out
+def test_it_is_computed(script, command, capsys):
+    name, *options = command.split()
+    assert cli.main([name, script, *options]) == 0, capsys.readouterr()
+
+
+# finite differences, whose last digits the two programs do not share
+NOISE = {"numdiff/in.numdiff"}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not SCRIPTS or not oracle.lammps_available(), reason="needs LAMMPS, and ASEMD_CONFORMANCE a folder with examples")
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("script", [s for s in SCRIPTS if s not in NOISE], indirect=True)
+def test_it_agrees_with_lammps(script, capsys):
+    assert cli.main(["validate", script, "--steps", "5", "--compat", "lammps"]) == 0, capsys.readouterr().out
