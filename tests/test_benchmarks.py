@@ -79,6 +79,11 @@ def test_tables_of_pages(compare, monkeypatch, tmp_path):
     assert text.startswith("before\n") and text.endswith("end -->\nafter\n") and "old" not in text
     assert "| 500,000 | 60.0 | 1.67e+07 | 1000 |" in text and "1.20 times the cheapest" in text
     assert '"memory"' in (tmp_path / "json").read_text()
+    monkeypatch.setattr(compare, "machine", lambda: {"cpu": "another", "vectors": "longer"})
+    page.keep({"sizes": {"1000": one}})
+    readme, both = (tmp_path / "README").read_text(), (tmp_path / "SPEED").read_text()
+    assert readme.count("Machine:") == 1 and "cpu another" in readme         # the one that was measured last
+    assert both.count("Machine:") == 2 and both.index("cpu another") < both.index("| 500,000")
 
 
 def test_peptide_scene(compare, tmp_path):

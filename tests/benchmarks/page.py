@@ -15,16 +15,18 @@ def keep(new: dict) -> None:
     write the pages."""
     machine = compare.machine()
     found = json.loads(FILE.read_text()) if FILE.exists() else {}
-    here = found.setdefault(f"{machine['cpu']}, {machine['vectors']}", {})
+    name = f"{machine['cpu']}, {machine['vectors']}"
+    here = found.pop(name, {})
     for part, values in new.items():
         here[part] = {**here.get(part, {}), **values} if part != "sizes" else values
     here["machine"] = machine
+    found = {name: here, **found}
     FILE.write_text(json.dumps(found, indent=1) + "\n")
     write(found)
 
 
 def write(found: dict) -> None:
-    """Put the tables between their marks: of all machines, one after the other; the README has those of the first."""
+    """Put the tables between their marks: of all machines, the last one that was measured first; the README has its tables only."""
     first = next(iter(found))
     for path, machines in ((README, {first: found[first]}), (SPEED, found)):
         text = path.read_text()
