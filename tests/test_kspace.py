@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from ase import Atoms
-from solvers import CHARGES, LJ, NVE, SCENE, TILT, compare, lammps_of, refused
+from solvers import CHARGES, LJ, NEUTRAL, NVE, SCENE, TILT, compare, lammps_of, refused
 from solvers import case as scene
 from wheel import ran
 
@@ -34,6 +34,8 @@ CASES = {
     "pppm triclinic": case(["kspace_style pppm 1e-4"], box=TILT),
     "pppm slab": case(["kspace_style pppm 1e-4", "kspace_modify slab 3.0"], boundary="p p f",
                       fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),
+    "pppm slab, a coarse mesh": case(["kspace_style pppm 1e-4", "kspace_modify slab 3.0 mesh 6 6 6 gewald 0.5"], boundary="p p f",
+                                     fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),
     "pppm shares": case(["kspace_style pppm 1e-4"], *SHARES, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
     "pppm npt": case(["kspace_style pppm 1e-4"], fixes=["fix 1 all npt temp 300 300 50 iso 0 0 100"]),
     "pppm npt triclinic": case(["kspace_style pppm 1e-4"], fixes=["fix 1 all npt temp 300 300 50 tri 0 0 100"], box=TILT),
@@ -54,17 +56,34 @@ CASES = {
         "pair_style hybrid/overlay lj/cut 5.0 coul/long 5.5", "pair_modify table 0", "pair_coeff * * coul/long",
         "pair_coeff 1 1 lj/cut 0.1 2.6", "pair_coeff 2 2 lj/cut 0.05 2.2", "pair_coeff 3 3 lj/cut 0.15 2.8"]),
 }
+WIRE = dict(boundary="f f p", fixes=[*NVE, "fix w all wall/reflect xlo EDGE xhi EDGE ylo EDGE yhi EDGE"])
+WIRES = {
+    "pppm wire": case([*NEUTRAL, "kspace_style pppm 1e-4", "kspace_modify wire 3.0"], **WIRE),
+    "ewald wire": case([*NEUTRAL, "kspace_style ewald 1e-4", "kspace_modify wire 2.5"], **WIRE),
+}
 
 
 @pytest.fixture(scope="module")
 def lammps(tmp_path_factory):
-    return lammps_of(CASES, tmp_path_factory.mktemp("kspace"))
+    """LAMMPS takes wires only in its solvers for electrodes, which are the same where there are none."""
+    folder = tmp_path_factory.mktemp("kspace")
+    wires = {name: given | {"commands": [c.replace("pppm 1", "pppm/electrode 1").replace("ewald 1", "ewald/electrode 1")
+                                         for c in given["commands"]]} for name, given in WIRES.items()}
+    found = lammps_of(CASES | wires, folder)
+    for name, given in wires.items():
+        WIRES[name]["data"] = given["data"]
+    return found
 
 
 @pytest.mark.part(5)
 @pytest.mark.parametrize("name", CASES)
 def test_against_lammps(name, lammps):
     compare(name, CASES[name], lammps[name])
+
+
+@pytest.mark.parametrize("name", WIRES)
+def test_wires_against_lammps(name, lammps):
+    compare(name, WIRES[name], lammps[name])
 
 
 # ------------------------------------------------------------------------------------------------------------ without LAMMPS
@@ -122,6 +141,31 @@ def test_solvers_agree_with_each_other():
         assert error < 332.06371 * accuracy, s
 
 
+@pytest.mark.parametrize("solver", ["pppm 1e-6", "ewald 1e-6"])
+def test_wires(solver):
+    """Hardly any trace of the empty space around a wire, which images still reach by their quadrupoles; shares of atoms add up; forces are the slope of the energy."""
+    def of(across: str):
+        lmp = ran([line.replace("prism 0 24 0 22 0 26 {tilt}", "block 0 10 0 10 0 20").replace("random 400", "random 40")
+                   .format(solver=solver) for line in SCRIPT.splitlines()] + [f"kspace_modify wire {across}", "change_box all boundary f f p"])
+        scene = lmp.session.scene
+        return Engine(scene.system, scene.interactions, Settings(skin=1.0))
+    near, far = of("5.0"), of("8.0")
+    a = near.compute(energies=True, virials=True)
+    b = far.compute()
+    size, dipole = np.abs(a.forces).max(), near.system.q @ near.system.x
+    taken_off = math.pi * 332.06371 * dipole[:2] @ dipole[:2] / (25 * 10 * 10 * 20)
+    assert taken_off > 0.5 and abs(a.energy["elong"] + a.energy["ecoul"] - b.energy["elong"] - b.energy["ecoul"]) < 0.1 * taken_off
+    assert np.abs(a.forces - b.forces).max() < 1e-3 * size
+    assert a.energies_of["kspace"].sum() == pytest.approx(a.energy["elong"], rel=1e-11)
+    total, h, x, force = {}, 1e-3, near.system.x.copy(), a.forces[5, 1]
+    for sign in (1, -1):
+        moved = x.copy()
+        moved[5, 1] += sign * h
+        near.move(moved)
+        total[sign] = sum(near.collect().energy.values())
+    assert -(total[1] - total[-1]) / (2 * h) == pytest.approx(force, abs=20 * near.solver.accuracy)
+
+
 def rocksalt(solver: str, repeat: int = 2):
     a = 5.64
     basis = [(0, 0, 0), (0.5, 0.5, 0), (0.5, 0, 0.5), (0, 0.5, 0.5), (0.5, 0, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0.5, 0.5)]
@@ -176,7 +220,10 @@ def test_choices_without_a_scene():
     (["kspace_style pppm"], "needs one number"), (["kspace_style pppm 0"], "must not be 0"), (["kspace_style pppm many"], "accuracy"),
     (["kspace_style pppm 1e-4", "kspace_modify order 8", "run 0"], "order must be 2 to 7"),
     (["kspace_style pppm 1e-4", "kspace_modify order 4 minorder 5", "run 0"], "less than kspace_modify minorder 5"),
-    (["kspace_style pppm 1e-4", "kspace_modify wire 3.0", "run 0"], "does not take kspace_modify wire"),
+    (["kspace_style pppm 1e-4", "kspace_modify wire 3.0", "run 0"], "boundary f f p"),
+    (["change_box all boundary f f p", "kspace_style pppm 1e-4", "kspace_modify wire 3.0", "run 0"], "must add up to 0.* 2 "),
+    (["change_box all boundary f f p", "kspace_style pppm 1e-4", "kspace_modify wire 3.0 slab 3.0", "run 0"], "slab or wire, not both"),
+    (["kspace_style ewald/disp 1e-4", "kspace_modify wire 3.0", "run 0"], "does not take kspace_modify wire; ewald and pppm do"),
     (["kspace_style ewald 1e-4", "kspace_modify slab ew2d", "run 0"], "does not take kspace_modify slab ew2d"),
     (["kspace_style pppm 1e-4", "kspace_modify scafacos tolerance energy", "run 0"], "unknown kspace_modify keyword 'scafacos'"),
     (["kspace_style scafacos fmm 1e-4"], "unknown kspace style"),

@@ -63,6 +63,8 @@ def test_against_lammps(name, lammps):
     (["kspace_style none", "pair_style coul/cut 6.0", "pair_coeff * *", "compute g all group/group all kspace yes",
       "thermo_style custom c_g", "run 0"], "needs a kspace_style"),
     (["kspace_modify diff ad", "compute g all group/group all kspace yes", "thermo_style custom c_g", "run 0"], "diff ad"),
+    (["change_box all boundary f f p", "set atom 2 charge -1", "kspace_modify wire 3.0", "compute g all group/group all kspace yes",
+      "thermo_style custom c_g", "run 0"], "group/group.*wire"),
     (["compute t all ti kspace * v_f v_f", "kspace_style none", "pair_style coul/cut 6.0", "pair_coeff * *", "thermo_style custom c_t",
       "run 0"], "needs a kspace_style"),
     (["fix 1 all adapt 1 kspace v_f", "kspace_style none", "pair_style coul/cut 6.0", "pair_coeff * *", "run 0"], "needs a kspace_style"),

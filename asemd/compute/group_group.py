@@ -95,7 +95,7 @@ class GroupGroup(Compute):
             apart = of(first + second - 2.0 * common)[1][mine].sum(axis=0)
             force += whole[mine].sum(axis=0) - whole[theirs].sum(axis=0) - apart
             if not self.boundary:
-                g, scale, volume = term.constants[0], term.constants[1], state.system.box.volume * term.solver.stretch
+                g, scale, volume = term.constants[0], term.constants[1], state.system.box.volume * term.solver.stretch.prod()
                 energy += math.pi * scale * (first.sum() * second.sum() - 0.5 * common.sum() ** 2) / (g * g * volume)
         return energy, force
 
@@ -133,6 +133,8 @@ def _solver_terms(state) -> list:
         raise InputError("compute group/group kspace yes needs a kspace_style")
     if not solver.groups:
         raise InputError(f"compute group/group kspace yes does not work with kspace_style {solver.style}: use ewald or pppm")
+    if solver.wire:
+        raise InputError("compute group/group kspace yes does not work with kspace_modify wire, whose correction is for neutral groups")
     if solver.modify["diff"] == "ad" and solver.style != "ewald":
         raise InputError("compute group/group kspace yes does not work with kspace_modify diff ad: use diff ik")
     return [term for term in state.engine.terms if term.category == "kspace"]

@@ -226,20 +226,47 @@ def slab(meeting, tid, x, f, q, least, lo, hi, scale, qsum, height, volume, sums
             energy[i] += front * q[i] * (x[2, i] * dipole - 0.5 * (second + qsum * x[2, i] * x[2, i]) - qsum * height * height / 12.0)
 
 
+def wire(meeting, tid, x, f, q, least, lo, hi, scale, volume, sums, acc, energy):
+    """Take the interaction of the periodic images of a polar wire along z off (Brodka, Sliwinski, J. Chem. Phys. 120, 5518 (2004));
+    `sums (nth, 2)` is room for all threads."""
+    along_x, along_y = 0.0, 0.0
+    for i in range(lo, hi):
+        if abs(q[i]) <= least:
+            continue
+        along_x += q[i] * x[0, i]
+        along_y += q[i] * x[1, i]
+    sums[tid, 0], sums[tid, 1] = along_x, along_y
+    barrier(meeting)
+    along_x, along_y = 0.0, 0.0
+    for t in range(sums.shape[0]):
+        along_x += sums[t, 0]
+        along_y += sums[t, 1]
+    front = scale * math.pi / volume
+    if ENERGY and tid == 0:
+        acc[0] += front * (along_x * along_x + along_y * along_y)
+    for i in range(lo, hi):
+        if abs(q[i]) <= least:
+            continue
+        f[0, i] -= 2.0 * front * q[i] * along_x
+        f[1, i] -= 2.0 * front * q[i] * along_y
+        if PER_ATOM:
+            energy[i] += front * q[i] * (x[0, i] * along_x + x[1, i] * along_y)
+
+
 def is_same(vectors, stretch, held):
-    """Whether `held` is that box, its third vector times `stretch`."""
+    """Whether `held` is that box as `stretched` makes it."""
     for a in range(3):
         for d in range(3):
-            if held[a, d] != vectors[a, d] * (stretch if a == 2 else 1.0):
+            if held[a, d] != vectors[a, d] * (max(stretch, 1.0) if a == 2 else max(-stretch, 1.0)):
                 return False
     return True
 
 
 def stretched(vectors, stretch, out, inverse):
-    """The box with its third vector times `stretch`, and its inverse."""
+    """The box with its third vector times `stretch`, or if that is negative with the others times minus that; and its inverse."""
     for a in range(3):
         for d in range(3):
-            out[a, d] = vectors[a, d] * (stretch if a == 2 else 1.0)
+            out[a, d] = vectors[a, d] * (max(stretch, 1.0) if a == 2 else max(-stretch, 1.0))
     inverse[:] = np.linalg.inv(out)
 
 
@@ -259,10 +286,10 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_wav
           energy, virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
-    `constants`: g_ewald, energy scale, sum of charges, sum of their squares, stretch of the third vector, 1 for a slab's correction or 2
-    for no force along z, the charge up to which atoms are passed over, then of the choice of waves: charges squared as energy times length,
-    atoms, accuracy; `held (4, 3)`: the box that the waves are for, its volume, how many waves there are, and whether there is no room for
-    more.
+    `constants`: g_ewald, energy scale, sum of charges, sum of their squares, what `stretched` takes, 1 for a slab's correction, 2 for no
+    force along z or 3 for a wire's correction, the charge up to which atoms are passed over, then of the choice of waves: charges squared
+    as energy times length, atoms, accuracy; `held (4, 3)`: the box that the waves are for, its volume, how many waves there are, and
+    whether there is no room for more.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     if tid == 0 and not is_same(box, stretch, held):
@@ -291,6 +318,8 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_wav
     if slabs == 1.0:
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
         slab(meeting, tid, x, f, q, constants[6], lo, hi, scale, qsum, height, volume, sums, acc, energy)
+    elif slabs == 3.0:
+        wire(meeting, tid, x, f, q, constants[6], lo, hi, scale, volume, sums, acc, energy)
     barrier(meeting)
 
 
@@ -311,7 +340,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
-    for f in (error, edges, choose, weigh, phases, first_two, structure, fields, shares, is_same, slab):
+    for f in (error, edges, choose, weigh, phases, first_two, structure, fields, shares, is_same, slab, wire):
         b.function(f, fast=True)
     b.function(stretched)
     b.function(renew)

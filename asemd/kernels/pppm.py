@@ -16,7 +16,7 @@ import numpy as np
 
 from asemd.kernels import pppm_ad, pppm_stagger
 from asemd.kernels.callback import call_back
-from asemd.kernels.ewald import is_same, slab, stretched
+from asemd.kernels.ewald import is_same, slab, stretched, wire
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import FOUR_PI, denominator, folded, influence, make_green, opposite, sinc_power
 from asemd.kernels.stencil import WIDE, collect, deposit
@@ -300,6 +300,9 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
         barrier(meeting)
         slab(meeting, tid, x, f, q, least, lo, hi, scale, qsum, height, volume, sums, acc, energy)
+    elif slabs == 3.0:
+        barrier(meeting)
+        wire(meeting, tid, x, f, q, least, lo, hi, scale, volume, sums, acc, energy)
     barrier(meeting)
 
 
@@ -319,7 +322,7 @@ def kernel(level: int, order: int, ad: bool, staggered: bool = False):
     b.function(find_rows, fast=True, inline=True)
     b.function(pppm_stagger.denominator if staggered else denominator, fast=True)
     for f in (sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
-              multiply_shares, interleave, gather, gather_shares, is_same, slab, *(pppm_ad.FUNCTIONS if ad else ())):
+              multiply_shares, interleave, gather, gather_shares, is_same, slab, wire, *(pppm_ad.FUNCTIONS if ad else ())):
         b.function(f, fast=True)
     b.function(stretched)
     b.function(pppm)

@@ -40,13 +40,14 @@ class KSpace(ABC):
         Splitting parameter, 1/distance, after `prepare`.
     n, qsum, qsqsum, q2, prd, volume
         After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths and volume of the
-        box, its third vector stretched for slabs.
+        box, its third vector stretched for slabs, the others for wires.
     """
 
     style = ""
     flag = ""                   # what a pair style must have in `solvers` to work with this one
     partner = "lj/cut/coul/long"
     takes_slab = True
+    takes_wire = False
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
@@ -92,9 +93,20 @@ class KSpace(ABC):
             raise InputError(f"{name} needs three dimensions, this scene has two")
         if system.q is None and self.coulomb:
             raise InputError(f"{name} needs atom attribute q: use atom_style charge or full")
-        if self.slab == "ew2d" or "wire" in self.given:
-            what = "slab ew2d" if self.slab == "ew2d" else "wire"
-            raise InputError(f"{name} does not take kspace_modify {what}, which is for solvers of electrodes; for slabs use slab 3.0")
+        if self.slab == "ew2d":
+            raise InputError(f"{name} does not take kspace_modify slab ew2d, which is for solvers of electrodes; for slabs use slab 3.0")
+        if self.wire:
+            if not self.takes_wire:
+                raise InputError(f"{name} does not take kspace_modify wire; ewald and pppm do")
+            if self.slab is not None:
+                raise InputError(f"{name} takes kspace_modify slab or wire, not both")
+            if not periodic[2] or any(tuple(b) != ("f", "f") for b in system.box.boundary[:2]):
+                raise InputError(f"{name} with kspace_modify wire needs boundary f f p, here it is {' '.join(system.box.boundary)}")
+            if self._tilted(system):
+                raise InputError(f"{name}: kspace_modify wire needs a box that is not triclinic")
+            if abs(system.q.sum()) > 1e-5:
+                raise InputError(f"{name}: with kspace_modify wire charges must add up to 0, here they add up to {system.q.sum():g}")
+            return
         if self.slab is not None:
             if not self.takes_slab:
                 raise InputError(f"{name} does not take kspace_modify slab")
@@ -104,7 +116,8 @@ class KSpace(ABC):
                 raise InputError(f"{name}: kspace_modify slab needs a box that is not triclinic")
         elif not periodic.all():
             raise InputError(f"{name} needs a box that is periodic in all directions, here is boundary {' '.join(system.box.boundary)}; "
-                             "for slabs use boundary p p f and kspace_modify slab 3.0, or msm for any boundary")
+                             "for slabs use boundary p p f and kspace_modify slab 3.0, for wires boundary f f p and kspace_modify wire "
+                             "3.0, or msm for any boundary")
 
     @staticmethod
     def _tilted(system) -> bool:
@@ -117,9 +130,15 @@ class KSpace(ABC):
         return value if "slab" in self.given and value != 1.0 else None
 
     @property
-    def stretch(self) -> float:
-        """By what the third vector is longer for the solver."""
-        return float(self.slab) if isinstance(self.slab, float) else 1.0
+    def wire(self) -> bool:
+        """Whether the box is periodic along a wire only."""
+        return "wire" in self.given
+
+    @property
+    def stretch(self) -> np.ndarray:
+        """By what each vector is longer for the solver (3,)."""
+        across = self.modify["wire"]
+        return np.array([across, across, self.slab if isinstance(self.slab, float) else 1.0])
 
     def prepare(self, system, interactions, units, cutoff: float) -> None:
         """Take charges and box, choose parameters.
@@ -139,8 +158,8 @@ class KSpace(ABC):
         a, b, c = system.box.cell
         lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
         lengths[2] = abs(np.linalg.det(system.box.cell)) / (lengths[0] * lengths[1])
-        self.inner = lengths.copy()                   # without the slab's empty volume
-        self.prd = lengths * [1.0, 1.0, self.stretch]
+        self.inner = lengths.copy()                   # without the empty volume of slabs and wires
+        self.prd = lengths * self.stretch
         self.volume = float(self.prd.prod())
         two_charges = interactions.coulomb_constant(units) * units.qelectron**2 / units.angstrom**2
         self.two_charges = two_charges

@@ -13,7 +13,7 @@ from asemd.kspace.term import KSpaceTerm
 class Dielectric(KSpace):
     """Stands before the solver of a homogeneous medium among the bases of a class."""
 
-    groups = False
+    groups = takes_wire = False
     partner = "lj/cut/coul/long/dielectric"
 
     def check(self, system):

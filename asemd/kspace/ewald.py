@@ -21,13 +21,13 @@ class Ewald(KSpace):
     """``kspace_style ewald accuracy``."""
 
     style = flag = "ewald"
-    groups = True
+    groups = takes_wire = True
 
     chooser = staticmethod(ewald.chooser)
 
     def choose(self, system):
         self.kmax = np.array(self.modify["kmax/ewald"], np.int64)
-        vectors, self.most = system.box.cell * np.array([1.0, 1.0, self.stretch])[:, None], np.zeros((2, 3), np.int64)
+        vectors, self.most = system.box.cell * self.stretch[:, None], np.zeros((2, 3), np.int64)
         arguments = vectors, self.kmax, self.g_ewald, self.strength, float(self.n), self.accuracy
         self.waves = self.chooser()(*arguments, np.zeros((0, 3), np.int64), self.most)
 

@@ -23,7 +23,7 @@ class EwaldDipole(Ewald):
     """``kspace_style ewald/dipole accuracy``."""
 
     style = flag = "ewald/dipole"
-    groups = False
+    groups = takes_wire = False
 
     def check(self, system):
         super().check(system)

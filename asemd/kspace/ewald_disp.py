@@ -26,7 +26,7 @@ class EwaldDisp(Ewald):
     """``kspace_style ewald/disp accuracy``."""
 
     style = flag = "ewald/disp"
-    groups = False
+    groups = takes_wire = False
     partner = "lj/long/coul/long"
     dispersion = None
     dipoles = False             # the pair style leaves it dipoles
@@ -86,7 +86,7 @@ class EwaldDisp(Ewald):
             raise InputError(f"kspace_style {self.style}: an accuracy of forces of {self.accuracy:g} is too low, it must be below 1")
         if self.modify["gewald/disp"] not in (0.0, self.g_ewald):
             raise InputError(f"kspace_style {self.style} has one splitting parameter: use kspace_modify gewald, not gewald/disp")
-        vectors = system.box.cell * np.array([1.0, 1.0, self.stretch])[:, None]
+        vectors = system.box.cell * self.stretch[:, None]
         self.choice = np.array([self.q2, self.b2, self.m2, self.n, self.accuracy])
         self.waves, self.top = ewald_disp.chooser()(vectors, self.g_ewald, *self.choice, np.zeros((0, 3), np.int64))
 

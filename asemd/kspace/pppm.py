@@ -58,7 +58,7 @@ class PPPM(KSpace):
     """``kspace_style pppm accuracy``."""
 
     style = flag = "pppm"
-    groups = True
+    groups = takes_wire = True
 
     def choose(self, system):
         self.order = self.modify["order"] or 5
@@ -82,7 +82,7 @@ class PPPM(KSpace):
             self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
         if not self.modify["gewald"]:
             self.balance()
-        self.upright = upright
+        self.upright = upright * self.stretch[:, None]
 
     def fine_enough(self) -> list[int]:
         """Mesh points along each edge so that the error of that direction is below the accuracy; one more than that, as in LAMMPS."""

@@ -22,7 +22,7 @@ class PPPMDisp(PPPM):
     """``kspace_style pppm/disp accuracy``."""
 
     style = flag = "pppm/disp"
-    groups = False
+    groups = takes_wire = False
     partner = "lj/long/coul/long long long"
     g6 = 0.0
 

@@ -24,9 +24,10 @@ class KSpaceTerm(Term):
 
     def __init__(self, solver):
         self.solver, self.ready = solver, False
-        slab = 0.0 if solver.slab is None else 2.0 if solver.slab == "nozforce" else 1.0
-        self.constants = np.array([solver.g_ewald, solver.scale * solver.factor, solver.qsum, solver.qsqsum, solver.stretch, slab,
-                                   solver.least])
+        correction = 3.0 if solver.wire else 0.0 if solver.slab is None else 2.0 if solver.slab == "nozforce" else 1.0
+        a, _, c = solver.stretch
+        self.constants = np.array([solver.g_ewald, solver.scale * solver.factor, solver.qsum, solver.qsqsum, -a if solver.wire else c,
+                                   correction, solver.least])
 
     def kernel(self, energy, per_atom):
         return self.make_kernel(2 if per_atom else 1 if energy else 0)

@@ -23,7 +23,7 @@ PARTIAL = {
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
-    ("command", "kspace_modify"): "no slab ew2d and wire, which are for solvers of electrodes; overlap no never lowers the order",
+    ("command", "kspace_modify"): "no slab ew2d, which is for solvers of electrodes; overlap no never lowers the order",
     ("command", "kspace_style"): "the styles listed under kspace",
     **dict.fromkeys([("kspace", "msm"), ("kspace", "msm/cg")], "pressure/scalar yes: the pressure is that of the virial all the same"),
     **dict.fromkeys([("pair", f"lj/long/{e}") for e in ("coul/long", "coul/long/dielectric", "dipole/long")], "no dispersion off"),
