@@ -143,10 +143,11 @@ def test_solvers_agree_with_each_other():
 
 @pytest.mark.parametrize("solver", ["pppm 1e-6", "ewald 1e-6"])
 def test_wires(solver):
-    """Hardly any trace of the empty space around a wire, which images still reach by their quadrupoles; shares of atoms add up; forces are the slope of the energy."""
+    """Hardly any trace of the empty space around a wire, across which only quadrupoles reach; shares of atoms add up; forces are the slope
+    of the energy."""
     def of(across: str):
-        lmp = ran([line.replace("prism 0 24 0 22 0 26 {tilt}", "block 0 10 0 10 0 20").replace("random 400", "random 40")
-                   .format(solver=solver) for line in SCRIPT.splitlines()] + [f"kspace_modify wire {across}", "change_box all boundary f f p"])
+        script = SCRIPT.replace("prism 0 24 0 22 0 26 {tilt}", "block 0 10 0 10 0 20").replace("random 400", "random 40")
+        lmp = ran(script.format(solver=solver) + f"kspace_modify wire {across}\nchange_box all boundary f f p")
         scene = lmp.session.scene
         return Engine(scene.system, scene.interactions, Settings(skin=1.0))
     near, far = of("5.0"), of("8.0")
