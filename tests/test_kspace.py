@@ -48,6 +48,7 @@ CASES = {
     "pppm/stagger ad": case(["kspace_style pppm/stagger 1e-4", "kspace_modify gewald 0.4 mesh 8 9 10 diff ad order 4"]),
     "ewald": case(["kspace_style ewald 1e-4"]),
     "ewald triclinic, shares": case(["kspace_style ewald 1e-5"], *SHARES, box=TILT, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
+    "ewald triclinic, kmax": case(["kspace_style ewald 1e-5", "kspace_modify kmax/ewald 7 4 3"], box=TILT),
     "ewald kmax": case(["kspace_style ewald 1e-5", "kspace_modify kmax/ewald 4 5 6"]),
     "ewald slab": case(["kspace_style ewald 1e-4", "kspace_modify slab 2.5"], boundary="p p f",
                        fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),

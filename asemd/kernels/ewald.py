@@ -66,7 +66,8 @@ def choose(vectors, given, g, q2, natoms, accuracy, numbers, most):
                 if axis == 3 or (n0 == 0 and (n1 < 0 or (n1 == 0 and n2 < 0))):
                     continue
                 within = n0 <= most[0, 0] and abs(n1) <= most[0, 1] and abs(n2) <= most[0, 2]
-                if not within and (axis < 2 or (tilted and n2 == 0)):      # waves along an edge have the largest of the three limits
+                # waves along an edge have the largest of the three limits; those of tilted boxes LAMMPS counts only, see `Ewald.lines`
+                if not within and (axis < 2 or tilted):
                     continue
                 k0 = turn[0, 0] * n0 + turn[0, 1] * n1 + turn[0, 2] * n2
                 k1 = turn[1, 0] * n0 + turn[1, 1] * n1 + turn[1, 2] * n2

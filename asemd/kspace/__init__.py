@@ -48,6 +48,7 @@ class KSpace(ABC):
     partner = "lj/cut/coul/long"
     takes_slab = True
     takes_wire = False
+    nozforce = 2.0              # what kernels are told of ``slab nozforce``: no force along z
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction

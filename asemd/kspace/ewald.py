@@ -27,6 +27,7 @@ class Ewald(KSpace):
 
     def choose(self, system):
         self.kmax = np.array(self.modify["kmax/ewald"], np.int64)
+        self.tilted = self._tilted(system)
         vectors, self.most = system.box.cell * self.stretch[:, None], np.zeros((2, 3), np.int64)
         arguments = vectors, self.kmax, self.g_ewald, self.strength, float(self.n), self.accuracy
         self.waves = self.chooser()(*arguments, np.zeros((0, 3), np.int64), self.most)
@@ -43,12 +44,15 @@ class Ewald(KSpace):
     def lines(self):
         lpr = math.sqrt(sum(ewald.error(m, length, self.g_ewald, self.q2, self.n) ** 2 for m, length in zip(self.most[1], self.prd)) / 3.0)
         total = math.hypot(lpr, self.real_error)
-        most = int(self.most[0].max())
+        most, idle = int(self.most[0].max()), 0
+        if self.tilted:     # waves along z that LAMMPS counts and has no phases for
+            reach = 1.00001 * max((self.most[1] / self.prd) ** 2)
+            idle = sum((n / self.prd[2]) ** 2 <= reach for n in range(self.most[0, 2] + 1, most + 1))
         return ["Ewald initialization ...", "  using polynomial approximation for long-range coulomb",
                 f"  G vector (1/distance) = {self.g_ewald:.8g}",
                 f"  estimated absolute RMS force accuracy = {total:.8g}",
                 f"  estimated relative force accuracy = {total / self.two_charges:.8g}",
-                f"  KSpace vectors: actual max1d max3d = {self.waves} {most} {4 * most**3 + 6 * most**2 + 3 * most}",
+                f"  KSpace vectors: actual max1d max3d = {self.waves + idle} {most} {4 * most**3 + 6 * most**2 + 3 * most}",
                 f"                  kxmax kymax kzmax  = {' '.join(map(str, self.most[0]))}"]
 
     def terms(self, engine):

@@ -6,7 +6,8 @@ $$ E_6 = -\frac{\pi^{3/2}}{24 V} \sum_{k \neq 0} k^3 \Big[ \sqrt{\pi} \, \mathrm
 
 with C_6 of two types as a sum of products: of its roots for geometric mixing, of the eigenvectors of the matrix of all C_6 for arithmetic
 mixing. Both sums have the same splitting parameter and waves, as many as LAMMPS takes for the box as it is. The pressure of
-charges that do not add up to 0 has the sign that it has in LAMMPS.  In 't Veld, Ismail, Grest, J. Chem. Phys. 127, 144711 (2007).
+charges that do not add up to 0 has the sign that it has in LAMMPS; as there, ``slab nozforce`` is the correction of a slab without empty
+space, and forces along z stay. In 't Veld, Ismail, Grest, J. Chem. Phys. 127, 144711 (2007).
 """
 from __future__ import annotations
 
@@ -27,6 +28,7 @@ class EwaldDisp(Ewald):
 
     style = flag = "ewald/disp"
     groups = takes_wire = False
+    nozforce = 1.0              # as in LAMMPS the correction of a slab without empty space, and forces along z
     partner = "lj/long/coul/long"
     dispersion = None
     dipoles = False             # the pair style leaves it dipoles
