@@ -22,6 +22,7 @@ from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.forcefield import Interactions
+from asemd.kspace import hold
 from asemd.loads import Field, Load, Maps, Potential, constraints_of, loads_of, together
 from asemd.native import coefficients, with_keys
 from asemd.result import with_masks
@@ -213,6 +214,8 @@ class ForceField(Calculator):
             system.labels["atom"] = {number: symbol for symbol, number in self.type_of.items()}
         if self.interactions is None:
             self.interactions = Interactions.build(**self.arguments, labels=system.labels)
+        if self.interactions.kspace != "none" and {"slab", "wire"} & set(self.interactions.kspace_modify):
+            hold(system, atoms.cell)
         for use in self.interactions.uses["pair"]:
             if use.style.charged and system.q is None:
                 raise InputError(f"pair style {use.style.name} needs charges: atoms.set_initial_charges(...)")

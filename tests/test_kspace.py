@@ -8,7 +8,7 @@ import pytest
 from ase import Atoms
 from solvers import CHARGES, LJ, NEUTRAL, NVE, SCENE, TILT, compare, lammps_of, refused
 from solvers import case as scene
-from wheel import ran
+from wheel import ran, start
 
 from asemd import units
 from asemd.engine import Engine, Settings
@@ -204,6 +204,31 @@ def test_from_ase():
     again = atoms.copy()
     again.calc = ForceField(**{k: v for k, v in force_field.todict().items() if k in ("pair", "kspace", "kspace_modify", "skin")})
     assert again.get_potential_energy() == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("boundary, modify, across", [("p p f", "slab 3.0", (2,)), ("f f p", "wire 3.0", (0, 1))])
+def test_slabs_and_wires_from_ase(boundary, modify, across, tmp_path):
+    """Atoms that a script gives have the script's energy; a calculator made in Python too. What cannot be a slab or wire is refused."""
+    from asemd import ForceField, InputError, read
+    script = SCRIPT.replace("prism 0 24 0 22 0 26 {tilt}", "block 0 14 0 12 0 20").replace("random 400", "random 40")
+    (tmp_path / "in").write_text(script.format(solver="pppm 1e-5") + f"kspace_modify {modify}\nchange_box all boundary {boundary}\nrun 0\n")
+    atoms, lmp = read(tmp_path / "in"), start()
+    lmp.file(str(tmp_path / "in"))
+    kcal = units.factor("energy", "real")
+    assert atoms.get_potential_energy() / kcal == pytest.approx(lmp.get_thermo("pe"), rel=1e-12)
+    made = atoms.copy()
+    made.calc = ForceField(pair={"lj/cut/coul/long 6.0 7.0": {(1, 1): (0.05 * kcal, 1.5), (2, 2): (0.05 * kcal, 1.5)}},
+                           kspace="pppm 1e-5", kspace_modify=modify)
+    assert np.allclose(made.get_forces(), atoms.get_forces(), rtol=0, atol=1e-4)      # the mesh's: other constants
+    whole, flat, gone = made.copy(), made.copy(), made.copy()
+    whole.pbc = True
+    flat.cell[across[0]] = 0.0
+    gone.positions[3, across[0]] += 50.0
+    for wrong, message in ((whole, f"needs boundary {boundary} .*pbc ="), (flat, f"three cell vectors, {'abc'[across[0]]} is zero"),
+                           (gone, f"atom 4 is outside of it along {'abc'[across[0]]}")):
+        wrong.calc = made.calc.copy()
+        with pytest.raises(InputError, match=message):
+            wrong.get_potential_energy()
 
 
 def test_choices_without_a_scene():

@@ -16,11 +16,12 @@ from typing import Any
 import numpy as np
 
 from asemd import words as read
+from asemd.box import Box
 from asemd.errors import InputError
 from asemd.kspace_settings import DEFAULTS
 from asemd.registry import class_of
 
-__all__ = ["KSpace", "solve"]
+__all__ = ["KSpace", "hold", "solve"]
 EXAMPLES = ("pppm", "ewald", "pppm/disp", "ewald/disp", "msm")      # the first one that fits is named in messages
 
 
@@ -102,7 +103,8 @@ class KSpace(ABC):
             if self.slab is not None:
                 raise InputError(f"{name} takes kspace_modify slab or wire, not both")
             if not periodic[2] or any(tuple(b) != ("f", "f") for b in system.box.boundary[:2]):
-                raise InputError(f"{name} with kspace_modify wire needs boundary f f p, here it is {' '.join(system.box.boundary)}")
+                raise InputError(f"{name} with kspace_modify wire needs boundary f f p (of ase.Atoms pbc = 0 0 1), "
+                                 f"here it is {' '.join(system.box.boundary)}")
             if self._tilted(system):
                 raise InputError(f"{name}: kspace_modify wire needs a box that is not triclinic")
             if abs(system.q.sum()) > 1e-5:
@@ -112,7 +114,8 @@ class KSpace(ABC):
             if not self.takes_slab:
                 raise InputError(f"{name} does not take kspace_modify slab")
             if not periodic[:2].all() or tuple(system.box.boundary[2]) != ("f", "f"):
-                raise InputError(f"{name} with kspace_modify slab needs boundary p p f, here it is {' '.join(system.box.boundary)}")
+                raise InputError(f"{name} with kspace_modify slab needs boundary p p f (of ase.Atoms pbc = 1 1 0), "
+                                 f"here it is {' '.join(system.box.boundary)}")
             if self._tilted(system):
                 raise InputError(f"{name}: kspace_modify slab needs a box that is not triclinic")
         elif not periodic.all():
@@ -258,3 +261,29 @@ def solve(system, interactions, units) -> KSpace | None:
     solver.prepare(system, interactions, units, solver.take(mine, interactions, system))
     interactions.long_range = solver.constants
     return solver
+
+
+def hold(system, cell) -> None:
+    """The box of atoms from ASE becomes one for slabs or wires: faces that are not periodic stay where the cell has them.
+
+    Parameters
+    ----------
+    system : System
+    cell : (3, 3) array
+        As ASE has it: a vector that is zero has no face.
+
+    Raises
+    ------
+    InputError
+        A cell vector is zero, an atom is outside of the cell.
+    """
+    box, zero = system.box, ~np.any(cell, axis=1)
+    if zero.any():
+        raise InputError(f"kspace_modify slab and wire need three cell vectors, {'abc'[int(np.argmax(zero))]} is zero: give the cell the "
+                         "height of the slab, for example by atoms.center(vacuum=5, axis=2)")
+    system.box = box = Box(box.origin, box.cell, tuple("pp" if p else "ff" for p in box.periodic))
+    out = box.beyond(system.x)
+    if out.any():
+        k, axis = np.argwhere(out)[0]
+        raise InputError(f"kspace_modify slab and wire need all atoms inside of the cell: atom {system.id[k]} is outside of it along "
+                         f"{'abc'[axis]}; move the atoms, for example by atoms.center(axis={axis}), or make the cell larger")
