@@ -96,7 +96,7 @@ class PairTerm(FactorTerm):
         return self._with_factor(engine, tid, (
             s.x, f, s.q, s.type, first, entries, near.own, near.span, c.unshifted, c.shifts4, excluded_first, excluded, c.ranges[tid],
             self.p, self.rows, 1e3 * c.reach, engine.qqr2e, *room, *self._tables_of[tid], acc, hide,
-            engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], whole))
+            engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], c.ahead, whole))
 
     def _mine(self, tid: int, *arrays: np.ndarray) -> tuple[np.ndarray, ...]:
         """A thread's rows of arrays; the same views as long as the arrays are the same, for new ones take time to be packed."""

@@ -73,8 +73,8 @@ class EmbeddedTerm(FactorTerm):
             self.tables.constants, self.table, self.classes, self.class_of, self.cut, c.reach, self.functions,
             self.flat, self.function_of, self.share, self.rho, self.slope, self.b[tid], self.row, self.local[tid], self.sums[tid],
             self.kinds[tid], self.kept[tid], self.owners[tid], self.ends, self.work[tid], self.there[tid], self.back[tid], self.lanes[tid],
-            *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], tid, engine.meeting,
-            engine.bad[tid, self.index]))
+            *self.tables4[tid], acc, c.hide[tid], engine.settings.skin, engine.moved, engine.farthest[tid:tid + 1], c.ahead, tid,
+            engine.meeting, engine.bad[tid, self.index]))
 
     def describe(self, engine, item, value):
         atom = int(engine.system.id[engine.state.row[int(item)]])

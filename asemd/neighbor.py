@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import cluster, cluster_rows, gaps, pair_list, rebuild, relist
+from asemd.kernels import cluster, cluster_rows, columns, gaps, pair_list, rebuild, relist
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.state import Cell
@@ -23,16 +23,16 @@ EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
 
 
-PIECES = cluster.reached, cluster.drop, cluster.arrange, cluster.append, gaps.squeeze
-ABOUT_CELLS = cluster.sort, cluster.near_columns, *PIECES, cluster.build
+PIECES = columns.column, columns.stands, cluster.reached, cluster.drop, cluster.arrange, cluster.append, gaps.squeeze
+ABOUT_CELLS = *PIECES, cluster.sort, columns.near_columns, cluster.build
 
 
 def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
     """With the functions that depend on cells."""
     b = Builder("squeezed neighbour lists" if squeezed else "neighbour lists")
     b.line("from asemd.kernels.candidates import copy8")
-    for name, value in (("CLUSTER", CLUSTER), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False), ("SORTED", order), ("SQUEEZED", squeezed),
-                        ("SLOT_BITS", cluster.SLOT_BITS)):
+    for name, value in (("CLUSTER", CLUSTER), ("STRIP", columns.STRIP), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False),
+                        ("SORTED", order), ("SQUEEZED", squeezed), ("SLOT_BITS", cluster.SLOT_BITS)):
         b.constant(name, value)
     _add(b, *(f for f in PIECES if f is not (cluster.append if order else cluster.arrange)), *(f for f in ABOUT_CELLS if f not in PIECES))
     return b
@@ -40,7 +40,7 @@ def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
 
 def _add(b: Builder, *functions) -> None:
     for f in functions:
-        b.function(f, fast=f in (cluster.near_columns, *PIECES, cluster.build, cluster_rows.rows), inline=f in PIECES)
+        b.function(f, fast=f in (columns.near_columns, *PIECES, cluster.build, cluster_rows.rows), inline=f in PIECES)
 
 
 @cache
@@ -182,6 +182,7 @@ class ClusterList:
         self.bounds, self.lengths = np.zeros(threads + 1, np.int64), np.zeros(threads, np.int64)
         self.ranges = [self.bounds[t:t + 2] for t in range(threads)]      # where the clusters of each thread begin and end
         self.nx = self.ny = self.nz = 0
+        self.ahead = np.zeros(1, np.int64)
         self.entries = np.zeros((threads, 0), np.int32)
         self.excluded = np.zeros((threads, 64), np.int32)
         self.candidates = 2048
@@ -209,13 +210,16 @@ class ClusterList:
         """Choose the grid, unless it is given; True if arrays had to be made anew (their slots' arrays too)."""
         self.bins, self.n = bins, n
         self.nx, self.ny, self.nz = nx, ny, nz = grid or self._grid()
+        # from an atom to the last of its neighbours in the strip, in slots; where that is most of all, they are in the caches anyway
+        beyond = (int(self.reach * nx / bins.widths[0]) + 1) * min(columns.STRIP, ny) + int(self.reach * ny / bins.widths[1]) + 2
+        self.ahead[0] = beyond * n // (nx * ny) if 4 * beyond < nx * ny else 0
         self.void = int(min(VOID * self.reach * nz / max(bins.widths[2], 1e-300), nz))
-        columns, slots = nx * ny, max(n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER, self.slots)
-        if len(self._cells) < columns * (nz + 1):
-            self._cells = np.zeros(columns * (nz + 1) * 9 // 8, np.int32)
-        if len(self.column_start) < columns + 1:
-            self.column_start = np.zeros((columns + 1) * 9 // 8, np.int32)
-        self.cell_start = self._cells[:columns * (nz + 1)].reshape(columns, nz + 1)
+        count, slots = nx * ny, max(n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER, self.slots)
+        if len(self._cells) < count * (nz + 1):
+            self._cells = np.zeros(count * (nz + 1) * 9 // 8, np.int32)
+        if len(self.column_start) < count + 1:
+            self.column_start = np.zeros((count + 1) * 9 // 8, np.int32)
+        self.cell_start = self._cells[:count * (nz + 1)].reshape(count, nz + 1)
         if self.capacity >= slots:
             return False
         self.capacity = slots + n // 32         # some atoms and columns more need no other arrays

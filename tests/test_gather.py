@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from asemd.kernels.gather import gather8, give8, scatter8, take8
+from asemd.kernels.gather import fetch8, gather8, give8, scatter8, take8
 from asemd.kernels.target import lanes, njit
 
 MASK, ROW = 0x3FFFFFF, 40
@@ -35,6 +35,12 @@ def gather_all(b, table, entries, o, shifts):
 @njit
 def scatter(b, table, entries):
     scatter8(b, 8, ROW, table, entries, 3, MASK, 3)
+
+
+@njit
+def fetch(table, at):
+    fetch8(table, at, False)
+    fetch8(table, at, True)
 
 
 @pytest.fixture
@@ -79,6 +85,14 @@ def test_scatter_adds_every_place_of_an_atom(rng, real):
     for k, j in enumerate(slots[3:11]):
         expected[j, :3] += b[[8 + k, 8 + k + ROW, 8 + k + 2 * ROW]].astype(float)
     scatter(b, table, (slots | 13 << 26).astype(np.int32))
+    assert (table == expected).all()
+
+
+@pytest.mark.parametrize("at", [0, 8, 10**6, -10**6, 2**60])
+def test_fetched_rows_need_not_exist_and_stay(rng, at):
+    table = rng.normal(size=(16, 4))
+    expected = table.copy()
+    fetch(table, at)
     assert (table == expected).all()
 
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from asemd.engine import Engine, Settings
 from asemd.errors import SimulationError
 from asemd.forcefield import Interactions
+from asemd.kernels import columns
 from asemd.neighbor import image_shifts
 
 ATOMS = {"flat": 30, "tiny": 3, "tiny and tilted": 3}
@@ -29,6 +30,22 @@ def test_cells(name, mode):
         seen.add(engine.mode)
         assert error < 1e-12, periodic
     assert mode in seen or name.startswith("tiny") or name in ("flat", "strongly tilted")
+
+
+@given(st.integers(1, 40), st.integers(1, 40))
+def test_columns_are_numbered_once(nx, ny):
+    numbers = [columns.column(a, b, nx, ny) for a in range(nx) for b in range(ny)]
+    assert sorted(numbers) == list(range(nx * ny))
+    assert [columns.stands(c, nx, ny) for c in numbers] == list(itertools.product(range(nx), range(ny)))
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_plate_of_many_strips(threads):
+    rng = np.random.default_rng(8)
+    cell = np.diag([10.0, 44.0, 2.5])
+    system = make(scattered(880, cell, 0, rng), cell, (True, True, False), rng)
+    engine, error = errors(system, "cluster", threads=threads)
+    assert engine.list.ny > 2 * columns.STRIP and error < 1e-12
 
 
 @pytest.mark.parametrize("threads", [2, 3])

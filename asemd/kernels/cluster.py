@@ -17,6 +17,7 @@ import math
 import numpy as np
 
 from asemd.kernels.candidates import copy8
+from asemd.kernels.columns import column, near_columns, stands
 from asemd.kernels.gaps import squeeze
 
 CLUSTER = 8
@@ -82,7 +83,7 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
             x2[d, np.uint64(n)] = x[d, i]
             v2[d, np.uint64(n)] = v[d, i]
         row2[np.uint64(n)] = row[i]
-        at = (a * ny + b) * (nz + 1) + c
+        at = column(a, b, nx, ny) * (nz + 1) + c
         key[np.uint64(n)] = at
         cells[np.uint64(at)] += 1
         n += 1
@@ -125,34 +126,6 @@ def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, c
             cell_start[c, z] = cell_start[c, z - 1]
         cell_start[c, 0] = column_start[c]
     return p
-
-
-def near_columns(c, n, r, low, high, width, reach, periodic, index, image, gap2):
-    """Columns within `reach` of the stretch low..high (fractional) along one direction: number, image and squared gap of each.
-
-    Returns how many.
-    """
-    m = 0
-    step = 1.0 / n
-    for d in range(-r, r + 1):
-        i = c + d
-        s = 0
-        if i < 0:
-            i += n
-            s = -1
-        elif i >= n:
-            i -= n
-            s = 1
-        if (s != 0 and not periodic) or i < 0 or i >= n:
-            continue
-        left = (c + d) * step
-        gap = max(left - high, max(low - (left + step), 0.0)) * width
-        if gap < reach:
-            index[m] = i
-            image[m] = s
-            gap2[m] = gap * gap
-            m += 1
-    return m
 
 
 def reached(tx, ty, tz, codes, nt, x, y, z, s, m, r2):
@@ -298,9 +271,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     index_b, image_b, gap_b = np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1, np.int64), np.empty(2 * rb + 1)
     for ci in range(c0, c1):
         first[ci] = n
-        column = column_of[ci]
-        ca = column // ny
-        cb = column % ny
+        ca, cb = stands(column_of[ci], nx, ny)
         lo0, lo1, lo2, hi0, hi1, hi2 = 1e300, 1e300, 1e300, -1e300, -1e300, -1e300
         m = np.int64(0)
         for k in range(ci * CLUSTER, ci * CLUSTER + CLUSTER):
@@ -327,7 +298,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             sa = image_a[ka]
             ga = gap_a[ka]
             for kb in range(nb):
-                c2 = index_a[ka] * ny + index_b[kb]
+                c2 = column(index_a[ka], index_b[kb], nx, ny)
                 if column_start[np.uint64(c2 + 1)] <= ci * CLUSTER:
                     continue
                 sb = image_b[kb]

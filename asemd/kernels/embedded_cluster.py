@@ -18,7 +18,7 @@ import numpy as np
 
 from asemd.kernels import pair_sums
 from asemd.kernels.embedded import embedding
-from asemd.kernels.gather import give8, take8
+from asemd.kernels.gather import fetch8, give8, take8
 from asemd.kernels.generate import Builder
 from asemd.kernels.pair_sums import add
 from asemd.kernels.threads import barrier
@@ -161,12 +161,12 @@ def embed(c0, c1, rho, type_of, functions, flat, function_of, share, constants, 
 
 def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shifts, clusters, constants, table, classes, class_of, cut,
                       reach, functions, flat, function_of, share, rho, slope, b, row, local, sums, kinds, kept, owner, ends, work, there,
-                      back, lanes, near, push, acc, hide, skin, moved, farthest, tid, meeting, bad):
+                      back, lanes, near, push, acc, hide, skin, moved, farthest, ahead, tid, meeting, bad):
     """Forces of `clusters (2,)`, from the first one to before the second, added to `f (3, cap)`; energy and virial to `acc (8,)`.
 
     `class_of (cap,)` is each slot's class of `classes`, as a double; `flat` is `functions (n, 4)` as one row. `rho (threads, cap)` and
     `slope (cap,)` are of all threads; `b`, `local`, `sums`, `kinds`, `work`, `there` and `back` room for the neighbours of one cluster,
-    `kept`, `owner` and `ends` for all of them.
+    `kept`, `owner` and `ends` for all of them. `ahead (1,)`: slots whose rows of `near` and `push` are brought into the cache beforehand.
     """
     c0, c1 = clusters[0], clusters[1]
     cap = x.shape[1]
@@ -183,7 +183,7 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
     spill = work[stage:]
     for k in range(cap):
         mine_rho[k] = 0.0
-    for k in range(0, cap, 8):
+    for k in range(c0 * CLUSTER, cap, 8):      # no neighbour stands before its cluster
         take8(near, k, x, class_of)
     rest = 0.999999 * skin - math.sqrt(farthest[0]) if OUTDATED else 0.0
     n = np.int64(0)
@@ -192,6 +192,7 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
         full = ((np.int64(first[ci + 1]) - f0) // 8) * 8
         mine = np.int64(own[ci])
         pack(ci, full, row, near, entries, f0, unshifted, shifts, b, local)
+        fetch8(near, ci * CLUSTER + ahead[0], False)
         for k in range(0, 4 * full + 4, 8):
             store8(sums, k, zero)
         begin = n
@@ -229,7 +230,7 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
     barrier(meeting)
     embed(c0, c1, rho, type_of, functions, flat, function_of, share, constants, slope, lanes, acc, bad)
     barrier(meeting)
-    for k in range(0, cap, 8):
+    for k in range(c0 * CLUSTER, cap, 8):
         take8(near, k, x, slope)
     n = np.int64(0)
     sum_e, sum_xx, sum_yy, sum_zz, sum_xy, sum_xz, sum_yz = zero, zero, zero, zero, zero, zero, zero
@@ -237,6 +238,8 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
         f0 = np.int64(first[ci])
         full = ((np.int64(first[ci + 1]) - f0) // 8) * 8
         pack(ci, full, row, near, entries, f0, unshifted, shifts, b, local)
+        fetch8(near, ci * CLUSTER + ahead[0], False)
+        fetch8(push, ci * CLUSTER + ahead[0], True)
         for k in range(0, 4 * full + 4, 8):
             store8(sums, k, zero)
         if VARYING:
@@ -302,9 +305,10 @@ def embedded_clusters(x, f, type_of, first, entries, own, span, unshifted, shift
                 sum_yz = madd8(dy, gz, sum_yz)
         for k in range(full):
             add_row(push, np.int64(entries[place(f0 + k)] & np.int32(SLOT_BITS)), sums, 4 * k)
+        give8(push, ci * CLUSTER, f)        # no later cluster has these atoms in its row
     if ENERGY:
         add(acc, (sum8(sum_e), 0.0, sum8(sum_xx), sum8(sum_yy), sum8(sum_zz), sum8(sum_xy), sum8(sum_xz), sum8(sum_yz)))
-    for k in range(0, cap, 8):
+    for k in range(c1 * CLUSTER, cap, 8):
         give8(push, k, f)
 
 
@@ -313,7 +317,7 @@ def kernel(*, energy: bool, varying: bool, outdated: bool):
     """The compiled `embedded_clusters`."""
     b = Builder("embedded atoms: cluster list")
     b.line("from asemd.kernels.threads import barrier")
-    b.line("from asemd.kernels.gather import give8, take8")
+    b.line("from asemd.kernels.gather import fetch8, give8, take8")
     b.line(f"from asemd.kernels.vectors8 import {', '.join(VECTORS.split())}")
     b.line("place, single = np.uint64, np.float32")
     for name, value in dict(CLUSTER=CLUSTER, SLOT_BITS=SLOT_BITS, ENERGY=energy, VARYING=varying, OUTDATED=outdated).items():

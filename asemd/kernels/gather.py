@@ -5,7 +5,7 @@ A pair kernel wants the positions of a cluster's neighbours as vectors of x, of 
 way. Compilers make a load and a store per number of such loops, or the processor's gather, which costs a third of the kernel's time.
 
 `mask` are the low bits of a list entry, which name a row of the table; the bits above name a row of `shifts`. It, the last two
-arguments of `gather8` and the last one of `scatter8` must be constants when compiled.
+arguments of `gather8` and the last one of `scatter8` and of `fetch8` must be constants when compiled.
 """
 from __future__ import annotations
 
@@ -35,6 +35,10 @@ if config.DISABLE_JIT:
             b[at + k], b[at + k + row], b[at + k + 2 * row] = one[0] - ox, one[1] - oy, one[2] - oz
             if charge:
                 b[at + k + charge * row] = one[3]
+
+    def fetch8(table, at, write):
+        """Bring rows ``at ... at + 7`` of `table (n, 4)` into the cache, to `write` or to read them; they need not exist. Python has no
+        such order, and numbers do not depend on it."""
 
     def scatter8(b, at, row, table, entries, first, mask, columns):
         """Add ``b[at:at + 8]`` and the same places `row`, 2 `row` ... on to the first `columns` columns of the rows of `table (n, 4)` named
@@ -165,6 +169,23 @@ else:
                               align=kind.bitwidth // 8)
             return ctx.get_dummy_value()
         return types.void(b, at, row, table, entries, first, ox, oy, oz, shifts, mask, shifted, charge), generate
+
+    @intrinsic(prefer_literal=True)
+    def fetch8(typing, table, at, write):
+        """Bring rows ``at ... at + 7`` of `table (n, 4)` into the cache, to `write` or to read them; they need not exist."""
+        if not _known(write):
+            return None
+        purpose = I32(int(write.literal_value))
+
+        def generate(ctx, builder, signature, arguments):
+            m = _Memory(ctx, builder, signature, arguments)
+            byte = ir.PointerType(ir.IntType(8))
+            prefetch = builder.module.declare_intrinsic("llvm.prefetch", [byte], ir.FunctionType(ir.VoidType(), [byte, I32, I32, I32]))
+            for k in range(0, 8, 2):
+                there = m.at(m.pointer(0), QUAD, (builder.add(m.place(1), I64(k)), I64(4)))
+                builder.call(prefetch, [builder.bitcast(there, byte), purpose, I32(2), I32(1)])
+            return ctx.get_dummy_value()
+        return types.void(table, at, write), generate
 
     @intrinsic(prefer_literal=True)
     def scatter8(typing, b, at, row, table, entries, first, mask, columns):

@@ -108,7 +108,7 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
     """What kernels over cluster lists have in common: constants, the style's formulas, coefficients of the neighbours."""
     b = Builder(f"pair {style.name}: {title}")
     b.line("from asemd.kernels.fuse import madd, rough_roots")
-    b.line("from asemd.kernels.gather import gather8, give8, scatter8, take8")
+    b.line("from asemd.kernels.gather import fetch8, gather8, give8, scatter8, take8")
     b.line("place = np.uint64")
     b.line("real = np.float32" if single else "real = np.float64")
     for name, value in constants.items():

@@ -24,7 +24,7 @@ import math
 import numpy as np
 
 from asemd.kernels.fuse import madd, rough_roots
-from asemd.kernels.gather import gather8, give8, scatter8, take8
+from asemd.kernels.gather import fetch8, gather8, give8, scatter8, take8
 from asemd.kernels.pair_sums import add, eight, plus
 
 CLUSTER = 8
@@ -210,11 +210,12 @@ def coefficients(c, full, rows, t, types, held, filled, other):
 
 
 def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shifts, excluded_first, excluded, clusters, p, rows, far_,
-                   qqr2e, b, c, held, types, saved, near, push, acc, hide, skin, moved, farthest, whole):
+                   qqr2e, b, c, held, types, saved, near, push, acc, hide, skin, moved, farthest, ahead, whole):
     """Forces of `clusters (2,)`, from the first one to before the second, added to `f (3, cap)`; energy and virial to `acc (8,)` (vdwl,
     coul, xx yy zz xy xz yz).
 
-    `whole` is for PRUNED: what the list is made of, see `asemd.kernels.prune`. The four arguments before are for OUTDATED: the mask of the
+    `ahead (1,)`: slots whose rows of the tables are brought into the cache beforehand. `whole` is for PRUNED: what the list is made of, see
+    `asemd.kernels.prune`. `hide`, `skin`, `moved` and `farthest` are for OUTDATED: the mask of the
     entries, squared displacements of the slots since the list was built, and `farthest (1,)`, the largest of them.
     """
     c0, c1 = clusters[0], clusters[1]
@@ -222,7 +223,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
     late = False
     ca = cb = np.int64(0)
     cap = x.shape[1]
-    for k in range(0, cap, 8):
+    for k in range(c0 * CLUSTER, cap, 8):      # no neighbour stands before its cluster
         take8(near, k, x, q)
     if PRUNED:
         renew(near, x, shifts, whole, unshifted, c0, c1, first, entries, own, span, excluded_first, excluded, hide)
@@ -243,6 +244,8 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
         else:
             for k in range(0, full, 8):
                 gather8(b, k, ROW, near, entries, f0 + k, ox, oy, oz, shifts, SLOT_BITS, True, CHARGE_ROW)
+        fetch8(near, s + ahead[0], False)
+        fetch8(push, s + ahead[0], True)
         for k in range(full):
             b[k + 3 * ROW] = real(0)
             b[k + 4 * ROW] = real(0)
@@ -382,5 +385,6 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
             add(acc, (real(0), real(0), v0, v1, v2, v3, v4, v5))
         for k in range(0, full, 8):
             scatter8(b, k + 3 * ROW, ROW, push, entries, f0 + k, SLOT_BITS, 3)
-    for k in range(0, cap, 8):
+        give8(push, s, f)       # no later cluster has these atoms in its row
+    for k in range(c1 * CLUSTER, cap, 8):
         give8(push, k, f)
