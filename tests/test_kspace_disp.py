@@ -76,7 +76,7 @@ LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
 
 @pytest.mark.parametrize("lines, message", [
     (["pair_style lj/long/coul/long long cut 6.0"], "coulomb must be long or off"),
-    (["pair_style lj/long/coul/long off long 6.0"], "dispersion must be long or cut"),
+    (["pair_style lj/long/coul/long off long 6.0"], "write cut"),
     (["pair_style buck/long/coul/long long long 6.0 5.0"], "only one cutoff"),
     (["pair_style lj/long/coul/long long off"], "needs dispersion coulomb cut_lj"),
     ([*LONG, "run 0"], "needs a kspace_style, such as pppm/disp"),

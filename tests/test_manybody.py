@@ -40,7 +40,7 @@ CASES = {     # pair_style -> file, elements, lattice constant
     "airebo/morse 1.4 1 1 1.0": ("CH.airebo-m", "H C", 4.0),
 }
 COEFF = {"atm 4.0 2.4": ["* * * 0.5", "1 2 2 -0.3", "1 1 1*1 0.7"], "local/density": ["* * HERE/a.ld"]}
-TABLED = {"edip": 1e-5}      # LAMMPS interpolates in tables
+TABLED = {"edip": 1e-10}     # LAMMPS adds up the places of its tables
 TABLED |= dict.fromkeys(("rebo", "airebo", "airebo/morse"), 3e-10)      # and rounds off in polynomials of coordinations
 OWN = ("threebody/table", "airebo 3.0")      # forces that are not derivatives; another airebo takes less time
 STEPS = {"sw/angle/table": 1e-5, "polymorphic": 1e-5, "vashishta/table 2000 0.4": 1e-2}      # steps of tables, forces of their own

@@ -16,7 +16,6 @@ CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 # what exists in part: what is not there
 PARTIAL = {
     ("pair", "mliap"): "models linear, quadratic and nn, descriptor sna",
-    ("pair", "edip"): "its functions are computed, LAMMPS looks them up in tables: seven digits agree",
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
     ("fix", "msst"): "no dftb",
@@ -26,7 +25,7 @@ PARTIAL = {
     ("command", "kspace_modify"): "no slab ew2d, which is for solvers of electrodes; overlap no never lowers the order",
     ("command", "kspace_style"): "the styles listed under kspace",
     **dict.fromkeys([("kspace", "msm"), ("kspace", "msm/cg")], "pressure/scalar yes: the pressure is that of the virial all the same"),
-    **dict.fromkeys([("pair", f"lj/long/{e}") for e in ("coul/long", "coul/long/dielectric", "dipole/long")], "no dispersion off"),
+    **dict.fromkeys([("pair", f"lj/long/{e}") for e in ("coul/long", "coul/long/dielectric", "dipole/long")], "no dispersion off, which LAMMPS computes as cut"),
     ("command", "read_data"): "fix property/atom and cmap read sections; sections of the atom styles listed under atom",
     ("command", "read_restart"): "files of LAMMPS itself through the lammps package: styles and coefficients are to be given again",
     ("command", "run_style"): "verlet; respa",

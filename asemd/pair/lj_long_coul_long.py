@@ -78,6 +78,9 @@ class DispersionPair(PairStyle):
     def parse_settings(self, words):
         values = super().parse_settings(words)
         what = f"pair_style {self.name}"
+        if values["dispersion"] == "off":
+            raise InputError(f"{what}: dispersion off would leave out r^-6 by LAMMPS's manual, but LAMMPS computes what it does for cut; "
+                             "write cut for that")
         if values["dispersion"] not in ("long", "cut"):
             raise InputError(f"{what}: dispersion must be long or cut, got {values['dispersion']!r}")
         if values["coulomb"] not in ("long", "off"):
