@@ -15,6 +15,7 @@ from asemd.curvatures import SHIFT, STEP, bonded_items, of_list
 from asemd.embedded_curvature import of_embedded
 from asemd.engine import Engine
 from asemd.errors import InputError
+from asemd.kernels import pair_matrix
 from asemd.kernels.hooks import bound
 from asemd.loads import Maps, Potential
 from asemd.manybody_term import ManyBodyTerm
@@ -55,37 +56,45 @@ def hessian_of(system, interactions, settings, numerical: bool = False):
     """
     engine = ListEngine(system, interactions, replace(settings, threads=1, precision="double"))
     engine.compute()
-    n, blocks, rest = system.n, [], []
+    n, blocks, pairs, rest = system.n, [], [], []
     for term in engine.terms:
         if type(term) is BondedTerm:
-            blocks += [_block(atoms, pairs, inner) for atoms, pairs, _, _, inner in bonded_items(engine, term, numerical)]
+            blocks += [_block(atoms, ends, inner) for atoms, ends, _, _, inner in bonded_items(engine, term, numerical)]
         elif type(term) is PairListTerm:
-            for atoms, d, a, b in of_list(engine, term, numerical):
-                blocks.append(pair_block(atoms, d, a, b))
+            pairs += of_list(engine, term, numerical)
         elif type(term) is ManyBodyTerm:
-            rest.append(_many(engine, term, numerical, blocks))
+            rest.append(_many(engine, term, numerical, pairs))
         elif term.category == "kspace":
             raise InputError(f"no second derivatives of kspace_style {term.solver.style}: of forces with a solver take differences, as "
                              "ase.vibrations and phonon codes do")
         elif type(term) is not OwnTerm:
             raise InputError(f"no second derivatives: {term.category} style {term.style.name} is not a function of positions alone")
-    whole = sum(rest, sparse.csr_matrix((3 * n, 3 * n)))
-    if not blocks:
-        return whole
-    rows, columns, numbers = (np.concatenate(part) for part in zip(*blocks))
-    return sparse.coo_matrix((numbers, (rows, columns)), shape=(3 * n, 3 * n)).tocsr() + whole
+    if pairs:
+        rest.insert(0, of_pairs(n, *(np.concatenate(part) for part in zip(*pairs))))
+    if blocks:
+        rows, columns, numbers = (np.concatenate(part) for part in zip(*blocks))
+        rest.append(sparse.coo_matrix((numbers, (rows, columns)), shape=(3 * n, 3 * n)).tocsr())
+    return sum(rest[1:], rest[0]) if rest else sparse.csr_matrix((3 * n, 3 * n))
 
 
-def pair_block(atoms: np.ndarray, d: np.ndarray, a: np.ndarray, b: np.ndarray):
-    """Rows, columns and numbers of pairs whose matrix by the vector d is ``a I + b d d^T``."""
-    return _block(atoms, [(0, 1)], a[:, None, None] * np.eye(3) + b[:, None, None] * d[:, :, None] * d[:, None, :])
+def of_pairs(n: int, atoms: np.ndarray, d: np.ndarray, a: np.ndarray, b: np.ndarray) -> sparse.csr_matrix:
+    """The matrix (3 n, 3 n) of pairs (m, 2) whose own one by the vector d (m, 3) is ``a I + b d d^T``."""
+    k, m = pair_matrix.module(), len(atoms)
+    i, j = (np.ascontiguousarray(atoms[:, side], np.int64) for side in (0, 1))
+    start, place = np.empty((2, n + 1), np.int64)
+    order, column, pair = np.empty((3, 2 * m), np.int64)
+    size = 9 * (k.arrange(i, j, start, place, order, column, pair) + n)
+    first, columns = (np.empty(length, np.int32 if size < 2**31 else np.int64) for length in (3 * n + 1, size))
+    numbers = np.empty(size)
+    k.fill(start, column, pair, d, a, b, first, columns, numbers)
+    return sparse.csr_matrix((numbers, columns, first), shape=(3 * n, 3 * n))
 
 
-def _many(engine, term, numerical: bool, blocks: list):
-    """Second derivatives of a many-body style: those of its pairs into `blocks`, what is left as a matrix."""
+def _many(engine, term, numerical: bool, pairs: list):
+    """Second derivatives of a many-body style: those of its pairs into `pairs`, what is left as a matrix."""
     if getattr(term.style, "packable", False):
         found = of_embedded(engine, term)
-        blocks.append(pair_block(found.atoms, found.d, found.a, found.b))
+        pairs.append((found.atoms, found.d, found.a, found.b))
         return found.matrix()
     if not numerical:
         raise InputError(f"no second derivatives of pair style {term.style.name}; numerical=True takes differences instead")
