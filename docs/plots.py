@@ -41,16 +41,17 @@ def speed(path: Path) -> None:
                        for name, v in here["cases"].items() if name.endswith(", 1")}
              for machine, here in found.items() if "cases" in here}
     names = list(dict.fromkeys(name for here in cases.values() for name in here))
-    figure, axis = plt.subplots(figsize=(9, 0.3 * len(names) + 1), layout="constrained")
+    thick = 0.8 / len(cases)
+    figure, axis = plt.subplots(figsize=(9, (0.1 + 0.1 * len(cases)) * len(names) + 1), layout="constrained")
     for k, (machine, here) in enumerate(cases.items()):
-        rows = [(names.index(name) + 0.2 * (2 * k - 1), r) for name, r in here.items()]
+        rows = [(names.index(name) + thick * (k + 0.5 - len(cases) / 2), r) for name, r in here.items()]
         middle = [r["median"] for _, r in rows]
         spread = [[m - r["q1"] for m, (_, r) in zip(middle, rows)], [r["q3"] - m for m, (_, r) in zip(middle, rows)]]
-        axis.barh([y for y, _ in rows], middle, height=0.38, xerr=spread, label=machine, error_kw={"lw": 0.8})
+        axis.barh([y for y, _ in rows], middle, height=0.95 * thick, xerr=spread, label=machine, error_kw={"lw": 0.8})
     axis.axvline(1.0, color="0.3", lw=1)
     axis.set(yticks=range(len(names)), yticklabels=names, xlabel="times as fast as LAMMPS, one thread")
     axis.invert_yaxis()
-    axis.legend(fontsize="small", loc="lower right")
+    figure.legend(fontsize="small", loc="outside upper right", ncols=len(cases))
     figure.savefig(path, dpi=90)
 
 

@@ -103,7 +103,7 @@ class Running:
         self.process = subprocess.Popen(command, env=env, cwd=folder, stdin=subprocess.DEVNULL, stdout=self.errors, stderr=self.errors)
 
     def do(self, commands: list[str]) -> dict:
-        """Execute commands; the seconds they took and the process's largest memory in MB."""
+        """Execute commands; the seconds they took, and those of the processor."""
         (self.folder / "ticket").write_text(json.dumps(commands))
         os.replace(self.folder / "ticket", self.folder / f"{self.number}.go")
         done, end = self.folder / f"{self.number}.done", time.time() + PATIENCE

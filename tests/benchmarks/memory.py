@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 
 from tests.benchmarks import compare, scenes
+from tests.benchmarks.lean import largest_memory
 
 
 def measure(steps: int = 100, samples: int = 3, threads: int = 1, precision: str = "double") -> dict:
@@ -16,7 +17,8 @@ def measure(steps: int = 100, samples: int = 3, threads: int = 1, precision: str
             with tempfile.TemporaryDirectory() as tmp:
                 running = compare.Running(c, Path(tmp))
                 try:
-                    seen.append(running.do([*scenes.lj().splitlines(), f"run {steps}"])["memory"])
+                    running.do([*scenes.lj().splitlines(), f"run {steps}"])
+                    seen.append(largest_memory(running.process.pid))
                 finally:
                     running.stop()
         out[c.name] = compare.spread(seen[1:])["median"]

@@ -1,15 +1,13 @@
 """One engine in one process (under mpiexec: one rank of it). It executes the lists of commands it finds in its folder.
 
 ``python worker.py asemd|lammps FOLDER switches...``. ``0.go``, ``1.go`` ... hold one JSON list of commands each; ``0.done`` ... tell the
-seconds they took, those of the processor, and the largest memory so far. A file ``stop`` ends it. Waiting costs no processor time, so
-engines can alternate.
+seconds they took and those of the processor. A file ``stop`` ends it. Waiting costs no processor time, so engines can alternate.
 """
 from __future__ import annotations
 
 import ctypes
 import json
 import os
-import resource
 import sys
 import time
 from pathlib import Path
@@ -41,9 +39,7 @@ def main() -> None:
             lmp.command(command)
         seconds = time.perf_counter() - began
         if first:
-            answer = {"seconds": seconds, "cpu": time.process_time() - cpu,
-                      "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
-            (folder / "answer").write_text(json.dumps(answer))
+            (folder / "answer").write_text(json.dumps({"seconds": seconds, "cpu": time.process_time() - cpu}))
             os.replace(folder / "answer", folder / f"{number}.done")
         number += 1
     lmp.finalize()
