@@ -265,7 +265,7 @@ PAIRS = """
     displace_atoms all random 0.2 0.2 0.2 777 units box
     pair_style lepton 6.0
     pair_coeff 1 1 "4*eps*((sig/r)^12-(sig/r)^6); eps=0.01; sig=2.5"
-    pair_coeff 1 2 "4*eps*((sig/r)^12-(sig/r)^6); eps=0.02; sig=2.4" 5.5
+    pair_coeff 1 2 "4*eps*((sig/r)^12-(sig/r)^6)+0.01*sin(3.1*r)*cos(1.7*r)^2; eps=0.02; sig=2.4" 5.5
     pair_coeff 2 2 "zbl(3,6,r) + v_q*exp(-r^2) + 0.1*r^-3.5"
     pair_modify shift yes
     fix 1 all nve

@@ -1,4 +1,4 @@
-"""exp, log, erfc and atan2: digits against mpmath, the plain Python twins, and whether loops become vector code."""
+"""exp, log, erfc, sin, cos and atan2: digits against mpmath, the plain Python twins, and whether loops become vector code."""
 from __future__ import annotations
 
 import math
@@ -32,7 +32,7 @@ def build(single: bool):
     b = Builder("vector functions in loops")
     b.line("real = np.float32" if single else "real = np.float64")
     vector_math.paste(b, single)
-    for name in ("exp", "log", "erfc"):
+    for name in ("exp", "log", "erfc", "sin", "cos"):
         b.text(LOOPS.format(name=name).strip())
     return b.build()
 
@@ -55,6 +55,10 @@ def points(name: str, single: bool) -> np.ndarray:
     elif name == "log":
         span = 37 if single else 300
         x = np.concatenate([10.0 ** rng.uniform(-span, span, 1200), rng.uniform(0.6, 1.6, 1200), 1 + rng.normal(size=300) * 1e-7, [1.0]])
+    elif name in ("sin", "cos"):
+        top = 1e3 if single else 1e6
+        corners = rng.integers(-300, 300, 400) * (math.pi / 4)
+        x = np.concatenate([rng.uniform(-4, 4, 1200), rng.uniform(-top, top, 700), rng.normal(size=300) * 1e-6, corners, [0.0, top]])
     else:
         top = 9.0 if single else 26.0
         x = np.concatenate([rng.uniform(0, 6, 1500), rng.uniform(-6, top, 700), 10.0 ** rng.uniform(-8, 0, 300), [0.0, 1.0]])
@@ -71,7 +75,7 @@ def ulps(name: str, got: np.ndarray, x: np.ndarray) -> float:
     return worst
 
 
-@pytest.mark.parametrize(("name", "limit"), [("exp", 1.5), ("log", 1.5), ("erfc", 4.0)])
+@pytest.mark.parametrize(("name", "limit"), [("exp", 1.5), ("log", 1.5), ("erfc", 4.0), ("sin", 1.0), ("cos", 1.0)])
 @pytest.mark.parametrize("single_precision", [False, True])
 def test_digits(name, limit, single_precision, double, single):
     module = single if single_precision else double
@@ -83,7 +87,7 @@ def test_digits(name, limit, single_precision, double, single):
     print(f"{name} {'single' if single_precision else 'double'}: {error:.2f} ulp")
 
 
-@pytest.mark.parametrize("name", ["exp", "log", "erfc"])
+@pytest.mark.parametrize("name", ["exp", "log", "erfc", "sin", "cos"])
 def test_plain_python_agrees(name, double):
     x = points(name, False)[::20]
     out = np.empty_like(x)
@@ -177,7 +181,7 @@ def test_exp_of_what_has_a_sign_is_vectorised(argument):
 
 
 @pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
-@pytest.mark.parametrize("name", ["exp", "log", "erfc"])
+@pytest.mark.parametrize("name", ["exp", "log", "erfc", "sin", "cos"])
 def test_loops_are_vectorised(name, double):
     x = points(name, False)[:2000]
     out = np.empty_like(x)

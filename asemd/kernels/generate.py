@@ -127,7 +127,7 @@ class _Plain(ast.NodeTransformer):
             return ast.Name("ir", ast.Load())
         if self.vector and ast.unparse(node) == "math.sqrt(r2)":
             return ast.BinOp(ast.Name("r2", ast.Load()), ast.Mult(), ast.Name("ir", ast.Load()))
-        if self.vector and isinstance(node.func, ast.Attribute) and node.func.attr in ("exp", "log", "erfc", "pow"):
+        if self.vector and isinstance(node.func, ast.Attribute) and node.func.attr in ("exp", "log", "erfc", "pow", "sin", "cos"):
             node.func = ast.Name("vector_" + node.func.attr, ast.Load())
         return node
 

@@ -116,7 +116,7 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
     b.constant("ROOT", takes_roots(style))
     b.constant("ROUGH", not single and takes_roots(style))
     vector_math.paste_roots(b, single)
-    if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow)\b", s) for s in map(text_of, style.functions())):
+    if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow|sin|cos)\b", s) for s in map(text_of, style.functions())):
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)
     b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")

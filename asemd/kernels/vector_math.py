@@ -1,7 +1,8 @@
-"""exp, log, erfc, pow and atan2 without branches and without calls, so that loops over them become vector code.
+"""exp, log, erfc, pow, sin, cos and atan2 without branches and without calls, so that loops over them become vector code.
 
 Compiled with ``contract`` as the only fastmath flag: reordering would cost the digits that the split constants keep. Errors in
-units of the last digit: exp 1, log 1, erfc 4 (down to where it underflows), pow(x, y) 1 + abs(y log x), atan2 0.8.
+units of the last digit: exp 1, log 1, erfc 4 (down to where it underflows), pow(x, y) 1 + abs(y log x), sin and cos 1 (up to abs(x) = 1e6,
+in single precision 1e3; further on they lose as many digits as x has before its point), atan2 0.8.
 The ``single_`` functions are the twins for single precision, pasted with every literal as ``real(...)``.
 """
 from __future__ import annotations
@@ -176,6 +177,77 @@ def vector_pow(x, y):
     return vector_exp(y * vector_log(x))
 
 
+def sine_and_cosine(x):
+    """Of r = x - k pi/2, abs(r) < pi/4 and a little, and k without its multiples of 4, from -2 to 2: (k, sin r, cos r).
+
+    pi/2 is taken off in three parts, of which the first two have 33 digits, so that their products with k are exact. Then Taylor series.
+    """
+    k = nearest_integer(x * 0.6366197723675814)
+    a = x - k * 1.5707963267341256
+    b = k * 6.077100506303966e-11
+    c = a - b
+    lost = (a - c) - b
+    d = k * 2.0222662487959506e-21
+    r = c - d
+    lost = lost + ((c - r) - d)
+    z = r * r
+    s = 2.8114572543455206e-15
+    s = s * z - 7.647163731819816e-13
+    s = s * z + 1.6059043836821613e-10
+    s = s * z - 2.505210838544172e-08
+    s = s * z + 2.7557319223985893e-06
+    s = s * z - 0.0001984126984126984
+    s = s * z + 0.008333333333333333
+    s = s * z - 0.16666666666666666
+    c = 4.779477332387385e-14
+    c = c * z - 1.1470745597729725e-11
+    c = c * z + 2.08767569878681e-09
+    c = c * z - 2.755731922398589e-07
+    c = c * z + 2.48015873015873e-05
+    c = c * z - 0.001388888888888889
+    c = c * z + 0.041666666666666664
+    h = 0.5 * z
+    w = 1.0 - h
+    return k - 4.0 * nearest_integer(k * 0.25), r + (r * z * s + lost * w), w + (((1.0 - w) - h) + (z * z * c - r * lost))
+
+
+def vector_sin(x):
+    """Sine of a double; see `sine_and_cosine`."""
+    k, s, c = sine_and_cosine(x)
+    t = c if abs(k) == 1.0 else s
+    return -t if (k < -0.5) | (k > 1.5) else t
+
+
+def vector_cos(x):
+    """Cosine of a double; see `sine_and_cosine`."""
+    k, s, c = sine_and_cosine(x)
+    t = s if abs(k) == 1.0 else c
+    return -t if (k > 0.5) | (k < -1.5) else t
+
+
+def single_sine_and_cosine(x):
+    """`sine_and_cosine` in single precision: four parts of pi/2, with 12 digits."""
+    k = nearest_integer(x * 0.6366197723675814)
+    a = x - k * 1.5703125
+    b = k * 0.0004837512969970703
+    c = a - b
+    lost = (a - c) - b
+    d = k * 7.549533620476723e-08
+    r = c - d
+    lost = (lost + ((c - r) - d)) - k * 2.563344151594519e-12
+    z = r * r
+    s = 2.7557319223985893e-06
+    s = s * z - 0.0001984126984126984
+    s = s * z + 0.008333333333333333
+    s = s * z - 0.16666666666666666
+    c = 2.48015873015873e-05
+    c = c * z - 0.001388888888888889
+    c = c * z + 0.041666666666666664
+    h = 0.5 * z
+    w = 1.0 - h
+    return k - 4.0 * nearest_integer(k * 0.25), r + (r * z * s + lost * w), w + (((1.0 - w) - h) + (z * z * c - r * lost))
+
+
 def single_exp(x):
     """e^x in single precision: 0 below -87, e^88 above 88."""
     y = within(x, -87.0, 88.0)
@@ -230,7 +302,7 @@ def single_erfc(x):
 
 
 def paste(b: Builder, single: bool = False) -> None:
-    """Put ``vector_exp``, ``vector_log``, ``vector_erfc`` and ``vector_pow`` into a module.
+    """Put ``vector_exp``, ``vector_log``, ``vector_erfc``, ``vector_pow``, ``vector_sin`` and ``vector_cos`` into a module.
 
     Parameters
     ----------
@@ -244,7 +316,8 @@ def paste(b: Builder, single: bool = False) -> None:
     b.line(f"from asemd.kernels.bits import {names}  # {mark}")
     pairs = ((single_exp, "exp"), (single_log, "log"), (single_erfc, "erfc")) if single else (
         (vector_exp, "exp"), (vector_log, "log"), (vector_erfc, "erfc"))
-    for function, name in pairs + ((vector_pow, "pow"),):
+    b.text(plain_source(single_sine_and_cosine if single else sine_and_cosine, "sine_and_cosine", real=single), OPTIONS)
+    for function, name in pairs + ((vector_pow, "pow"), (vector_sin, "sin"), (vector_cos, "cos")):
         b.text(plain_source(function, f"vector_{name}", real=single), OPTIONS)
 
 
