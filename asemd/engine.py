@@ -74,7 +74,7 @@ class Engine:
         self.system = system
         self.set_box()
         s, inter = self.settings, self.interactions
-        self.solver = solve(system, inter, self.units) if inter.kspace != "none" or inter.needs_solver else None
+        self.solver = solve(system, inter, self.units, s.skin) if inter.kspace != "none" or inter.needs_solver else None
         inter.learn(system)
         terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts or t.style.many]
         for kind, *pair in s.exclude:

@@ -59,11 +59,14 @@ LJ = ("1 1 0.16 3.16", "2 2 0.0 1.0")
 UPRIGHT = ("change_box all xy final 0 xz final 0 yz final 0 remap", "change_box all ortho")
 MESHES = ("kspace_style pppm/disp/tip4p 1e-3", "kspace_modify gewald 0.4 mesh 8 8 8 gewald/disp 0.4 mesh/disp 8 8 8",
           "pair_modify table 0 table/disp 0")
+SLAB = (*UPRIGHT, "change_box all boundary p p f", "change_box all z delta -1 1")
 CASES = [
     ("tip4p/cut 1 2 1 1 0.15 5.0", ("* *",), ()),
     ("lj/cut/tip4p/cut 1 2 1 1 0.125 4.5 5.0", LJ, ()),
     ("lj/cut/tip4p/long 1 2 1 1 0.15 4.5 5.0", LJ, ("kspace_style pppm/tip4p 1e-3", "pair_modify table 0")),
     ("lj/long/tip4p/long cut long 1 2 1 1 0.15 4.5 5.0", LJ, ("kspace_style pppm/tip4p 1e-3", "pair_modify table 0")),
+    ("lj/cut/tip4p/long 1 2 1 1 0.15 4.5 4.5", LJ,
+     (*SLAB, "kspace_style pppm/tip4p 1e-3", "kspace_modify gewald 0.3 mesh 8 3 24 order 7 slab 3.0 overlap no", "pair_modify table 0")),
     ("lj/long/tip4p/long long long 1 2 1 1 0.15 5.0", LJ, (*UPRIGHT, *MESHES)),
     ("lj/long/tip4p/long long off 1 2 1 1 0.15 5.0", LJ, (*UPRIGHT, *MESHES)),
     ("hybrid/overlay lj/cut 4.5 hbond/dreiding/lj 4 4.0 5.0 90", ("* * lj/cut 0.0 1.0", "1 1 hbond/dreiding/lj 2 i 4.0 2.75"), ()),

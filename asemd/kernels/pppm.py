@@ -226,8 +226,9 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
          virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
-    `constants` as in `asemd.kernels.ewald.ewald`, if STAGGERED then by how many spacings the mesh is shifted; `held (4, 3)`: the box that
-    `green` is for, and its volume; `forward`, `backward`, `backward_shares`: addresses of the transforms.
+    `constants` as in `asemd.kernels.ewald.ewald`, but 4 for a slab's correction that is left out of the energy; if STAGGERED then by how
+    many spacings the mesh is shifted; `held (4, 3)`: the box that `green` is for, and its volume; `forward`, `backward`,
+    `backward_shares`: addresses of the transforms.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     least = constants[6]
@@ -296,10 +297,13 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
         for i in range(lo, hi):
             if abs(q[i]) > least:
                 energy[i] -= scale * (g * q[i] * q[i] / math.sqrt(math.pi) + 0.5 * math.pi * q[i] * qsum / (g * g * volume))
-    if slabs == 1.0:
+    if slabs == 1.0 or slabs == 4.0:
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
         barrier(meeting)
+        without = acc[0]
         slab(meeting, tid, x, f, q, least, lo, hi, scale, qsum, height, volume, sums, acc, energy)
+        if slabs == 4.0:
+            acc[0] = without
     elif slabs == 3.0:
         barrier(meeting)
         wire(meeting, tid, x, f, q, least, lo, hi, scale, volume, sums, acc, energy)

@@ -42,6 +42,8 @@ class KSpace(ABC):
     n, qsum, qsqsum, q2, prd, volume
         After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths and volume of the
         box, its third vector stretched for slabs, the others for wires.
+    skin : float
+        Of the neighbour list.
     """
 
     style = ""
@@ -53,7 +55,7 @@ class KSpace(ABC):
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
-    g_ewald = 0.0
+    g_ewald = skin = 0.0
 
     def __init__(self, accuracy: float, modify: Mapping[str, Any] | None = None):
         self.accuracy_relative = float(accuracy)
@@ -237,8 +239,9 @@ class KSpace(ABC):
         return cutoffs.pop()
 
 
-def solve(system, interactions, units) -> KSpace | None:
-    """The solver of a scene, ready; None without ``kspace_style``. `interactions.long_range` gets what pair styles must know.
+def solve(system, interactions, units, skin: float) -> KSpace | None:
+    """The solver of a scene, ready; None without ``kspace_style``. `interactions.long_range` gets what pair styles must know; `skin` is
+    that of the neighbour list.
 
     Raises
     ------
@@ -258,6 +261,7 @@ def solve(system, interactions, units) -> KSpace | None:
     mine = [use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings)]
     if not mine:
         raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as {solver.partner}")
+    solver.skin = skin
     solver.prepare(system, interactions, units, solver.take(mine, interactions, system))
     interactions.long_range = solver.constants
     return solver

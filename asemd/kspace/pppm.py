@@ -8,11 +8,12 @@ for the same accuracy: errors are estimated by equation 38 of M. Deserno, C. Hol
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.kernels import pppm, pppm_ad
 from asemd.kernels.callback import Callback
 from asemd.kernels.stencil import WIDE
@@ -59,6 +60,8 @@ class PPPM(KSpace):
 
     style = flag = "pppm"
     groups = takes_wire = True
+    site_distance = 0.0         # of massless sites from their atoms
+    largest_shift = 0.0         # of meshes, in spacings
 
     def choose(self, system):
         self.order = self.modify["order"] or 5
@@ -69,7 +72,17 @@ class PPPM(KSpace):
         self.ad = self.modify["diff"] == "ad"
         if self.ad and self._tilted(system):
             raise InputError(f"kspace_style {self.style}: kspace_modify diff ad needs a box that is not triclinic")
-        upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell
+        self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell * self.stretch[:, None]
+        self.choose_mesh(system)
+        while self.is_too_wide(self.mesh, self.order):
+            self.order = self.narrower(self.order, "order")
+            self.choose_mesh(system)
+        if not self.modify["gewald"]:
+            self.balance()
+
+    def choose_mesh(self, system) -> None:
+        """`mesh` and `spacing` for the order."""
+        upright = self.upright / self.stretch[:, None]
         mesh = list(self.modify["mesh"])
         if not any(mesh):
             mesh = self.fine_enough_ad() if self.ad else self.fine_enough()
@@ -80,9 +93,34 @@ class PPPM(KSpace):
         self.spacing = self.prd / self.mesh
         if self._tilted(system):
             self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
-        if not self.modify["gewald"]:
-            self.balance()
-        self.upright = upright * self.stretch[:, None]
+
+    def is_too_wide(self, mesh, order: int) -> bool:
+        """Whether ``kspace_modify overlap no`` forbids the weights of that order: those of an atom that is as far outside of the box as it
+        may be between two lists reach further beyond an end of the mesh than the mesh is long."""
+        if self.modify["overlap"]:
+            return False
+        further = (0.5 * self.skin + self.site_distance) * np.linalg.norm(np.linalg.inv(self.upright), axis=0) * mesh
+        middle = 0.5 * (order % 2)
+        for n, d, stretch in zip(mesh, further, self.stretch):
+            below, above = (order - 1) // 2 - math.floor(middle - d), order // 2 + 1 + math.floor(middle + d + self.largest_shift)
+            if below > n or (stretch == 1.0 and above > n):
+                return True
+        return False
+
+    def narrower(self, order: int, keyword: str) -> int:
+        """The next lower order.
+
+        Raises
+        ------
+        InputError
+            It is below ``kspace_modify minorder``.
+        """
+        if order <= (least := self.modify["minorder"]):
+            raise InputError(f"kspace_style {self.style}: with kspace_modify overlap no the mesh is too coarse for {keyword} {order}, and "
+                             f"minorder {least} allows no lower one; use overlap yes, or a finer mesh")
+        warnings.warn(f"kspace_style {self.style}: kspace_modify overlap no reduces {keyword} {order} to {order - 1} on this mesh",
+                      InputWarning, stacklevel=2)
+        return order - 1
 
     def fine_enough(self) -> list[int]:
         """Mesh points along each edge so that the error of that direction is below the accuracy; one more than that, as in LAMMPS."""

@@ -2,7 +2,9 @@
 
 Two meshes with splitting parameters of their own; C6 of two types is a sum of products of numbers that the types have, each of which is
 spread on the mesh of the attraction like a charge (R. E. Isele-Holder, W. Mitchell, A. E. Ismail, J. Chem. Phys. 137, 174107 (2012)).
-Meshes and parameters are those that LAMMPS chooses; its influence function is simpler than that of pppm.
+A pair style without such an attraction (dispersion
+``off``) has the mesh of charges alone. Meshes and parameters are those that LAMMPS chooses; its influence function is simpler than that of
+pppm.
 """
 from __future__ import annotations
 
@@ -30,16 +32,19 @@ class PPPMDisp(PPPM):
         self.dispersion, parts = dispersion_of(uses, interactions, system, self.style, self.modify["mix/disp"],
                                                self.modify["splittol"])
         charged = [(use, part) for use in uses for part in use.style.variant(use.settings).parts if part.long and part.charged]
-        self.coulomb, self.cutoff6 = bool(charged), self.cutoff_of(parts)
-        return self.cutoff_of(charged or parts)
+        self.coulomb = bool(charged)
+        if parts:
+            self.cutoff6 = self.cutoff_of(parts)
+        return self.cutoff_of(charged or parts) if charged or parts else 0.0
 
     def check(self, system):
         super().check(system)
         if self._tilted(system):
             raise InputError(f"kspace_style {self.style} needs a box that is not triclinic; use ewald/disp")
         given = self.modify
-        if not given["disp/auto"] and not (given["gewald/disp"] or any(given["mesh/disp"]) or given["force/disp/real"] > 0.0
-                                           or given["force/disp/kspace"] > 0.0):
+        said = (given["disp/auto"] or given["gewald/disp"] or any(given["mesh/disp"]) or given["force/disp/real"] > 0.0
+                or given["force/disp/kspace"] > 0.0)
+        if self.dispersion and not said:
             raise InputError(f"kspace_style {self.style} needs its accuracy for dispersion: kspace_modify force/disp/real and "
                              "force/disp/kspace, or gewald/disp and mesh/disp, or disp/auto yes")
 
@@ -57,24 +62,42 @@ class PPPMDisp(PPPM):
         for name, order in (("order", self.order), ("order/disp", self.order6)):
             if not 2 <= order <= 7:
                 raise InputError(f"kspace_style {self.style}: {name} must be 2 to 7, not {order}")
-        self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell
+        self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell * self.stretch[:, None]
         if self.coulomb:
-            mesh = self.modify["mesh"]
-            if not any(mesh):
-                mesh = self.mesh_for(self.g_ewald, self.accuracy, self.coulomb_error)
-            self.mesh = tuple(map(with_small_factors, mesh))
+            self.choose_mesh(system)
+            while self.is_too_wide(self.mesh, self.order):
+                self.order = self.narrower(self.order, "order")
+                self.choose_mesh(system)
             if not self.modify["gewald"]:
                 self.balance()
+        if self.dispersion:
+            self.choose_dispersion(system)
+
+    def choose_mesh(self, system):
+        mesh = self.modify["mesh"]
+        if not any(mesh):
+            mesh = self.mesh_for(self.g_ewald, self.accuracy, self.coulomb_error)
+        self.mesh = tuple(map(with_small_factors, mesh))
+
+    def choose_dispersion(self, system) -> None:
+        """Mesh and splitting parameter of the attraction."""
         self.c6 = self.dispersion.sums(system.type)[1]
         self.g6 = self.modify["gewald/disp"] or self.guess6()
+        self.choose_mesh6()
+        while self.is_too_wide(self.mesh6, self.order6):
+            self.order6 = self.narrower(self.order6, "order/disp")
+            self.choose_mesh6()
+        real, wave = (max(self.modify[name], -1.0) for name in ("force/disp/real", "force/disp/kspace"))
+        if not self.modify["gewald/disp"] and real == wave:
+            self.g6 = self.balanced(self.g6, lambda g: self.real_error6(g) - self.dispersion_error(self.mesh6, g))
+
+    def choose_mesh6(self) -> None:
+        """`mesh6` for the order."""
         mesh = self.modify["mesh/disp"]
         if not any(mesh):
             wanted = self.modify["force/disp/kspace"]
             mesh = self.mesh_for(self.g6, wanted if wanted > 0.0 else self.accuracy, self.dispersion_error)
         self.mesh6 = tuple(map(with_small_factors, mesh))
-        real, wave = (max(self.modify[name], -1.0) for name in ("force/disp/real", "force/disp/kspace"))
-        if not self.modify["gewald/disp"] and real == wave:
-            self.g6 = self.balanced(self.g6, lambda g: self.real_error6(g) - self.dispersion_error(self.mesh6, g))
 
     def coulomb_error(self, mesh, g: float) -> float:
         """Estimated error of forces by that mesh."""
@@ -166,7 +189,7 @@ class PPPMDisp(PPPM):
         for name, on, g, mesh, order, errors in (
                 ("Coulomb", self.coulomb, self.g_ewald, getattr(self, "mesh", ()), self.order,
                  lambda: (self.mesh_error, self.real_error)),
-                ("Dispersion", True, self.g6, self.mesh6, self.order6,
+                ("Dispersion", bool(self.dispersion), self.g6, getattr(self, "mesh6", ()), self.order6,
                  lambda: (self.dispersion_error(self.mesh6, self.g6), self.real_error6(self.g6)))):
             if on:
                 total = math.hypot(*errors())
@@ -176,7 +199,7 @@ class PPPMDisp(PPPM):
         return out
 
     def terms(self, engine):
-        return [MeshTerm(self, attractive) for attractive in ([False, True] if self.coulomb else [True])]
+        return [MeshTerm(self, attractive) for attractive, on in ((False, self.coulomb), (True, self.dispersion)) if on]
 
 
 class MeshTerm(PPPMTerm):

@@ -15,7 +15,7 @@ class PPPMDispTIP4P(PPPMDisp):
     partner = "lj/long/tip4p/long long long"
 
     def prepare(self, system, interactions, units, cutoff):
-        self.sites = sites_of(self, interactions)
+        self.sites, self.site_distance = sites_of(self, interactions)
         super().prepare(system, interactions, units, cutoff)
 
     def terms(self, engine):

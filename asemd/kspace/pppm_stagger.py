@@ -37,6 +37,7 @@ class PPPMStagger(PPPM):
 
     style = "pppm/stagger"
     groups = False
+    largest_shift = 0.5
 
     def check(self, system):
         super().check(system)

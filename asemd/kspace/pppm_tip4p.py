@@ -1,7 +1,8 @@
 r"""pppm for four-site water (TIP4P): charges of oxygen atoms are on massless sites, whose forces their three atoms share.
 
 The water molecules are those of the pair style, see pair_style tip4p/long. LAMMPS leaves the correction of ``kspace_modify slab`` out of
-the energy of this style; here it is in, and forces are its gradient. Source: LAMMPS manual, kspace_style pppm/tip4p.
+the energy of this style; here it is in, and forces are its gradient, unless ``compat="lammps"``. Source: LAMMPS manual, kspace_style
+pppm/tip4p.
 """
 from __future__ import annotations
 
@@ -12,9 +13,9 @@ from asemd.site_terms import OnSites
 
 
 def sites_of(solver, interactions):
-    """The `asemd.charge_sites.ChargeSites` of the pair style that leaves its charges to the solver."""
+    """The `asemd.charge_sites.ChargeSites` of the pair style that leaves its charges to the solver, and their distance from oxygen."""
     use = next(use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings))
-    return use.style.sites(use.settings, interactions)
+    return use.style.sites(use.settings, interactions), use.settings["qdist"]
 
 
 class PPPMTIP4P(PPPM):
@@ -24,7 +25,8 @@ class PPPMTIP4P(PPPM):
     groups = False
 
     def prepare(self, system, interactions, units, cutoff):
-        self.sites = sites_of(self, interactions)
+        self.sites, self.site_distance = sites_of(self, interactions)
+        self.like_lammps = interactions.compat == "lammps"
         super().prepare(system, interactions, units, cutoff)
 
     def terms(self, engine):
@@ -50,3 +52,8 @@ class ChargesOnSites(OnSites):
 
 class TIP4PTerm(ChargesOnSites, PPPMTerm):
     """The mesh of charges on sites."""
+
+    def __init__(self, solver):
+        super().__init__(solver)
+        if solver.like_lammps and self.constants[5] == 1.0:
+            self.constants[5] = 4.0

@@ -91,7 +91,7 @@ def report_mixing(session, command: str = "") -> None:
         return
     try:
         terms = complete(scene.interactions, n)
-        solver = solve(scene.system, scene.interactions, unit_styles.get(scene.system.units))
+        solver = solve(scene.system, scene.interactions, unit_styles.get(scene.system.units), scene.neighbor.skin)
     except InputError:      # what is missing is told when a run needs it
         return
     if solver is not None and (lines := solver.lines()):

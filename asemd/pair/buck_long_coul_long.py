@@ -28,8 +28,12 @@ def derived(c, settings):
     return {"C6": c["C"]}
 
 
+class BuckinghamDispersion(DispersionPair):
+    kinds = ("long", "cut")
+
+
 repulsion.d2 = repulsion_d2
-register(DispersionPair(
+register(BuckinghamDispersion(
     "buck/long/coul/long", [buck], [repulsion, dispersion], "cut_buck", coeff="A rho C [cut_buck]", rows="C6", derived=derived, check=check,
     units={"C": "energy*distance^6"}, settings_example="long long 10.0", example="100.0 0.3 20.0",
     see="LAMMPS manual, pair_style buck/long/coul/long", doc=inspect.cleandoc(__doc__)))

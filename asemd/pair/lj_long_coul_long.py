@@ -2,7 +2,8 @@ r"""$$E = 4 \epsilon \left( \frac{\sigma}{r} \right)^{12} - C_6 g_6^6 \left( \fr
     + \frac{C q_i q_j \, \mathrm{erfc}(g r)}{\epsilon_0 r}, \qquad u = g_6^2 r^2, \quad C_6 = 4 \epsilon \sigma^6, \quad r < r_c$$
 
 Lennard-Jones whose attraction has no cutoff: a long-range solver (ewald/disp or pppm/disp) adds the rest, for interfaces above all. With
-``cut`` instead of ``long`` the first part is lj/cut. Coulomb is ``long`` or ``off``. Special pairs lose the part of -C_6 / r^6 that
+``cut`` instead of ``long`` the first part is lj/cut; so it is with ``off``, which LAMMPS's manual has without an attraction but LAMMPS
+computes as ``cut``, for charges with the solver pppm/disp. Coulomb is ``long`` or ``off``. Special pairs lose the part of -C_6 / r^6 that
 special_bonds takes off, for the solver knows nothing of bonds.  In 't Veld, Ismail, Grest, J. Chem. Phys. 127, 144711 (2007).
 """
 from __future__ import annotations
@@ -62,6 +63,8 @@ class DispersionPair(PairStyle):
     `first` is the name of their cutoff.
     """
 
+    kinds = ("long", "cut", "off")
+
     def form(self, coulomb: str) -> type[PairStyle]:
         """What it is with that second word."""
         return PairStyle
@@ -78,11 +81,8 @@ class DispersionPair(PairStyle):
     def parse_settings(self, words):
         values = super().parse_settings(words)
         what = f"pair_style {self.name}"
-        if values["dispersion"] == "off":
-            raise InputError(f"{what}: dispersion off would leave out r^-6 by LAMMPS's manual, but LAMMPS computes what it does for cut; "
-                             "write cut for that")
-        if values["dispersion"] not in ("long", "cut"):
-            raise InputError(f"{what}: dispersion must be long or cut, got {values['dispersion']!r}")
+        if values["dispersion"] not in self.kinds:
+            raise InputError(f"{what}: dispersion must be {', '.join(self.kinds[:-1])} or {self.kinds[-1]}, got {values['dispersion']!r}")
         if values["coulomb"] not in ("long", "off"):
             raise InputError(f"{what}: coulomb must be long or off, got {values['coulomb']!r}")
         if values["dispersion"] == values["coulomb"] == "long" and len(words) == 4:
@@ -105,7 +105,13 @@ class DispersionPair(PairStyle):
     def needs(self, settings):
         if settings["dispersion"] == "long":
             return frozenset(DISPERSION)
-        return frozenset(EWALD) if settings["coulomb"] == "long" else frozenset()
+        if settings["coulomb"] == "off":
+            return frozenset()
+        return frozenset(EWALD if settings["dispersion"] == "cut" else ["pppm/disp"])
+
+    def works_with(self, settings):
+        nothing = settings["dispersion"] == settings["coulomb"] == "off"
+        return self.needs(settings) | ({"pppm/disp", "pppm/disp/dielectric"} if nothing else set())
 
 
 def derived(c, settings):

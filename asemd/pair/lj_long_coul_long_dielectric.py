@@ -19,7 +19,7 @@ class DielectricDispersionPair(DispersionPair, DielectricPair):
     def needs(self, settings):
         if settings["coulomb"] == "off":
             return super().needs(settings) | ({"pppm/disp/dielectric"} if settings["dispersion"] == "long" else set())
-        return frozenset(["pppm/disp/dielectric" if settings["dispersion"] == "long" else "pppm/dielectric"])
+        return frozenset(["pppm/dielectric" if settings["dispersion"] == "cut" else "pppm/disp/dielectric"])
 
 
 register(DielectricDispersionPair(

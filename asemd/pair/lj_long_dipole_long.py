@@ -1,6 +1,7 @@
 r"""lj/long/coul/long for charges with point dipoles, whose interactions are those of lj/cut/dipole/long.
 
-The first word says what the attraction -C_6 / r^6 does beyond the cutoff, ``long`` or ``cut``, the second the same of charges and dipoles,
+The first word says what the attraction -C_6 / r^6 does beyond the cutoff, ``long`` or ``cut`` (``off`` is computed as ``cut``, as in
+LAMMPS, and has no solver), the second the same of charges and dipoles,
 ``long`` or ``off``. Dipoles feel torques. Where dispersion is ``long`` coefficients of unlike types are always mixed ones, and all pairs
 have the same cutoff. The solver is ewald/disp or ewald/disp/dipole.
 """
@@ -28,6 +29,13 @@ class LongDipoles(PairStyle):
 
 
 class DipoleDispersion(DispersionPair):
+    def parse_settings(self, words):
+        values = super().parse_settings(words)
+        if values["dispersion"] == "off" and values["coulomb"] == "long":
+            raise InputError(f"pair_style {self.name}: with dispersion off there is no solver for charges and dipoles, in LAMMPS neither; "
+                             "write cut long, which is computed in the same way")
+        return values
+
     def form(self, coulomb):
         return PairStyle if coulomb == "off" else LongDipoles
 
