@@ -137,13 +137,7 @@ class Adapt(Fix):
             raise InputError("fix adapt kspace needs a kspace_style")
         self._kept = []
         self._change(loop)
-        loop.engine.forces(True)
-        loop._collect()
-        for n in range(loop.fixes.index(self)):
-            if "post_force" in loop._kinds[n]:
-                loop._call(n, "post_force")
-        loop._collect()
-        loop.sync_out()
+        loop.forces_again(self)
 
     def pre_force(self, loop) -> None:
         """Change what is due."""
