@@ -356,7 +356,9 @@ class Loop:
             self._hook("pre_neighbor")
             self._rebuild()
             self._hook("post_neighbor")
+        began = time.perf_counter()
         self._hook("pre_force")
+        e.timings["Modify"] += time.perf_counter() - began
         try:
             e.forces(energy)
         except SimulationError as error:

@@ -3,7 +3,8 @@ r"""What fixes that find charges have in common: charges for which the electrone
 .. math:: E(q) = \sum_i \left( \chi_i q_i + \tfrac12 \eta_i q_i^2 \right) + \sum_{i < j} J(r_{ij}) q_i q_j, \qquad
           \frac{\partial E}{\partial q_i} = \mu
 
-for pairs within a cutoff. Atoms outside the group keep their charges and act on those of it. Forces and energies of a run are those of the
+for pairs within a cutoff. Atoms outside the group keep their charges and act on those of it (in LAMMPS only some do, and most fixes pass
+over them). Forces and energies of a run are those of the
 pair style for the charges; E itself is no part of them.
 
 A. K. Rappe, W. A. Goddard, J. Phys. Chem. 95, 3358 (1991); A. Nakano, Comput. Phys. Commun. 104, 59 (1997).
@@ -19,7 +20,7 @@ from asemd.compute._pairs import half
 from asemd.errors import InputError
 from asemd.fix import Fix, sampled
 from asemd.kspace.term import KSpaceTerm
-from asemd.potential_file import PotentialFile
+from asemd.potential_file import PotentialFile, Record
 from asemd.words import bounds, number, take, whole, yes_no
 
 NAMES = "chi eta gamma zeta qcore"
@@ -63,7 +64,8 @@ class ChargeEquilibration(Fix):
         for name, value in (("Nevery", every), ("cutoff", cutoff), ("tolerance", tolerance), ("maxiter", maxiter)):
             if not value > 0:
                 raise InputError(f"{what}: {name} must be positive, got {value:g}")
-        self.find_every, self.cutoff, self.tolerance, self.maxiter, self.warn = int(every), float(cutoff), float(tolerance), int(maxiter), warn
+        self.find_every, self.maxiter, self.warn = int(every), int(maxiter), warn
+        self.cutoff, self.tolerance = float(cutoff), float(tolerance)
         self.parameters_of = parameters
         self.history = np.zeros((0, 8))
         self.words: list[str] = []
@@ -123,7 +125,10 @@ class ChargeEquilibration(Fix):
         file, out = PotentialFile(name, f"fix {self.style}"), {}
         if file.units and file.units != system.units:
             raise file.error(f"the file is in {file.units} units, but {system.units} units are in use", 1)
-        for record in file.records(6):
+        for line, text in file.lines:
+            record = Record(text.split(), file.where(line), file.what)
+            if len(record.words) != 6:
+                raise file.error(f"a line needs a type and {NAMES}, got {len(record.words)} words", line)
             try:
                 first, last = bounds(record.word("a type"), 1, ntypes, file.what, system.labels["atom"])
             except InputError as error:

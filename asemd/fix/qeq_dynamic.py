@@ -2,9 +2,9 @@ r"""Charges for which the electronegativity of all atoms is the same, of point c
 
 .. math:: g_i = \langle \mu \rangle - \mu_i, \qquad \mu_i = \chi_i + \eta_i q_i + \sum_j q_j / r_{ij}
 
-Charges, of mass 0.016, move with the forces g, damped by ``qdamp`` (0.1), in steps of ``qstep`` (0.02), until the mean of \|g\| is below the tolerance and no
-\|g\| above a hundred times it. The sum of charges stays what it is. Arguments and file as of fix qeq/point; only chi and eta count. S. W. Rick,
-S. J. Stuart, B. J. Berne, J. Chem. Phys. 101, 6141 (1994). Source: LAMMPS manual, fix qeq/dynamic.
+Charges, of mass 0.016, move with the forces g, damped by ``qdamp`` (0.1), in steps of ``qstep`` (0.02), until the mean of all \|g\| is
+below the tolerance and none above a hundred times it. The sum of charges stays what it is. Arguments and file as of fix qeq/point; only
+chi and eta count. S. W. Rick, S. J. Stuart, B. J. Berne, J. Chem. Phys. 101, 6141 (1994). Source: LAMMPS manual, fix qeq/dynamic.
 """
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 r"""Charges for which the electronegativity of all atoms is the same, of point charges, by the fast inertial relaxation engine FIRE.
 
 Charges move with the forces of fix qeq/dynamic, and their velocities are turned towards these forces; where they are against them charges
-stop and steps become half as long. No charge changes by more than 0.1 in a step. It ends when the mean of the forces is below the tolerance.
-Keyword ``qstep`` (0.2): the first step is half of it; ``qdamp`` is read, but has no effect, in LAMMPS neither. Otherwise as fix qeq/dynamic.
+stop and steps become half as long. No charge changes by more than 0.1 in a step. It ends when the mean of the forces is below the
+tolerance. Keyword ``qstep`` (0.2): the first step is half of it; ``qdamp`` is read, but has no effect, in LAMMPS neither. Otherwise as fix
+qeq/dynamic. LAMMPS computes the forces between periodic images with the charges of the iteration before the last.
 E. Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006). Source: LAMMPS manual, fix qeq/fire.
 """
 from __future__ import annotations

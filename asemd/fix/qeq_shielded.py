@@ -8,6 +8,8 @@ qeq/point. Source: LAMMPS manual, fix qeq/shielded.
 """
 from __future__ import annotations
 
+import numpy as np
+
 from asemd.fix.qeq_point import QEqPoint
 
 COULOMB = 14.4
@@ -22,6 +24,6 @@ class QEqShielded(QEqPoint):
         return super().wrong(numbers) or ("" if numbers["gamma"] > 0.0 else "gamma must be positive")
 
     def elements(self, loop, i, j, r, numbers):
-        x, gamma = r / self.cutoff, numbers["gamma"]
-        taper = 1.0 + x**4 * (-35.0 + x * (84.0 + x * (-70.0 + 20.0 * x)))
-        return COULOMB * taper / (r**3 + (gamma[i] * gamma[j]) ** -1.5) ** (1.0 / 3.0), numbers["chi"].copy(), numbers["eta"]
+        x, third = r / self.cutoff, numbers["gamma"] ** -1.5
+        taper = 1.0 + (x * x) ** 2 * (-35.0 + x * (84.0 + x * (-70.0 + 20.0 * x)))
+        return COULOMB * taper / np.cbrt(r * r * r + third[i] * third[j]), numbers["chi"].copy(), numbers["eta"]

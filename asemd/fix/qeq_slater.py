@@ -4,9 +4,9 @@ r"""Charges for which the electronegativity of all atoms is the same, of ions wi
           \chi_i \leftarrow \chi_i + C \sum_j Z_j (a_i - f_{ij}), \qquad
           \eta_i \leftarrow \eta_i - C \left( \frac{\mathrm{erfc}(\alpha r_c)}{r_c} + \frac{2 \alpha}{\sqrt\pi} \right)
 
-with a and f as in pair style coul/streitz. A line of the file is ``type chi eta gamma zeta qcore``, gamma does not count, qcore is Z; or the
-word ``coul/streitz`` stands in its place, and the parameters are those of that pair style. Keyword ``alpha`` (0.2, 1/distance). Otherwise as
-fix qeq/point. Source: LAMMPS manual, fix qeq/slater.
+with a and f as in pair style coul/streitz. A line of the file is ``type chi eta gamma zeta qcore``, gamma does not count, qcore is Z; or
+the word ``coul/streitz`` stands in its place, and the parameters are those of that pair style. Keyword ``alpha`` (0.2, 1/distance).
+Otherwise as fix qeq/point. Source: LAMMPS manual, fix qeq/slater.
 """
 from __future__ import annotations
 
