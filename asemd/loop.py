@@ -118,16 +118,6 @@ class Loop:
             if "post_force" in self._kinds[n]:
                 self._call(n, "post_force")
 
-    def forces_again(self, fix: Fix) -> None:
-        """Compute the first forces once more, for a fix that has changed what they come from in its `setup`."""
-        self.engine.forces(True)
-        self._collect()
-        for n in range(self.fixes.index(fix)):
-            if "post_force" in self._kinds[n]:
-                self._call(n, "post_force")
-        self._collect()
-        self.sync_out()
-
     def arrays_of(self, fix: Fix) -> np.ndarray | tuple[np.ndarray, ...]:
         a = fix.atom_arrays(self)
         return a if isinstance(a, tuple) else np.zeros((1, 1)) if a is None else np.ascontiguousarray(a, float)

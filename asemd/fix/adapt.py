@@ -16,6 +16,7 @@ from asemd.compute._perturbed import held, spelled, uses_of
 from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
+from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
 from asemd.kspace.term import KSpaceTerm
 from asemd.population import retie
@@ -137,7 +138,7 @@ class Adapt(Fix):
             raise InputError("fix adapt kspace needs a kspace_style")
         self._kept = []
         self._change(loop)
-        loop.forces_again(self)
+        forces_again(loop, self)
 
     def pre_force(self, loop) -> None:
         """Change what is due."""

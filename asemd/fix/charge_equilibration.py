@@ -19,6 +19,7 @@ import numpy as np
 from asemd.compute._pairs import half
 from asemd.errors import InputError
 from asemd.fix import Fix, sampled
+from asemd.fix.first_forces import forces_again
 from asemd.kspace.term import KSpaceTerm
 from asemd.potential_file import PotentialFile, Record
 from asemd.words import bounds, number, take, whole, yes_no
@@ -157,7 +158,7 @@ class ChargeEquilibration(Fix):
             raise InputError(f"fix {self.style} needs a pair style, whose neighbour list it uses")
         if loop.step % self.find_every == 0:
             self.find_charges(loop)
-            loop.forces_again(self)
+            forces_again(loop, self)
 
     def pre_force(self, loop) -> None:
         """New charges, where they are due."""
