@@ -1,7 +1,7 @@
 """All benchmarks: ``python -m tests.benchmarks [NAME ...] [--samples 7] [--threads 1 2] [--readme] [--quick]``.
 
-Without names all of them run: the scenes of the table of speeds (`tests.benchmarks.cases`), ``sizes``, ``watchdog``, ``memory`` and
-``startup``.
+Without names all of them run: the scenes of the table of speeds (`tests.benchmarks.cases`), ``sizes``, ``watchdog``, ``memory``,
+``startup`` and ``peers``.
 ``--readme`` keeps the figures in ``docs/measured/benchmarks.json``, each as soon as it is there, and puts the tables into the README and
 ``docs/speed.md``; figures of other names stay. On a processor with AVX-512, ``NUMBA_CPU_NAME=haswell python -m tests.benchmarks`` gives the
 figures of one with AVX2.
@@ -12,11 +12,12 @@ import argparse
 import json
 from pathlib import Path
 
-from tests.benchmarks import cases, compare, memory, page, sizes, startup, watchdog
+from tests.benchmarks import cases, compare, memory, page, peers, sizes, startup, watchdog
 
 OTHERS = {"watchdog": lambda quick: {"watchdog, percent of the loop": watchdog.measure(2 if quick else 5, quick)},
           "memory": lambda quick: {"memory": memory.measure(samples=1 if quick else 3)},
-          "startup": lambda quick: {"start-up": startup.measure(2 if quick else 5)}}
+          "startup": lambda quick: {"start-up": startup.measure(2 if quick else 5)},
+          "peers": lambda quick: {"peers": peers.measure(1 if quick else 2, quick)}}
 
 
 def main() -> None:
