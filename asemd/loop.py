@@ -320,15 +320,17 @@ class Loop:
             getattr(self.fixes[n], name)(self)
 
     def _hook(self, name: str) -> None:
+        began = time.perf_counter()
         for n, fix in enumerate(self.fixes):
             kind = self._kinds[n].get(name)
             if kind is None or (not kind and name in IN_A_STEP and fix.next_step(self.step - 1) != self.step):
                 continue
             if name != "end_of_step" or (self.step % fix.every == 0 if kind else fix.next_end(self.step - 1) == self.step):
                 self._call(n, name)
+        self.engine.timings["Modify"] += time.perf_counter() - began
 
     def _python_step(self, energy: bool) -> None:
-        e, s, began = self.engine, self.settings, time.perf_counter()
+        e, s = self.engine, self.settings
         self.step += 1
         needs = self._needs(self.step)
         energy = energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0
@@ -340,27 +342,22 @@ class Loop:
             need = not s.check or not e.k.moved(e.state.x, e.held, e.ns) <= limit**2
             if need and s.check and self._ago == max(s.every, s.delay):
                 e.dangerous += 1
-        e.timings["Modify"] += time.perf_counter() - began
         if need or any(f.next_reneighbor == self.step for f in self.fixes):
             self._hook("pre_exchange")
             self._hook("pre_neighbor")
             self._rebuild()
             self._hook("post_neighbor")
-        began = time.perf_counter()
         self._hook("pre_force")
-        e.timings["Modify"] += time.perf_counter() - began
         try:
             e.forces(energy)
         except SimulationError as error:
             e.store()
             raise SimulationError(f"step {self.step}: {error}") from None
-        began = time.perf_counter()
         if needs:
             self._collect()
             e.per_atom(self.result, needs)
         for name in ("post_force", "final_integrate", "end_of_step"):
             self._hook(name)
-        e.timings["Modify"] += time.perf_counter() - began
 
     # ---- exchange with the system -------------------------------------------------------------------------------------------------------
     def sync_out(self) -> None:

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import cluster, cluster_rows, columns, gaps, pair_list, rebuild, relist
+from asemd.kernels import cluster, cluster_rows, columns, gaps, pair_list, rebuild, relist, sieve
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.state import Cell
@@ -23,7 +23,8 @@ EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
 
 
-PIECES = columns.column, columns.stands, cluster.reached, cluster.drop, cluster.arrange, cluster.append, gaps.squeeze
+SORTING = cluster.drop, cluster.arrange, cluster.append, *sieve.PIECES      # ways to do it
+PIECES = columns.column, columns.stands, cluster.reached, *SORTING, gaps.squeeze
 ABOUT_CELLS = *PIECES, cluster.sort, columns.near_columns, cluster.build
 
 
@@ -32,9 +33,10 @@ def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
     b = Builder("squeezed neighbour lists" if squeezed else "neighbour lists")
     b.line("from asemd.kernels.candidates import copy8")
     for name, value in (("CLUSTER", CLUSTER), ("STRIP", columns.STRIP), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False),
-                        ("SORTED", order), ("SQUEEZED", squeezed), ("SLOT_BITS", cluster.SLOT_BITS)):
+                        ("SORTED", order), ("SQUEEZED", squeezed), ("SLOT_BITS", cluster.SLOT_BITS), ("SIEVE", sieve.WIDE and order)):
         b.constant(name, value)
-    _add(b, *(f for f in PIECES if f is not (cluster.append if order else cluster.arrange)), *(f for f in ABOUT_CELLS if f not in PIECES))
+    sorting = sieve.named(b) if sieve.WIDE and order else (cluster.drop, cluster.arrange if order else cluster.append)
+    _add(b, *sorting, *(f for f in ABOUT_CELLS if f not in SORTING))
     return b
 
 

@@ -5,12 +5,14 @@ import numpy as np
 
 from asemd.kernels import prune
 from asemd.kernels.cluster import CLUSTER
+from asemd.kernels.sieve import WIDE
 from asemd.kernels.state import aligned
 from asemd.neighbor import COUNTERS, ClusterList
 from asemd.style import operations
 
 PART = 0.35              # of the skin, which pruned lists begin with
 MAKING, BARE, EACH = 6.0, 0.5, 0.025      # times, up to a factor: of pruning an entry, of a pair without its formula, of an operation
+PRUNING = 3.0 if WIDE else MAKING         # the first as it is on this processor; which styles have pruned lists does not depend on it
 ENTRY = 6.8              # pairs that kernels compute for an entry of the list
 INTERVAL = 3             # force evaluations for which a pruned list serves, at least
 
@@ -27,11 +29,11 @@ class PrunedList:
     def __init__(self, threads: int, skin: float, cut: float, style):
         self.memo = np.zeros((threads, 7))
         self.memo[:, prune.SKIN], self.memo[:, prune.MOST], self.memo[:, prune.CUT] = PART * skin, skin, cut
-        self.memo[:, prune.COST] = MAKING / (ENTRY * (BARE + EACH * operations(*style.functions())))
+        self.memo[:, prune.COST] = PRUNING / (ENTRY * (BARE + EACH * operations(*style.functions())))
         self.seen = np.zeros((threads, 3, 0))
         self.first = self.entries = self.excluded = np.zeros((threads, 0), np.int32)
         self.own = np.zeros(0, np.int32)
-        self.codes = np.zeros((threads, 0), np.int64)
+        self.codes = self.to = np.zeros((threads, 0), np.int64)
 
     @staticmethod
     def pays(skin: float, cut: float, density: float, style) -> bool:
@@ -62,9 +64,10 @@ class PrunedList:
             self.hide = np.empty((threads, clusters.entries.shape[1] if clusters.marked else 0), np.uint8)
         if self.excluded.shape != clusters.excluded.shape:
             self.excluded = np.empty_like(clusters.excluded)
-        if self.codes.shape[1] != row:
-            self.codes, self.to = np.zeros((threads, row), np.int64), np.zeros((threads, row), np.int64)
-            self.room = aligned((threads, 3 * row))
+        if self.to.shape[1] != row:
+            self.to = np.zeros((threads, row), np.int64)
+            self.codes = np.zeros((threads, 0 if WIDE else row), np.int64)
+            self.room, self.short = aligned((threads, 0 if WIDE else 3 * row)), aligned((threads, 3 * row * WIDE), np.float32)
             self.tally = np.zeros((threads, 8), np.int64)
         self.memo[:, prune.VALID] = 0.0
         self.width, self.empty = clusters.width, empty
@@ -73,6 +76,6 @@ class PrunedList:
         """What a thread's kernel makes it of; `of_thread` gives the thread's rows of arrays."""
         first, entries, *mine = of_thread(
             tid, clusters.first, clusters.entries, clusters.excluded_first, clusters.excluded,
-            clusters.hide if clusters.marked else self.hide, self.seen, self.seen_shifts, self.memo, self.room, self.codes, self.to,
-            self.tally)
+            clusters.hide if clusters.marked else self.hide, self.seen, self.seen_shifts, self.memo, self.room, self.short, self.codes,
+            self.to, self.tally)
         return prune.Whole(first, entries, clusters.own, *mine, COUNTERS, self.width, self.empty)

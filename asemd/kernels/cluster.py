@@ -7,7 +7,8 @@ images), and of its own cluster the images on the positive side. An entry is slo
 -1, 0, 1 in base three, 13 is no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
-generated module, and so are MARK (which atoms are beyond reach is wanted), SORTED (rows are), TRACK, see `arrange`. What follows from
+generated module, and so are MARK (which atoms are beyond reach is wanted), SORTED (rows are), TRACK, see `arrange`, and SIEVE, whether
+`asemd.kernels.sieve` does its work. What follows from
 a list (exclusions, plain pairs, rows of atoms) is in `asemd.kernels.cluster_rows`, shorter lists for a few steps in `.prune`.
 """
 from __future__ import annotations
@@ -22,6 +23,8 @@ from asemd.kernels.gaps import squeeze
 
 CLUSTER = 8
 ORTHO = MARK = TRACK = SORTED = True
+SIEVE = False
+arrange16 = None
 SLOT_BITS = 0x3FFFFFF
 
 
@@ -265,6 +268,9 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     capacity = codes.shape[0]
     longest[0] = 0
     tally = np.zeros(8, np.int64)
+    if SIEVE:
+        spare = np.empty((5, capacity + 16), np.int32)
+        order, tags, keys, to_order, to_tags = spare[0], spare[1], spare[2], spare[3], spare[4]
     most = 3 * min(2 * ra + 1, 3 * nx) * min(2 * rb + 1, 3 * ny) + 1
     run_start, run_count, run_code = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
     index_a, image_a, gap_a = np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1, np.int64), np.empty(2 * ra + 1)
@@ -330,7 +336,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
             k0 = run_start[run]
             count = run_count[run]
             code = run_code[run]
-            if nt + count + CLUSTER > capacity:
+            if nt + count + 2 * CLUSTER > capacity:
                 return -2
             if code != 13:
                 all_in = False
@@ -350,14 +356,19 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         reached(tx, ty, tz, codes, nt + CLUSTER, x[0], x[1], x[2], ci * CLUSTER, m, r2)
         if n + nt + 2 * CLUSTER + width > entries.shape[0]:
             return -1
-        kept = drop(codes, nt)
-        if kept > 0xFFFF - CLUSTER:
-            return -4
         start = n
-        if SORTED:
-            n = arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, empty, hide)
+        if SIEVE:
+            n = arrange16(ci, codes, nt, start, entries, own, span, tally, width, empty, hide, order, tags, keys, to_order, to_tags)
+            if tally[7] > 0xFFFF - CLUSTER:
+                return -4
         else:
-            n = append(ci, codes, kept, start, entries, own, span, width, empty, hide)
+            kept = drop(codes, nt)
+            if kept > 0xFFFF - CLUSTER:
+                return -4
+            if SORTED:
+                n = arrange(ci, codes, kept, start, entries, own, span, sorting, tally, width, empty, hide)
+            else:
+                n = append(ci, codes, kept, start, entries, own, span, width, empty, hide)
         if MARK:
             for k in range(CLUSTER):
                 hide[start + own[ci] + k] = np.uint8(255 - (codes[nt + k] >> 32))

@@ -17,11 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from asemd.kernels import cluster
+from asemd.kernels import cluster, sieve
 from asemd.kernels.gather import gather8
 from asemd.kernels.generate import Builder
 
 CLUSTER = 8
+MARKED, LANES = sieve.MARKED, sieve.LANES
+reached = drop = arrange = reached16 = place16 = pick16 = marked16 = None
 SLOT_BITS = 0x3FFFFFF
 VALID, SKIN, CALLS, MOST, CUT, RENEWALS, COST = range(7)      # places in `memo`
 
@@ -31,7 +33,8 @@ class Whole(NamedTuple):
 
     `seen (3, slots)` and `seen_shifts`: positions and image shifts when it was pruned; `memo (7,)`: whether it is valid, its skin,
     evaluations since, the skin of the whole list, the cutoff, how often it was made, what making it costs; `hide`: see
-    `asemd.kernels.pair_cluster`, of length 0 if unused; `empty`: an empty slot; `room`, `codes`, `to`, `tally`: work space.
+    `asemd.kernels.pair_cluster`, of length 0 if unused; `empty`: an empty slot; `room`, `short`, `codes`, `to`, `tally`: work space, the
+    second in single precision.
     """
 
     first: np.ndarray
@@ -44,6 +47,7 @@ class Whole(NamedTuple):
     seen_shifts: np.ndarray
     memo: np.ndarray
     room: np.ndarray
+    short: np.ndarray
     codes: np.ndarray
     to: np.ndarray
     tally: np.ndarray
@@ -134,6 +138,68 @@ def prune(near, shifts, whole, unshifted, c0, c1, reach2, first, entries, own, s
     first[c1], excluded_first[c1] = n, taken
 
 
+def prune16(near, shifts, whole, unshifted, c0, c1, reach2, first, entries, own, span, excluded_first, excluded, hide):
+    """As `prune`, for processors with wide vectors (`asemd.kernels.sieve`). Distances are in single precision, and the reach is a little
+    longer, lest a pair be lost."""
+    b, to = whole.short, whole.to
+    row = to.shape[0]
+    tx, ty, tz = b[0:row], b[row:2 * row], b[2 * row:3 * row]
+    spare = np.empty((6, row + 16), np.int32)
+    order, tags, keys, to_order, to_tags, who = spare[0], spare[1], spare[2], spare[3], spare[4], spare[5]
+    r2 = np.float32(1.0001 * reach2)
+    n = taken = np.int64(0)
+    for ci in range(c0, c1):
+        first[ci], excluded_first[ci] = n, taken
+        s = ci * CLUSTER
+        ox, oy, oz = near[s, 0], near[s, 1], near[s, 2]
+        f0 = np.int64(whole.first[ci])
+        full = np.int64(whole.first[ci + 1]) - f0
+        if unshifted[ci]:
+            for k in range(0, full, 8):
+                gather8(b, k, row, near, whole.entries, f0 + k, ox, oy, oz, shifts, SLOT_BITS, False, 0)
+        else:
+            for k in range(0, full, 8):
+                gather8(b, k, row, near, whole.entries, f0 + k, ox, oy, oz, shifts, SLOT_BITS, True, 0)
+        mine = np.int64(whole.own[ci])
+        reached16(tx, ty, tz, who, (full + 15) // 16 * 16, mine, r2)
+        for k in range(mine, mine + CLUSTER):
+            who[np.uint64(k)] = 0
+        x0, x1 = whole.excluded_first[ci], whole.excluded_first[ci + 1]
+        for y in range(x0, x1):
+            k = np.int64(whole.excluded[y] & np.int32(0xFFFF))
+            to[k] = -1
+            who[k] |= MARKED
+        start, kept, found = n, np.int64(0), np.int64(0)
+        for t in range(0, full, LANES):
+            kept = pick16(whole.entries, f0, who, t, full, order, tags, keys, kept)
+        n = place16(ci, kept, start, entries, own, span, whole.tally, whole.width, whole.empty, order, tags, keys, to_order,
+                    to_tags)
+        here = np.int64(own[ci])
+        for k in range(CLUSTER):
+            to[mine + k] = here + k
+        if x1 > x0:
+            for t in range(0, kept, LANES):
+                found = marked16(to_tags, t, kept, keys, found)
+            for k in range(found):
+                q = np.int64(keys[k])
+                to[np.int64((to_tags[q] & (MARKED - 1)) >> 8)] = q + (CLUSTER if q >= here else 0)
+        if whole.hide.shape[0] > 0:
+            for q in range(here):
+                hide[np.uint64(start + q)] = whole.hide[np.uint64(f0 + ((to_tags[np.uint64(q)] & (MARKED - 1)) >> 8))]
+            for q in range(here, kept):
+                hide[np.uint64(start + CLUSTER + q)] = whole.hide[np.uint64(f0 + ((to_tags[np.uint64(q)] & (MARKED - 1)) >> 8))]
+            for k in range(CLUSTER):
+                hide[start + here + k] = whole.hide[f0 + mine + k]
+            for k in range(start + kept + CLUSTER, n):
+                hide[k] = 255
+        for y in range(x0, x1):
+            k = to[np.int64(whole.excluded[y] & np.int32(0xFFFF))]
+            if k >= 0:
+                excluded[taken] = np.int32((whole.excluded[y] & ~np.int32(0xFFFF)) | k)
+                taken += 1
+    first[c1], excluded_first[c1] = n, taken
+
+
 @cache
 def module():
     """The compiled functions."""
@@ -142,6 +208,11 @@ def module():
     for name, value in dict(CLUSTER=CLUSTER, SLOT_BITS=SLOT_BITS, MARK=False, TRACK=True, COST=COST, VALID=VALID, SKIN=SKIN, CALLS=CALLS,
                             MOST=MOST, CUT=CUT, RENEWALS=RENEWALS).items():
         b.constant(name, value)
-    for f in (cluster.reached, cluster.drop, cluster.arrange, prune, renew):
+    if sieve.WIDE:
+        sieve.named(b)
+    pieces = (sieve.reached16, sieve.place16) if sieve.WIDE else (cluster.reached, cluster.drop, cluster.arrange)
+    for f in pieces:
         b.function(f, fast=True)
+    b.function(prune16 if sieve.WIDE else prune, "prune", fast=True)
+    b.function(renew, fast=True)
     return b.build()
