@@ -32,8 +32,8 @@ def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
     """With the functions that depend on cells."""
     b = Builder("squeezed neighbour lists" if squeezed else "neighbour lists")
     b.line("from asemd.kernels.candidates import copy8")
-    for name, value in (("CLUSTER", CLUSTER), ("STRIP", columns.STRIP), ("ORTHO", ortho), ("MARK", mark), ("TRACK", False),
-                        ("SORTED", order), ("SQUEEZED", squeezed), ("SLOT_BITS", cluster.SLOT_BITS), ("SIEVE", sieve.WIDE and order)):
+    for name, value in dict(CLUSTER=CLUSTER, FEW=cluster_rows.FEW, STRIP=columns.STRIP, ORTHO=ortho, MARK=mark, TRACK=False, SORTED=order,
+                            SQUEEZED=squeezed, SLOT_BITS=cluster.SLOT_BITS, SIEVE=sieve.WIDE and order).items():
         b.constant(name, value)
     sorting = sieve.named(b) if sieve.WIDE and order else (cluster.drop, cluster.arrange if order else cluster.append)
     _add(b, *sorting, *(f for f in ABOUT_CELLS if f not in SORTING))
@@ -42,7 +42,7 @@ def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
 
 def _add(b: Builder, *functions) -> None:
     for f in functions:
-        b.function(f, fast=f in (columns.near_columns, *PIECES, cluster.build, cluster_rows.rows), inline=f in PIECES)
+        b.function(f, fast=f in (columns.near_columns, *PIECES, cluster.build, cluster_rows.rows, cluster_rows.find), inline=f in PIECES)
 
 
 @cache
@@ -50,10 +50,10 @@ def kernels(ortho: bool, mark: bool = False, order: bool = True):
     """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, `order`: sorted rows, see
     `cluster.build`."""
     b = _builder(ortho, mark, order, False)
-    _add(b, cluster.wrap, cluster_rows.exclude, cluster_rows.count, cluster_rows.expand, cluster_rows.rows, pair_list._cell,
-         pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load, rebuild.store, rebuild.moved,
-         rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.closest, rebuild.mark_special, rebuild.forbidden,
-         rebuild.drop_excluded, rebuild.special_pairs, relist.split, relist.balance)
+    _add(b, cluster.wrap, cluster_rows.find, cluster_rows.previous, cluster_rows.exclude, cluster_rows.count, cluster_rows.expand,
+         cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load,
+         rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.closest, rebuild.mark_special,
+         rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs, relist.split, relist.balance)
     return b.build()
 
 

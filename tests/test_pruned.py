@@ -6,6 +6,7 @@ import pytest
 from wheel import ran
 
 from asemd.engine import Engine, Settings
+from asemd.kernels import cluster_rows
 from asemd.pruned import PrunedList
 
 SCRIPT = """
@@ -92,3 +93,24 @@ def test_the_same_run(monkeypatch, commands):
     (x, pe, press), (y, pe2, press2) = found
     assert np.abs(x - y).max() < 1e-7
     assert pe == pytest.approx(pe2, rel=1e-9) and press == pytest.approx(press2, rel=1e-6, abs=1e-4)
+
+
+@pytest.mark.parametrize("edge", ["18 0 17 0 19", "13 0 12.5 0 14"])
+@pytest.mark.parametrize("tilt", list(TILTS))
+def test_both_ways_to_find_excluded_entries(tilt, edge, monkeypatch):
+    """Partners looked for one by one, and by a table of the row; a small cell has several images of an atom in a row."""
+    small = edge[:2] == "13"
+    text = SCRIPT.replace("18 0 17 0 19", edge).replace("random 260", "random 110" if small else "random 260")
+    s = ran(text.format(tilt="0.5 -0.5 0.4" if small and tilt != "orthogonal" else TILTS[tilt], modify="every 1 delay 0")).session.scene
+    engine = Engine(s.system, s.interactions, Settings(skin=2.0))
+    engine.compute()
+    made, found = engine.list, []
+    partners = engine.exclusions.partners if engine.exclusions.partners is not None else engine.exclusions.left_out
+    for few in (cluster_rows.FEW, -1):
+        monkeypatch.setattr(cluster_rows, "FEW", max(few, 0))
+        first, excluded = np.zeros_like(made.excluded_first[0]), np.zeros_like(made.excluded[0])
+        where, earlier = np.zeros(engine.state.x.shape[1], np.int64), np.zeros(4096, np.int64)
+        n = cluster_rows.exclude(engine.slot_of, engine.state.row, *partners[:2], 0, int(made.bounds[1]), made.first[0], made.entries[0],
+                                 made.own, first, excluded, where, earlier, engine.state.x, made.shifts, np.eye(3), False)
+        found.append((n, first.tolist(), [sorted(excluded[a:b].tolist()) for a, b in zip(first, first[1:]) if b > a]))
+    assert found[0] == found[1] and found[0][0] > 10

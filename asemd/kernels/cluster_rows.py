@@ -9,22 +9,46 @@ import numpy as np
 from asemd.kernels.cluster import CLUSTER, SLOT_BITS
 from asemd.kernels.rebuild import closest
 
+FEW = 160           # partners of a cluster's atoms that are looked for one by one
+
+
+def find(entries, first, count, j):
+    """How often slot `j` is among ``entries[first:first + count]``, times 2^32, plus the sum of its places. A loop for vectors."""
+    found = np.int64(0)
+    for k in range(count):
+        found += k + 4294967296 if (entries[np.uint64(first + k)] & SLOT_BITS) == j else 0
+    return found
+
+
+def previous(entries, first, end, j, mine):
+    """The last place before `end` where slot `j` is among the entries from `first` on, but for the cluster itself at `mine`; -1: none."""
+    w = end - 1
+    while w >= 0 and ((entries[first + w] & SLOT_BITS) != j or (w >= mine and w < mine + CLUSTER)):
+        w -= 1
+    return w
+
 
 def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, excluded_first, excluded, where, earlier, x, shifts,
             reduced, close):
     """Entries of the list that special pairs take out, per cluster as (atom in cluster << 16) + place in the cluster's row.
 
     Returns the number, or -1 if `excluded` is too small. `partner_start, partners`: for each atom row the rows it must not meet.
-    `where (cap,)` and `earlier (w,)` are work space. In small cells a row can hold two images of an atom. If `close`, two of them can be in
-    reach of an atom: the closest one is special, others interact fully; else both are taken out.
+    `where (cap,)` and `earlier (w,)` are work space, for clusters with many partners; those of the others are looked for one by one. In
+    small cells a row can hold two images of an atom. If `close`, two of them can be in reach of an atom: the closest one is special, others
+    interact fully; else both are taken out.
     """
-    n = 0
+    n, seen = 0, np.empty((FEW + 1, 2), np.int64)
     for ci in range(c0, c1):
         excluded_first[ci] = n
-        f0 = first[ci]
+        f0 = np.int64(first[ci])
         count = first[ci + 1] - f0
-        s = ci * CLUSTER
-        for k in range(count):
+        s, partnerships = ci * CLUSTER, 0
+        for a in range(CLUSTER):
+            r = row[s + a]
+            if r >= 0:
+                partnerships += partner_start[r + 1] - partner_start[r]
+        known = 0
+        for k in range(count if partnerships > FEW else 0):
             if k < own[ci] or k >= own[ci] + CLUSTER:
                 j = entries[f0 + k] & SLOT_BITS
                 w = where[j]
@@ -45,15 +69,31 @@ def exclude(slot_of, row, partner_start, partners, c0, c1, first, entries, own, 
                         not close or closest(x[0, s + a] - x[0, j], x[1, s + a] - x[1, j], x[2, s + a] - x[2, j], reduced)):
                     excluded[n] = np.int32((a << 16) | (j - s + own[ci]))
                     n += 1
-                w = where[j]
-                if w >= count or (w >= own[ci] and w < own[ci] + CLUSTER) or (entries[f0 + w] & SLOT_BITS) != j:
-                    continue
+                if partnerships > FEW:
+                    w = np.int64(where[j])
+                    if w >= count or (w >= own[ci] and w < own[ci] + CLUSTER) or (entries[f0 + w] & SLOT_BITS) != j:
+                        continue
+                    times = 0
+                else:
+                    m = 0
+                    while m < known and seen[m, 0] != j:
+                        m += 1
+                    if m == known:
+                        seen[m, 0], seen[m, 1] = j, find(entries, f0, count, j)
+                        if j < s + CLUSTER:
+                            seen[m, 1] -= np.int64(own[ci]) + j - s + 4294967296
+                        known += 1
+                    times = seen[m, 1] >> 32
+                    w = previous(entries, f0, count, j, own[ci]) if times > 1 else (seen[m, 1] & 4294967295) if times == 1 else -1
                 while w >= 0:
                     excluded[n] = np.int32((a << 16) | w)
                     c = entries[f0 + w] >> 26
                     n += not close or closest(x[0, s + a] - (x[0, j] + shifts[c, 0]), x[1, s + a] - (x[1, j] + shifts[c, 1]),
                                               x[2, s + a] - (x[2, j] + shifts[c, 2]), reduced)
-                    w = earlier[w]
+                    if partnerships > FEW:
+                        w = np.int64(earlier[w])
+                    else:
+                        w = previous(entries, f0, w, j, own[ci]) if times > 1 else -1
     excluded_first[c1] = n
     return n
 
