@@ -170,8 +170,12 @@ def prune16(near, shifts, whole, unshifted, c0, c1, reach2, first, entries, own,
             to[k] = -1
             who[k] |= MARKED
         start, kept, found = n, np.int64(0), np.int64(0)
-        for t in range(0, full, LANES):
-            kept = pick16(whole.entries, f0, who, t, full, order, tags, keys, kept)
+        if whole.hide.shape[0] > 0:
+            for t in range(0, full, LANES):
+                kept = pick16(whole.entries, f0, who, whole.hide, t, full, order, tags, keys, kept)
+        else:
+            for t in range(0, full, LANES):
+                kept = pick16(whole.entries, f0, who, None, t, full, order, tags, keys, kept)
         n = place16(ci, kept, start, entries, own, span, whole.tally, whole.width, whole.empty, order, tags, keys, to_order,
                     to_tags)
         here = np.int64(own[ci])
@@ -185,9 +189,9 @@ def prune16(near, shifts, whole, unshifted, c0, c1, reach2, first, entries, own,
                 to[np.int64((to_tags[q] & (MARKED - 1)) >> 8)] = q + (CLUSTER if q >= here else 0)
         if whole.hide.shape[0] > 0:
             for q in range(here):
-                hide[np.uint64(start + q)] = whole.hide[np.uint64(f0 + ((to_tags[np.uint64(q)] & (MARKED - 1)) >> 8))]
+                hide[np.uint64(start + q)] = np.uint8(to_tags[np.uint64(q)] & 255)
             for q in range(here, kept):
-                hide[np.uint64(start + CLUSTER + q)] = whole.hide[np.uint64(f0 + ((to_tags[np.uint64(q)] & (MARKED - 1)) >> 8))]
+                hide[np.uint64(start + CLUSTER + q)] = np.uint8(to_tags[np.uint64(q)] & 255)
             for k in range(CLUSTER):
                 hide[start + here + k] = whole.hide[f0 + mine + k]
             for k in range(start + kept + CLUSTER, n):

@@ -50,10 +50,10 @@ if not config.DISABLE_JIT:
             builder.store(packed, _place(m, m.pointer(array), at), align=4)
         return builder.add(at, builder.zext(builder.ctpop(builder.bitcast(chosen, ir.IntType(LANES))), I64))
 
-    def _chosen(m, entries, tag, at, end, n, *arrays):
+    def _chosen(m, entries, who, tag, at, end, n, *arrays):
         """Those of sixteen candidates that somebody reaches, and their keys, behind the arrays; returns the new end."""
         builder = m.builder
-        who = builder.and_(tag, ir.Constant(ROW, [0xFF] * LANES))
+        who = builder.and_(who, ir.Constant(ROW, [0xFF] * LANES))
         one, key = ir.Constant(ROW, [1] * LANES), None
         for bits in (who, builder.and_(who, builder.neg(who))):
             highest = builder.sub(ir.Constant(ROW, [31] * LANES), _calls(builder, "llvm.ctlz.v16i32", ROW, [bits, ir.IntType(1)(0)]))
@@ -76,19 +76,25 @@ if not config.DISABLE_JIT:
             short, up = ir.VectorType(I32, LANES // 2), ir.Constant(half, [32] * (LANES // 2))
             entries = _shuffle(builder, *(builder.trunc(v, short) for v in parts), range(LANES))
             tag = _shuffle(builder, *(builder.trunc(builder.lshr(v, up), short) for v in parts), range(LANES))
-            return _chosen(m, entries, tag, m.place(1), m.place(2), m.place(6), 3, 4, 5)
+            return _chosen(m, entries, tag, tag, m.place(1), m.place(2), m.place(6), 3, 4, 5)
         return types.int64(codes, at, end, order, tags, keys, n), generate
 
     @intrinsic
-    def pick16(typing, entries, first, who, at, end, order, tags, keys, n):
-        """As `sieve16`, of the entries ``first + at ...``; ``who[at:]`` says in its lowest eight bits who reaches them. A tag is that, and
-        the candidate's place from bit 8 on."""
+    def pick16(typing, entries, first, who, hide, at, end, order, tags, keys, n):
+        """As `sieve16`, of the entries ``first + at ...``; ``who[at:]`` says in its lowest eight bits who reaches them. A tag is what is
+        above these, the candidate's place from bit 8 on, and its number in `hide`, whose places are those of the entries; but that is
+        left out if `hide` is None."""
         def generate(ctx, builder, signature, arguments):
             m = _Memory(ctx, builder, signature, arguments)
-            at = builder.add(_all(builder, builder.trunc(m.place(3), I32)), STEPS)
-            tag = builder.or_(_load(m, 2, m.place(3)), builder.shl(at, ir.Constant(ROW, [8] * LANES)))
-            return _chosen(m, _load(m, 0, builder.add(m.place(1), m.place(3))), tag, m.place(3), m.place(4), m.place(8), 5, 6, 7)
-        return types.int64(entries, first, who, at, end, order, tags, keys, n), generate
+            there = builder.add(m.place(1), m.place(4))
+            at, who = builder.add(_all(builder, builder.trunc(m.place(4), I32)), STEPS), _load(m, 2, m.place(4))
+            tag = builder.or_(builder.and_(who, ir.Constant(ROW, [~0xFF] * LANES)), builder.shl(at, ir.Constant(ROW, [8] * LANES)))
+            if hide != types.none:
+                bytes_ = ir.VectorType(ir.IntType(8), LANES)
+                p = builder.bitcast(builder.gep(m.pointer(3), [there]), bytes_.as_pointer())
+                tag = builder.or_(tag, builder.zext(builder.load(p, align=1), ROW))
+            return _chosen(m, _load(m, 0, there), who, tag, m.place(4), m.place(5), m.place(9), 6, 7, 8)
+        return types.int64(entries, first, who, hide, at, end, order, tags, keys, n), generate
 
     @intrinsic
     def take16(typing, keys, key, order, tags, at, end, to_order, to_tags, n):
