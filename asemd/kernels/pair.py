@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import bond_history, pair_cluster, pair_list, pair_shares, pair_sums, prune, vector_math
+from asemd.kernels import bond_history, coefficient_rows, pair_cluster, pair_list, pair_shares, pair_sums, prune, vector_math
 from asemd.kernels.generate import Builder
 from asemd.kernels.target import lanes, many_registers
 from asemd.pairstyle import SCALE, PairStyle
@@ -122,10 +122,16 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
     b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
     varying = len(uniform) - sum(uniform)
     if varying:
+        if coefficient_rows.WIDE:
+            b.line("from asemd.kernels.coefficient_rows import MOST, choose_rows")
         lines = ["def fill_rows(b, full, rows, t, types, base):"]
         for block in range(-(-varying // 4)):
-            lines += [f"    table = rows[{block}, t]", "    for k in range(0, full, 8):",
-                      f"        gather8(b, base + {4 * block} * ROW + k, ROW, table, types, k, 0.0, 0.0, 0.0, table, SLOT_BITS, False, "
+            lines += [f"    table, at = rows[{block}, t], base + {4 * block} * ROW"]
+            for halves, up_to in ((1, "MOST // 2"), (2, "MOST")) if coefficient_rows.WIDE else ():
+                lines += [f"    {'if' if halves == 1 else 'elif'} table.shape[0] <= {up_to}:",
+                          f"        choose_rows(b, at, ROW, table, types, full, {min(varying - 4 * block, 4)}, {halves})"]
+            lines += ["    else:" if coefficient_rows.WIDE else "    if True:", "        for k in range(0, full, 8):",
+                      "            gather8(b, at + k, ROW, table, types, k, 0.0, 0.0, 0.0, table, SLOT_BITS, False, "
                       f"{3 if varying >= 4 * block + 4 else 0})"]
         b.text("\n".join(lines))
     return b
