@@ -111,7 +111,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._given = (calc, self.dt, list(self.fixes), dict(self.groups), held)
         self._loop = Loop(system, calc.interactions, calc.neighbor_settings(atoms), fixes, groups, self.dt / u["time"], self.nsteps)
         self._forces_are_own = not any("post_force" in fix.hooks() for fix in fixes)
-        self._loop.say = print
+        self._loop.say, self._charges = print, None if system.q is None else system.q.copy()
         self._loop.watchdog.on = self.watchdog
         self._loop.watchdog.path, self._loop.watchdog.save = self._last_good, self._save
         before = system.box.unwrap(system.x, system.image)
@@ -123,7 +123,7 @@ class MolecularDynamics(ASEMolecularDynamics):
 
     # ---- loop -> atoms ------------------------------------------------------------------------------------------------------------------
     def _move(self, atoms, system) -> None:
-        """Positions and momenta of a system to atoms, dipoles and rotation too."""
+        """Positions and momenta of a system to atoms, charges, dipoles and rotation too where they change."""
         u = {d: unit_styles.factor(d, self.atoms.calc.units) for d in ("distance", "velocity")}
         there, here, before = self._from
         now, box = system.box.unwrap(system.x, system.image), system.box
@@ -135,6 +135,8 @@ class MolecularDynamics(ASEMolecularDynamics):
         else:       # atoms that do not move keep their positions to the last bit
             atoms.arrays["positions"][:] = there + (now - here) * u["distance"]
         atoms.set_momenta(system.v * u["velocity"] * self.masses, apply_constraint=False)
+        if self._charges is not None and (found := system.q != self._charges).any():      # by fixes
+            atoms.arrays["initial_charges"][found] = system.q[found] * unit_styles.factor("charge", self.atoms.calc.units)
         solid = {"quaternions", "angmom", "torque"} if "shape" in atoms.arrays else set()
         for name in {"mu", "omega", "torque", "angmom", "quaternions"} & set(system.extra) & (solid | set(atoms.arrays)):
             if name not in atoms.arrays:

@@ -43,7 +43,7 @@ class ChargeEquilibration(Fix):
     maxiter : int
         Iterations at most.
     parameters : str or mapping
-        A file with lines ``type chi eta gamma zeta qcore``, or these numbers by type.
+        A file with lines ``type chi eta gamma zeta qcore``, or these numbers by type or by its label, which is an element in ASE.
     warn : bool
         Warn where `maxiter` iterations are not enough.
 
@@ -59,7 +59,7 @@ class ChargeEquilibration(Fix):
     options: ClassVar[dict[str, int]] = {"warn": 1}
 
     def __init__(self, group: str = "all", every: int = 1, cutoff: float = 10.0, tolerance: float = 1e-6, maxiter: int = 200,
-                 parameters: str | dict[int, dict[str, float]] | None = None, warn: bool = True):
+                 parameters: str | dict[int | str, dict[str, float]] | None = None, warn: bool = True):
         super().__init__(group)
         what = f"fix {self.style}"
         for name, value in (("Nevery", every), ("cutoff", cutoff), ("tolerance", tolerance), ("maxiter", maxiter)):
@@ -106,10 +106,11 @@ class ChargeEquilibration(Fix):
             found = self.read(str(self.parameters_of), ntypes, system)
         self.of_type = {name: np.zeros(ntypes + 1) for name in NAMES.split()}
         for t in range(1, ntypes + 1):
-            if t not in found:
+            own = found.get(t, found.get(system.labels["atom"].get(t)))
+            if own is None:
                 raise InputError(f"fix {self.style}: atom type {t} has no parameters")
             for name, values in self.of_type.items():
-                values[t] = found[t].get(name, 0.0)
+                values[t] = own.get(name, 0.0)
             if problem := self.wrong({name: values[t] for name, values in self.of_type.items()}):
                 raise InputError(f"fix {self.style}: atom type {t}: {problem}")
 
