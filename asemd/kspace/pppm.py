@@ -73,6 +73,10 @@ class PPPM(KSpace):
         if self.ad and self._tilted(system):
             raise InputError(f"kspace_style {self.style}: kspace_modify diff ad needs a box that is not triclinic")
         self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell * self.stretch[:, None]
+        self.settle_mesh(system)
+
+    def settle_mesh(self, system) -> None:
+        """Mesh, order and splitting parameter of charges."""
         self.choose_mesh(system)
         while self.is_too_wide(self.mesh, self.order):
             self.order = self.narrower(self.order, "order")

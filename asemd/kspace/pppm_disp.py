@@ -64,12 +64,7 @@ class PPPMDisp(PPPM):
                 raise InputError(f"kspace_style {self.style}: {name} must be 2 to 7, not {order}")
         self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell * self.stretch[:, None]
         if self.coulomb:
-            self.choose_mesh(system)
-            while self.is_too_wide(self.mesh, self.order):
-                self.order = self.narrower(self.order, "order")
-                self.choose_mesh(system)
-            if not self.modify["gewald"]:
-                self.balance()
+            self.settle_mesh(system)
         if self.dispersion:
             self.choose_dispersion(system)
 
