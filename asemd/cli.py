@@ -123,7 +123,7 @@ def run(context: typer.Context,
     """Run a LAMMPS input script (- is standard input; LAMMPS's switches such as -var -in -log -echo -screen -sf are accepted)."""
     from asemd.lammps.session import Session, Stop
     options: Switches = context.obj or Switches()
-    options.threads, options.cap = threads, steps_cap
+    options.threads, options.cap = threads, options.cap if steps_cap is None else steps_cap
     options.precision = lammps_switches.one_of(precision, ("double", "mixed"), "--precision")
     if compat is not None:
         options.compat = lammps_switches.one_of(compat, ("lammps",), "--compat")

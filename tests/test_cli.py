@@ -61,7 +61,7 @@ def test_failures_end_with_one_message(script, capsys, arguments, message):
     "-sf opt -v n 6 -i in.x", "-sf hybrid gpu omp in.x -v n 6", "run -pk omp 2 -v n 6 in.x",
     "run -var n 6 --threads 1 in.x", "run in.x --html page.html -var n 6", "run --html page.html -var n 6 in.x",
     "run --import styles.py -var n 6 in.x", "-v n 6 run --log none in.x", "-threads 1 in.x -v n 6",
-    "run -var n 6 --html=page.html in.x"])
+    "run -var n 6 --html=page.html in.x", "run in.x -var n 6 -precision mixed"])
 def test_switches_in_any_order(script, capsys, line):
     """As people type them: LAMMPS's own order without a command, the script before, between and behind the switches."""
     for name in ("styles.py", "page.html"):
@@ -80,6 +80,20 @@ def test_values_stay_with_their_switch(script):
     assert switches.variables == [("list", ["in.x", "data"]), ("x", ["-0.5"]), ("e", ["-1"])]
     assert command_line.split("-var x in.x".split(), cli.COMMANDS)[1].variables == [("x", ["in.x"])]
     assert command_line.split(["-h"], cli.COMMANDS)[0] == ["--help"]
+
+
+@pytest.mark.parametrize("line, said", [
+    ("run in.x -var n 6 -threads 2", "1 MPI tasks x 2 OpenMP threads"), ("-in in.x -threads 2", "x 2 OpenMP threads"),
+    ("in.x -skiprun", "for 0 steps"), ("run in.x -cap 3", "for 3 steps"), ("in.x -cap 3 --steps-cap 4", "for 4 steps")])
+def test_switches_of_its_own_count_with_one_dash(script, capsys, line, said):
+    assert cli.main(line.split()) == 0
+    assert said in capsys.readouterr().out
+
+
+def test_wrong_values_of_its_own_switches(script, capsys):
+    for line, word in (("in.x -threads none", "--threads"), ("in.x -precision half", "half"), ("in.x -cap many", "-cap needs")):
+        assert cli.main(line.split()) == 1
+        assert word in capsys.readouterr().err.strip().splitlines()[-1]
 
 
 def test_every_unknown_name_is_reported(script, capsys):

@@ -11,7 +11,9 @@ from asemd.errors import InputError, nearest
 from asemd.lammps.switches import KNOWN, SHORT, Switches, is_switch, parse
 
 OWN = ("log", "threads", "precision", "compat")       # with two dashes an option of asemd
-VALUED = ("--html", "--import", "--log", "--output", "-o", "--apply", "--folder")     # what follows is no script though it be a file
+OPTIONS = ("-threads", "-precision", "-compat")       # with one dash, too: LAMMPS has no such switches
+# what follows is no script though it be a file
+VALUED = ("--html", "--import", "--log", "--output", "-o", "--apply", "--folder", *(f"-{w}" for w in OPTIONS))
 
 
 def split(words: Sequence[str], commands: Collection[str]) -> tuple[list[str], Switches]:
@@ -30,7 +32,7 @@ def split(words: Sequence[str], commands: Collection[str]) -> tuple[list[str], S
     InputError
         A switch that does not exist or lacks values; a word that is neither a command nor a file.
     """
-    words = ["--help" if w in ("-h", "-help") else w for w in words]
+    words = ["--help" if w in ("-h", "-help") else f"-{w}" if w in OPTIONS else w for w in words]
     rest: list[str] = []
     taken: list[list[str]] = []
     as_lammps = any(_name(w) == "in" for w in words)        # then every word belongs to a switch
