@@ -225,7 +225,7 @@ class Engine:
         if self.box_moves:
             live_box.shrunk(self)
         k, s = self.k, self.state
-        bad = k.wrap(s.x, self.system.image, s.row, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
+        bad = k.wrap(s.x, self.system.image, s.row, 0, self.ns, self.origin, self.vectors, self.inverse, self.periodic)
         if bad >= 0:
             raise SimulationError(f"atom {self.system.id[s.row[bad]]}: position is not finite")
         shares = live_box.faces(self)
@@ -240,10 +240,10 @@ class Engine:
                 if s.x.shape[1] < self.list.capacity:
                     self._allocate(self.list.capacity)
                     s = self.state
-                found = self.list.sort(k, s, self.ns, bins)
+                found = self.list.sort(k, s, self.ns, bins, self.parallel)
             self.ns = found
-        k.gather(self.ns, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row, self.mask_row,
-                 s.type, s.mass, s.inverse_mass, s.q, s.mask, s.x, self.held)
+        k.gather(0, self.ns + 8, s.row, self.slot_of, self.varies, self.type_row, self.mass_row, self.inverse_row, self.q_row,
+                 self.mask_row, s.type, s.mass, s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":
             hide = None if self.expanded or self.sparse else self.exclusions.partners
             self.list.build(k, s, self.ns, self.cell, self.periodic, hide, self.slot_of, self.parallel)

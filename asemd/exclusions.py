@@ -3,8 +3,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.neighbor import partner_table
-
 RULES = {"group": 0, "molecule/intra": 1, "molecule/inter": 2}
 EVERYWHERE = 1 << 62        # the bit of all atoms
 
@@ -26,7 +24,7 @@ class Exclusions:
     weight_lj, weight_coul : (5,) arrays
         Factors of ordinary pairs (1), of 1-2, 1-3, 1-4 partners, and of pairs whose interaction a bond replaces (0).
     partners : (start, partner, kind) or None
-        For each atom row the rows whose factor is not 1, see `asemd.neighbor.partner_table`.
+        For each atom row the rows whose factor is not 1, see `partner_table`.
     keep : (5,) bool
         Kinds that interact with a weight, not 0.
     weighted, weighted_kinds : (m, 2), (m,) int32 arrays
@@ -135,3 +133,13 @@ def _keys(pairs: np.ndarray) -> np.ndarray:
     """One number for each pair of rows, whatever their order."""
     p = np.sort(np.asarray(pairs, np.int64), axis=1)
     return (p[:, 0] << 31) + p[:, 1]
+
+
+def partner_table(n: int, pairs: np.ndarray, kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Special pairs (m, 2) as partners of each atom row: start (n+1,), partner (2m,), kind (2m,)."""
+    both = np.concatenate([pairs, pairs[:, ::-1]]) if len(pairs) else np.zeros((0, 2), np.int32)
+    kind = np.concatenate([kinds, kinds]) if len(pairs) else np.zeros(0, np.int8)
+    order = np.argsort(both[:, 0], kind="stable")
+    start = np.zeros(n + 1, np.int32)
+    start[1:] = np.cumsum(np.bincount(both[:, 0], minlength=n)) if len(both) else 0
+    return start, np.ascontiguousarray(both[order, 1], np.int32), np.ascontiguousarray(kind[order], np.int32)

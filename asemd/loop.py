@@ -61,8 +61,7 @@ class Loop:
         self.natoms = system.n                # how many there should be: lost ones count
         self.warn, self.say, self.fix_data, self._collected = warn, str, (), -1       # `say` is told what fixes print: nobody listens yet
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
-        nth = self.engine.threads
-        self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((nth, 8))
+        self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((self.engine.threads, 8))
         self._control, self._numbers = np.zeros(tl.CONTROLS, np.int64), np.zeros(tl.NUMBERS)
         self._chunk, self.halted, self._in_sync = 100, False, None       # whether the system has what the slots have; None: not known
         self._relist, self.watchdog, self.trial_step = Relist(), Watchdog(self), 0      # the step that a minimisation evaluates
@@ -141,7 +140,7 @@ class Loop:
                            if f.follows or any(not kinds.get(name, True) for name in IN_A_STEP)]
         self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
         self._about_lists = [f for f, kinds in zip(self.fixes, self._kinds) if any(name in kinds for name in ABOUT_LISTS)]
-        self._after_lists = any("post_neighbor" in kinds for kinds in self._kinds)
+        self._compiled = not (self._in_python or any("post_neighbor" in kinds for kinds in self._kinds))
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
 
     def _next_whole(self, step: int) -> int:
@@ -237,10 +236,11 @@ class Loop:
                     self.engine.check()
                 except SimulationError as error:
                     raise SimulationError(f"step {self.step}: {error}") from None
-            if self._about_lists and not (resume == tl.LIST and self.step == began):      # that was a list it could not build
-                self._hook("pre_exchange")
-                self._hook("pre_neighbor")
-                if not (self._in_python or self._after_lists) and self.watchdog.content() and self._relist.ready(self.engine):
+            if not (resume == tl.LIST and self.step == began):      # that was a list it could not build
+                seen = self._relist.known and self.watchdog.glance()
+                for name in ("pre_exchange", "pre_neighbor") if self._about_lists else ():
+                    self._hook(name)
+                if (seen or self._about_lists) and self._compiled and self.watchdog.content() and self._relist.ready(self.engine):
                     resume = tl.LIST
                     continue
             self._rebuild()

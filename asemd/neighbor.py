@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import cluster, cluster_rows, columns, gaps, pair_list, rebuild, relist, sieve
+from asemd.kernels import cluster, cluster_rows, columns, gaps, pair_list, rebuild, relist, sieve, sort
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.state import Cell
@@ -25,7 +25,7 @@ IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # n
 
 SORTING = cluster.drop, cluster.arrange, cluster.append, *sieve.PIECES      # ways to do it
 PIECES = columns.column, columns.stands, cluster.reached, *SORTING, gaps.squeeze
-ABOUT_CELLS = *PIECES, cluster.sort, columns.near_columns, cluster.build
+ABOUT_CELLS = *PIECES, sort.bin_atoms, sort.leave_empty, sort.assign, sort.move, columns.near_columns, cluster.build
 
 
 def _builder(ortho: bool, mark: bool, order: bool, squeezed: bool) -> Builder:
@@ -50,7 +50,7 @@ def kernels(ortho: bool, mark: bool = False, order: bool = True):
     """The compiled list module for axis-aligned (`ortho`) or general cells; `mark`: lists with `hide`, `order`: sorted rows, see
     `cluster.build`."""
     b = _builder(ortho, mark, order, False)
-    _add(b, cluster.wrap, cluster_rows.find, cluster_rows.previous, cluster_rows.exclude, cluster_rows.count, cluster_rows.expand,
+    _add(b, sort.wrap, cluster_rows.find, cluster_rows.previous, cluster_rows.exclude, cluster_rows.count, cluster_rows.expand,
          cluster_rows.rows, pair_list._cell, pair_list.ghosts, pair_list.pairs, rebuild.gather, rebuild.to_slots, rebuild.load,
          rebuild.store, rebuild.moved, rebuild.displacements, rebuild.add_buffers, rebuild.clear, rebuild.closest, rebuild.mark_special,
          rebuild.forbidden, rebuild.drop_excluded, rebuild.special_pairs, relist.split, relist.balance)
@@ -191,7 +191,7 @@ class ClusterList:
         self.shares = None
         self.row_length = np.zeros((threads, 1), np.int64)
         self.bins, self.n, self.cell = None, -1, None
-        self._cells = self.column_start = np.zeros(0, np.int32)
+        self._cells = self._counts = self.column_start = np.zeros(0, np.int32)
 
     def _grid(self) -> tuple[int, int, int]:
         """Numbers of cells along each direction that suit the bins and the number of atoms."""
@@ -219,9 +219,11 @@ class ClusterList:
         count, slots = nx * ny, max(n + min(nx * ny, n) * CLUSTER + 2 * CLUSTER, self.slots)
         if len(self._cells) < count * (nz + 1):
             self._cells = np.zeros(count * (nz + 1) * 9 // 8, np.int32)
+            self._counts = np.zeros(self.threads * len(self._cells), np.int32)
         if len(self.column_start) < count + 1:
             self.column_start = np.zeros((count + 1) * 9 // 8, np.int32)
         self.cell_start = self._cells[:count * (nz + 1)].reshape(count, nz + 1)
+        self.counts = self._counts[:self.threads * count * nz].reshape(self.threads, count * nz)
         if self.capacity >= slots:
             return False
         self.capacity = slots + n // 32         # some atoms and columns more need no other arrays
@@ -253,12 +255,17 @@ class ClusterList:
         self.earlier = np.zeros((self.threads, self.candidates + 64), np.int32)
         self.bits = np.zeros((self.threads, self.candidates + 64), np.uint8)
 
-    def sort(self, k, state, ns: int, bins: BinCell) -> int:
+    def sort(self, k, state, ns: int, bins: BinCell, parallel) -> int:
         """Sort the slots; returns their number, or a negative one if there are too few: `shape` then makes more."""
-        k, self.far = bins.k or k, bins.far + 10 * self.reach
-        found = k.sort(state.x, state.v, state.row, ns, bins.origin, bins.inverse, self.nx, self.ny, self.nz, self.x2, self.v2, self.row2,
-                      self.cell_start, self.column_start, self.column_of, self.key, self.far, 4 * self.reach, self.void,
-                      bins.places)
+        k, self.far, s = bins.k or k, bins.far + 10 * self.reach, state
+        grid, copies = (self.nx, self.ny, self.nz), (self.x2, self.v2, self.row2)
+        edges = [ns * t // self.threads for t in range(self.threads + 1)]
+        parallel(lambda t: k.bin_atoms(s.x, s.v, s.row, *edges[t:t + 2], bins.origin, bins.inverse, *grid, *copies, self.counts[t],
+                                       self.key, bins.places))
+        found = k.assign(self.counts, s.x, s.v, s.row, ns, *grid, *copies, self.cell_start, self.column_start, self.column_of, self.far,
+                         4 * self.reach, self.void)
+        if found >= 0:
+            parallel(lambda t: k.move(*edges[t:t + 2], *copies, self.key, self.counts[t], s.x, s.v, s.row))
         self.slots = max(self.slots, -found * 17 // 16)
         return found
 
@@ -388,13 +395,3 @@ class PlainList:
             if n >= 0:
                 return [a[:n] for a in out]
             self.size *= 2
-
-
-def partner_table(n: int, pairs: np.ndarray, kinds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Special pairs (m, 2) as partners of each atom row: start (n+1,), partner (2m,), kind (2m,)."""
-    both = np.concatenate([pairs, pairs[:, ::-1]]) if len(pairs) else np.zeros((0, 2), np.int32)
-    kind = np.concatenate([kinds, kinds]) if len(pairs) else np.zeros(0, np.int8)
-    order = np.argsort(both[:, 0], kind="stable")
-    start = np.zeros(n + 1, np.int32)
-    start[1:] = np.cumsum(np.bincount(both[:, 0], minlength=n)) if len(both) else 0
-    return start, np.ascontiguousarray(both[order, 1], np.int32), np.ascontiguousarray(kind[order], np.int32)

@@ -54,6 +54,11 @@ class Relist:
                     row[:] = kernel_address(function, packed.text_of_arguments(values)), packed.handle(block.memory)
         return self._table
 
+    @property
+    def known(self) -> bool:
+        """Whether the loop could build the last list that was due."""
+        return len(self._table) > 0
+
     def ready(self, engine) -> bool:
         """Whether the loop can build the next list, of the atoms that there are now; the grid follows their number."""
         if engine.changed or not possible(engine) or engine.list.shape(engine.list.bins, engine.system.n):
@@ -86,9 +91,9 @@ def calls(engine, live: np.ndarray) -> list[tuple[Callable, tuple]] | None:
     reduced, close = c.near
     space = relist.Space(engine.origin, engine.vectors, engine.inverse, engine.periodic, c.bins.origin, c.bins.inverse, c.bins.widths,
                          c.far, c.bins.places, c.shifts, reduced, c.nx, c.ny, c.nz, c.void, c.width, int(close), float(c.reach))
-    arrays = relist.Arrays(c.x2, c.v2, c.row2, c.cell_start, c.column_start, c.column_of, c.key, c.first, c.entries, c.own, c.span,
-                           c.unshifted, c.work, c.work_codes, c.row_length, c.hide, c.excluded_first, c.excluded, c.where, c.earlier,
-                           c.marks, c.bits, COUNTERS, c.bounds, c.shares, c.lengths)
+    arrays = relist.Arrays(c.x2, c.v2, c.row2, c.counts, c.cell_start, c.column_start, c.column_of, c.key, c.first, c.entries, c.own,
+                           c.span, c.unshifted, c.work, c.work_codes, c.row_length, c.hide, c.excluded_first, c.excluded, c.where,
+                           c.earlier, c.marks, c.bits, COUNTERS, c.bounds, c.shares, c.lengths)
     rows = engine.rows.get("", NO_ROWS)
     special = relist.Special(*rules.left_out, *rules.rule_arrays, rows.start, rows.owners, rows.neighbors, rows.edges)
     module = relist.module(engine.k, not engine.sparse and rules.partners is not None, engine.sparse)

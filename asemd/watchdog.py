@@ -44,11 +44,12 @@ class Frame:
     slow: bool = True
 
     def system(self, like):
-        """A copy of the system `like`, of the same atoms, in this state."""
+        """A copy of the system `like`, of the same atoms, in this state, folded into the box."""
         out, there = like.copy(), self.row >= 0
         rows = self.row[there]
         out.x[rows], out.v[rows] = self.x[:, there].T, self.v[:, there].T
         out.image[:], out.box, out.step = self.image, self.box, self.step
+        out.box.wrap(out.x, out.image)
         return out
 
 
@@ -163,6 +164,13 @@ class Watchdog:
     def content(self) -> bool:
         """Whether `before_build` has nothing to say; after compiled steps that measured how far atoms have moved."""
         return not self.on or bool(self.loop.engine.farthest[0] <= self._limit)
+
+    def glance(self) -> bool:
+        """Before the loop builds a list by itself: whether a frame was due, and has been kept."""
+        due = self.on and time.perf_counter() > self._next and self.content()
+        if due:
+            self._timed(self._keep)
+        return due
 
     def patience(self) -> tuple[float, float]:
         """For lists that the loop builds by itself: the squared distance up to which `before_build` has nothing to say, and the seconds

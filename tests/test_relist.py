@@ -15,6 +15,7 @@ from asemd.fix.langevin import Langevin
 from asemd.fix.nve import NVE
 from asemd.forcefield import Interactions
 from asemd.system import System
+from asemd.watchdog import FIRST
 
 pytestmark = pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
 FULL = {"lj/cut 2.5": {(1, 1): (1.0, 1.0)}}
@@ -166,6 +167,27 @@ def test_the_watchdog_looks_in_between():
     steps = [f.step for f in loop.watchdog.frames]
     loop.advance(60)
     assert max(f.step for f in loop.watchdog.frames) > max(steps)
+
+
+def test_the_first_frames_of_a_run_leave_lists_to_the_loop():
+    loop = loop_of(crystal(temperature=2.0), skin=0.1)
+    loop.setup()
+    made, rebuild = [], loop.engine.rebuild
+    loop.engine.rebuild = lambda: (made.append(loop.step), rebuild())
+    loop.advance(30)
+    kept = {f.step for f in loop.watchdog.frames} - {0}
+    assert not made and loop.engine.builds > FIRST and len(kept) > 0 and loop.watchdog._spare <= 0
+
+
+def test_a_frame_that_is_kept_before_a_list_is_folded_into_the_box():
+    loop = loop_of(crystal(temperature=2.0), skin=0.1)
+    loop.setup()
+    loop.engine.state.x[0, :loop.engine.ns] += 2.0      # before anybody folds them
+    loop.watchdog._keep()
+    good, box = loop.watchdog.frames[-1].system(loop.system), loop.system.box
+    inside = box.fractional(good.x)
+    assert (inside >= 0.0).all() and (inside < 1.0).all() and good.image.any()
+    np.testing.assert_allclose(box.unwrap(good.x, good.image), box.unwrap(loop.system.x, loop.system.image) + [2.0, 0.0, 0.0], atol=1e-12)
 
 
 def test_a_term_whose_rebuild_does_more_is_for_python():

@@ -1,9 +1,7 @@
-"""Sorting atoms into clusters and listing which clusters' atoms come near each other.
+"""Listing which clusters' atoms come near each other.
 
-Atoms stand in columns along the third cell vector, ordered along it by fine cells; `CLUSTER` consecutive ones form a cluster; empty
-slots pad the last cluster of a column, and the last one before an empty stretch: kernels in single precision take positions from the first
-atom of a cluster, and lose digits where the others are far. The list is half: cluster i holds single atoms j of later clusters (all
-images), and of its own cluster the images on the positive side. An entry is slot number + (shift code << 26); the code counts image
+`CLUSTER` consecutive atoms form a cluster, see `asemd.kernels.sort`. The list is half: cluster i holds single atoms j of later clusters
+(all images), and of its own cluster the images on the positive side. An entry is slot number + (shift code << 26); the code counts image
 -1, 0, 1 in base three, 13 is no shift, so no ghost atoms exist.
 
 These are ordinary Python functions; `asemd.kernels.generate` pastes and compiles them. `CLUSTER` and `ORTHO` are constants of the
@@ -26,109 +24,6 @@ ORTHO = MARK = TRACK = SORTED = True
 SIEVE = False
 arrange16 = None
 SLOT_BITS = 0x3FFFFFF
-
-
-def wrap(x, image, row, ns, origin, vectors, inverse, periodic):
-    """Fold slots into the cell, counting images; returns the first slot that is not finite, or -1."""
-    for i in range(ns):
-        r = row[i]
-        if r < 0:
-            continue
-        if not (abs(x[0, i]) + abs(x[1, i]) + abs(x[2, i]) < np.inf):
-            return i
-        for a in range(2, -1, -1):
-            if not periodic[a]:
-                continue
-            if ORTHO:
-                d = x[a, i] - origin[a]
-                if d < 0.0 or x[a, i] >= origin[a] + vectors[a, a]:
-                    n = math.floor(d / vectors[a, a])
-                    x[a, i] -= n * vectors[a, a]
-                    image[r, a] += int(n)
-                    if x[a, i] >= origin[a] + vectors[a, a]:     # rounding at the upper face
-                        x[a, i] = origin[a]
-                        image[r, a] += 1
-            else:
-                s = ((x[0, i] - origin[0]) * inverse[0, a] + (x[1, i] - origin[1]) * inverse[1, a]
-                     + (x[2, i] - origin[2]) * inverse[2, a])
-                n = math.floor(s)
-                if n != 0.0 and s - n >= 1.0:       # rounding below the lower face
-                    n += 1
-                if n != 0.0:
-                    for d in range(3):
-                        x[d, i] -= n * vectors[a, d]
-                    image[r, a] += int(n)
-    return -1
-
-
-def sort(x, v, row, ns, origin, inverse, nx, ny, nz, x2, v2, row2, cell_start, column_start, column_of, key, far, far_step, void, places):
-    """Counting sort into columns and cells, in place; returns the new number of slots, or minus that if there is no room for so many, and
-    nothing has changed. A cluster ends before more than `void` empty cells. Empty slots stand at `far` plus steps, at rest."""
-    ncol = nx * ny
-    for c in range(ncol):
-        for z in range(nz + 1):
-            cell_start[c, z] = 0
-    n = 0
-    cells = cell_start.reshape(-1)      # nz + 1 to a column
-    for i in range(ns):
-        if row[i] < 0:
-            continue
-        dx = x[0, i] - origin[0]
-        dy = x[1, i] - origin[1]
-        dz = x[2, i] - origin[2]
-        s0 = dx * inverse[0, 0] + dy * inverse[1, 0] + dz * inverse[2, 0]
-        s1 = dx * inverse[0, 1] + dy * inverse[1, 1] + dz * inverse[2, 1]
-        s2 = dx * inverse[0, 2] + dy * inverse[1, 2] + dz * inverse[2, 2]
-        a = min(max(int(squeeze(s0, places, 0) * nx), 0), nx - 1)
-        b = min(max(int(squeeze(s1, places, 1) * ny), 0), ny - 1)
-        c = min(max(int(squeeze(s2, places, 2) * nz), 0), nz - 1)
-        for d in range(3):
-            x2[d, np.uint64(n)] = x[d, i]
-            v2[d, np.uint64(n)] = v[d, i]
-        row2[np.uint64(n)] = row[i]
-        at = column(a, b, nx, ny) * (nz + 1) + c
-        key[np.uint64(n)] = at
-        cells[np.uint64(at)] += 1
-        n += 1
-    p = 0
-    for c in range(ncol):
-        column_start[c] = p
-        last = nz
-        for z in range(nz):
-            t = cell_start[c, z]
-            p += (-p) % CLUSTER if t > 0 and z - last > void + 1 else 0
-            last = z if t > 0 else last
-            cell_start[c, z] = p
-            p += t
-        cell_start[c, nz] = p
-        p += (-p) % CLUSTER
-    if p + CLUSTER > row2.shape[0]:
-        return -p - CLUSTER
-    column_start[ncol] = p
-    for c in range(ncol):
-        for k in range(column_start[c] // CLUSTER, column_start[c + 1] // CLUSTER):
-            column_of[k] = c
-    for k in range(p + CLUSTER):      # one empty cluster behind: the target of padding entries
-        row[k] = -1
-    for i in range(n):
-        at = np.uint64(key[i])
-        k = np.uint64(cells[at])
-        cells[at] += 1
-        for d in range(3):
-            x[d, k] = x2[d, i]
-            v[d, k] = v2[d, i]
-        row[k] = row2[i]
-    for k in range(p + CLUSTER):
-        if row[k] < 0:
-            for d in range(3):
-                x[d, k] = far[d]
-                v[d, k] = 0.0
-            x[0, k] += (k % CLUSTER) * far_step
-    for c in range(ncol):            # the starts have moved to the ends: shift back
-        for z in range(nz - 1, 0, -1):
-            cell_start[c, z] = cell_start[c, z - 1]
-        cell_start[c, 0] = column_start[c]
-    return p
 
 
 def reached(tx, ty, tz, codes, nt, x, y, z, s, m, r2):

@@ -4,13 +4,13 @@ from __future__ import annotations
 import numpy as np
 
 
-def gather(ns, row, slot_of, varies, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
-    """Per-atom constants into slot order, the inverse of `row`, and the positions from which displacements count.
+def gather(i0, i1, row, slot_of, varies, type_row, mass_row, inverse_row, q_row, mask_row, type_s, mass_s, inverse_s, q_s, mask_s, x, held):
+    """Per-atom constants of slots i0..i1-1, the inverse of `row`, and the positions from which displacements count.
 
     `varies (4,)`: whether types, masses, charges, masks differ between atoms; what does not is not looked up atom by atom.
     """
-    top = min(ns + 8, row.shape[0])      # the empty cluster behind, too
-    for i in range(top):
+    i1 = min(i1, row.shape[0])
+    for i in range(i0, i1):
         r = row[i]
         if r >= 0:
             slot_of[r] = i
@@ -26,20 +26,20 @@ def gather(ns, row, slot_of, varies, type_row, mass_row, inverse_row, q_row, mas
             q_s[i] = 0.0
             mask_s[i] = 0
     if varies[0]:
-        for i in range(top):
+        for i in range(i0, i1):
             type_s[i] = type_row[row[i]] if row[i] >= 0 else 0
     if varies[1]:
-        for i in range(top):
+        for i in range(i0, i1):
             mass_s[i] = mass_row[row[i]] if row[i] >= 0 else 1.0
             inverse_s[i] = inverse_row[row[i]] if row[i] >= 0 else 0.0
     if varies[2]:
-        for i in range(top):
+        for i in range(i0, i1):
             q_s[i] = q_row[row[i]] if row[i] >= 0 else 0.0
     if varies[3]:
-        for i in range(top):
+        for i in range(i0, i1):
             mask_s[i] = mask_row[row[i]] if row[i] >= 0 else 0
     for d in range(3):
-        for i in range(top):
+        for i in range(i0, i1):
             held[d, i] = x[d, i]
 
 

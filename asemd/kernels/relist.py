@@ -19,7 +19,7 @@ from asemd.kernels.threads import barrier
 
 NS, WANTED, FINE = range(3)     # places in `live`: slots in use, whether the loop is to build a list, whether all went well
 EXCLUDE = ROWS = True
-wrap = sort = gather = build = exclude = rows = to_slots = special_pairs = None
+wrap = bin_atoms = assign = move = gather = build = exclude = rows = to_slots = special_pairs = None
 
 
 class Atoms(NamedTuple):
@@ -74,6 +74,7 @@ class Arrays(NamedTuple):
     x2: np.ndarray
     v2: np.ndarray
     row2: np.ndarray
+    counts: np.ndarray
     cell_start: np.ndarray
     column_start: np.ndarray
     column_of: np.ndarray
@@ -142,22 +143,33 @@ def balance(shares, bounds, lengths):
 
 def relist(th, live, a, g, c, p):
     """Wrap, sort and list, as `live (3,)` says for how many slots; all threads call it, and it is done after their next barrier."""
-    if th.tid == 0:
-        live[FINE] = wrap(a.x, a.image, a.row, live[NS], g.origin, g.vectors, g.inverse, g.periodic) < 0
+    t, before = th.tid, live[NS]
+    i0, i1 = before * t // th.nth, before * (t + 1) // th.nth
+    th.scratch[t, 2] = wrap(a.x, a.image, a.row, i0, i1, g.origin, g.vectors, g.inverse, g.periodic)
+    if th.scratch[t, 2] < 0.0:
+        bin_atoms(a.x, a.v, a.row, i0, i1, g.bin_origin, g.bin_inverse, g.nx, g.ny, g.nz, c.x2, c.v2, c.row2, c.counts[t], c.key, g.places)
+    barrier(th)
+    if t == 0:
+        live[FINE] = 1
+        for k in range(th.nth):
+            if th.scratch[k, 2] >= 0.0:
+                live[FINE] = 0
         if live[FINE] != 0:
-            found = sort(a.x, a.v, a.row, live[NS], g.bin_origin, g.bin_inverse, g.nx, g.ny, g.nz, c.x2, c.v2, c.row2, c.cell_start,
-                         c.column_start, c.column_of, c.key, g.far, 4.0 * g.reach, g.void, g.places)
+            found = assign(c.counts, a.x, a.v, a.row, before, g.nx, g.ny, g.nz, c.x2, c.v2, c.row2, c.cell_start, c.column_start,
+                           c.column_of, g.far, 4.0 * g.reach, g.void)
             live[FINE] = found >= 0
         if live[FINE] != 0:
             live[NS] = found
-            gather(live[NS], a.row, a.slot_of, a.varies, a.type_row, a.mass_row, a.inverse_row, a.q_row, a.mask_row, a.type, a.mass,
-                   a.inverse_mass, a.q, a.mask, a.x, a.held)
-            split(c.shares, c.bounds, live[NS] // CLUSTER)
+            split(c.shares, c.bounds, found // CLUSTER)
     barrier(th)
     if live[FINE] == 0:
         return
-    t = th.tid
+    move(i0, i1, c.x2, c.v2, c.row2, c.key, c.counts[t], a.x, a.v, a.row)
+    barrier(th)
     c0, c1 = c.bounds[t], c.bounds[t + 1]
+    gather(CLUSTER * c0, CLUSTER * (c1 + 1 if t == th.nth - 1 else c1), a.row, a.slot_of, a.varies, a.type_row, a.mass_row, a.inverse_row,
+           a.q_row, a.mask_row, a.type, a.mass, a.inverse_mass, a.q, a.mask, a.x, a.held)
+    barrier(th)
     c.lengths[t] = build(a.x, a.row, c.cell_start, c.column_start, c.column_of, g.bin_origin, g.bin_inverse, g.bin_widths, g.periodic,
                          g.shifts, g.nx, g.ny, g.nz, g.reach, c0, c1, c.first[t], c.entries[t], c.own, c.span, c.unshifted, c.work[t],
                          c.codes[t], g.width, live[NS], c.longest[t], c.sorting, c.hide[t], g.places)
@@ -220,7 +232,8 @@ def module(lists: ModuleType, excludes: bool, has_rows: bool) -> ModuleType:
     """The compiled functions; `lists` are those of `asemd.neighbor.kernels`."""
     b = Builder("list build inside the loop")
     b.line("from asemd.kernels.threads import barrier")
-    for name in ("wrap", "sort", "gather", "build", "exclude", "rows", "to_slots", "special_pairs", "split", "balance"):
+    for name in ("wrap", "bin_atoms", "assign", "move", "gather", "build", "exclude", "rows", "to_slots", "special_pairs", "split",
+                 "balance"):
         b.use(lists, name)
     for name, value in dict(CLUSTER=CLUSTER, NS=NS, FINE=FINE, EXCLUDE=excludes, ROWS=has_rows).items():
         b.constant(name, value)

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tests.benchmarks.scenes import ROOT
+from tests.benchmarks.worker import RARELY
 
 WORKER = Path(__file__).with_name("worker.py")
 PATIENCE = 600     # seconds for one answer
@@ -104,6 +105,8 @@ class Running:
 
     def do(self, commands: list[str]) -> dict:
         """Execute commands; the seconds they took, and those of the processor."""
+        (self.folder / f"{self.number}.soon").touch()
+        time.sleep(1.5 * RARELY)
         (self.folder / "ticket").write_text(json.dumps(commands))
         os.replace(self.folder / "ticket", self.folder / f"{self.number}.go")
         done, end = self.folder / f"{self.number}.done", time.time() + PATIENCE
@@ -111,7 +114,7 @@ class Running:
             if self.process.poll() is not None or time.time() > end:
                 self.errors.seek(0)
                 raise RuntimeError(f"{self.contender.name}: no answer\n{self.errors.read()[-2000:]}")
-            time.sleep(0.002)
+            time.sleep(0.1 * RARELY)
         self.number += 1
         return json.loads(done.read_text())
 

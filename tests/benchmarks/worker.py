@@ -1,7 +1,9 @@
 """One engine in one process (under mpiexec: one rank of it). It executes the lists of commands it finds in its folder.
 
 ``python worker.py asemd|lammps FOLDER switches...``. ``0.go``, ``1.go`` ... hold one JSON list of commands each; ``0.done`` ... tell the
-seconds they took and those of the processor. A file ``stop`` ends it. Waiting costs no processor time, so engines can alternate.
+seconds they took and those of the processor. A file ``stop`` ends it. Waiting must not disturb the engine whose turn it is, on as many
+threads as there are cores: a worker looks for work `RARELY`, and `OFTEN` once there is a file ``0.soon``, ``1.soon`` ..., so that all ranks
+begin at the same time.
 """
 from __future__ import annotations
 
@@ -11,6 +13,8 @@ import os
 import sys
 import time
 from pathlib import Path
+
+RARELY, OFTEN = 0.1, 0.001
 
 
 def engine(name: str, switches: list[str]):
@@ -31,7 +35,7 @@ def main() -> None:
     while not (folder / "stop").exists():
         ticket = folder / f"{number}.go"
         if not ticket.exists():
-            time.sleep(0.002)
+            time.sleep(OFTEN if (folder / f"{number}.soon").exists() else RARELY)
             continue
         commands = json.loads(ticket.read_text())
         began, cpu = time.perf_counter(), time.process_time()
