@@ -18,7 +18,7 @@ MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cu
 MOST_PAIRS = 2e9
 WORTH = 0.5            # of the space: what may be left for empty stretches to be left out
 APART = 2.0            # times reach: what is left of an empty stretch
-SLENDER = 0.87         # width of a column in cubes that hold a cluster: of longer ones each atom needs a shorter stretch of the row
+SLENDER = 0.87         # width of columns in cubes that hold a cluster, if atoms are dense: of longer ones each needs shorter parts of rows
 VOID = 1.5             # times reach: an empty stretch of a column that no cluster extends over; less than what is left of one
 EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
@@ -203,7 +203,8 @@ class ClusterList:
                 share * max(wa, wb, wc))
         if self.bins.k is not None:     # no column has atoms of both sides of what has been left out
             h = min(h, 0.65 * APART * self.reach)
-        nx, ny = max(1, round(wa / (SLENDER * h))), max(1, round(wb / (SLENDER * h)))
+        d = SLENDER * h if h < 0.8 * self.reach else h
+        nx, ny = max(1, round(wa / d)), max(1, round(wb / d))
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
             nx, ny, nz = max(1, nx * 3 // 4), max(1, ny * 3 // 4), max(1, nz * 3 // 4)
