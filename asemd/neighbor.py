@@ -12,13 +12,14 @@ from asemd.kernels import cluster, cluster_rows, columns, gaps, pair_list, rebui
 from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.generate import Builder
 from asemd.kernels.state import Cell
+from asemd.kernels.target import vector
 
 SMALL = 32             # below this many atoms a plain list: clusters would save some 15 microseconds a step and take 5 s more to compile
 MOST_IMAGES = 10**6    # a plain list beyond these limits is a mistake in the cutoff, and would fill the memory
 MOST_PAIRS = 2e9
 WORTH = 0.5            # of the space: what may be left for empty stretches to be left out
 APART = 2.0            # times reach: what is left of an empty stretch
-SLENDER = 0.87         # width of columns in cubes that hold a cluster, if atoms are dense: of longer ones each needs shorter parts of rows
+SLENDER = 0.87         # width of columns in cubes that hold a cluster (dense, double precision): atoms need shorter parts of longer rows
 VOID = 1.5             # times reach: an empty stretch of a column that no cluster extends over; less than what is left of one
 EVERYWHERE = np.zeros((3, 0))
 IMAGES = np.array(list(itertools.product((-1, 0, 1), repeat=3)), float)      # number 13 is "no shift"
@@ -203,7 +204,7 @@ class ClusterList:
                 share * max(wa, wb, wc))
         if self.bins.k is not None:     # no column has atoms of both sides of what has been left out
             h = min(h, 0.65 * APART * self.reach)
-        d = SLENDER * h if h < 0.8 * self.reach else h
+        d = SLENDER * h if h < 0.8 * self.reach and self.width == vector(False) else h
         nx, ny = max(1, round(wa / d)), max(1, round(wb / d))
         nz = max(1, int(wc / (0.166 * h)))
         while nx * ny * nz > 16 * n + 4096:
