@@ -61,7 +61,7 @@ class PairTerm(FactorTerm):
             self.buffer = aligned((engine.threads, 8 * self.row), real)
             sets = SETS * pair_kernels.buffer_rows(len(self.same) - sum(self.same))
             self.coefficients = aligned((engine.threads, sets * self.row + 16), real)
-            self.held = np.zeros((engine.threads, SETS), np.uint32)
+            self.held = aligned((engine.threads, 16), np.uint32)        # a line of the cache for each thread, of which SETS are used
             self.types = np.zeros((engine.threads, self.row), np.uint32)
             self.saved = np.zeros((engine.threads, self.row), real)
             self.take_tables()

@@ -15,7 +15,7 @@ from asemd.interrupt import Interrupt
 from asemd.kernels import relist
 from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
-from asemd.kernels.state import Thread
+from asemd.kernels.state import Thread, aligned
 from asemd.relist import NO_CALLS, Relist
 from asemd.watchdog import Watchdog
 
@@ -61,7 +61,7 @@ class Loop:
         self.natoms = system.n                # how many there should be: lost ones count
         self.warn, self.say, self.fix_data, self._collected = warn, str, (), -1       # `say` is told what fixes print: nobody listens yet
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
-        self._sync, self._scratch = np.zeros(8, np.int64), np.zeros((self.engine.threads, 8))
+        self._sync, self._scratch = np.zeros(8, np.int64), aligned((self.engine.threads, 8))
         self._control, self._numbers = np.zeros(tl.CONTROLS, np.int64), np.zeros(tl.NUMBERS)
         self._chunk, self.halted, self._in_sync = 100, False, None       # whether the system has what the slots have; None: not known
         self._relist, self.watchdog, self.trial_step = Relist(), Watchdog(self), 0      # the step that a minimisation evaluates

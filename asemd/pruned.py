@@ -27,7 +27,7 @@ class PrunedList:
     """
 
     def __init__(self, threads: int, skin: float, cut: float, style):
-        self.memo = np.zeros((threads, 7))
+        self.memo = aligned((threads, 8))
         self.memo[:, prune.SKIN], self.memo[:, prune.MOST], self.memo[:, prune.CUT] = PART * skin, skin, cut
         self.memo[:, prune.COST] = PRUNING / (ENTRY * (BARE + EACH * operations(*style.functions())))
         self.seen = np.zeros((threads, 3, 0))
@@ -68,7 +68,7 @@ class PrunedList:
             self.to = np.zeros((threads, row), np.int64)
             self.codes = np.zeros((threads, 0 if WIDE else row), np.int64)
             self.room, self.short = aligned((threads, 0 if WIDE else 3 * row)), aligned((threads, 3 * row * WIDE), np.float32)
-            self.tally = np.zeros((threads, 8), np.int64)
+            self.tally = aligned((threads, 8), np.int64)
         self.memo[:, prune.VALID] = 0.0
         self.width, self.empty = clusters.width, empty
 

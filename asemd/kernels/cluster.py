@@ -161,7 +161,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
     ra = int(reach / wa) + 1
     rb = int(reach / wb) + 1
     capacity = codes.shape[0]
-    longest[0] = 0
+    most_entries = np.int64(0)      # and not longest[0], lest threads wait for each other's line of the cache
     tally = np.zeros(8, np.int64)
     if SIEVE:
         spare = np.empty((5, capacity + 16), np.int32)
@@ -267,6 +267,7 @@ def build(x, row, cell_start, column_start, column_of, origin, inverse, widths, 
         if MARK:
             for k in range(CLUSTER):
                 hide[start + own[ci] + k] = np.uint8(255 - (codes[nt + k] >> 32))
-        longest[0] = max(longest[0], n - start)
+        most_entries = max(most_entries, n - start)
     first[c1] = n
+    longest[0] = most_entries
     return n
