@@ -36,6 +36,10 @@ CASES = {
                       fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),
     "pppm slab, a coarse mesh": case(["kspace_style pppm 1e-4", "kspace_modify slab 3.0 mesh 6 6 6 gewald 0.5"], boundary="p p f",
                                      fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),
+    **{f"{name}, slab ew2d": case([f"kspace_style {name.split()[0]} 1e-4", "kspace_modify slab ew2d", *more], boundary="p p f",
+                                  box=["change_box all z delta -9 9"], runs=["run 0"])
+       for name, more in (("pppm", ()), ("pppm ad", ("kspace_modify diff ad gewald 0.4 mesh 12 12 10 order 4",)), ("ewald", ()),
+                          ("pppm/stagger", ("kspace_modify gewald 0.4 mesh 8 9 10",)), ("pppm/cg", ()))},
     "pppm shares": case(["kspace_style pppm 1e-4"], *SHARES, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
     **{f"pppm, no overlap, {name}": case(["kspace_style pppm 1e-4", f"kspace_modify gewald 0.3 order 7 overlap no mesh {mesh}"], *more,
                                          box=box)
@@ -257,7 +261,6 @@ def test_choices_without_a_scene():
     (["change_box all boundary f f p", "kspace_style pppm 1e-4", "kspace_modify wire 3.0", "run 0"], "must add up to 0.* 2 "),
     (["change_box all boundary f f p", "kspace_style pppm 1e-4", "kspace_modify wire 3.0 slab 3.0", "run 0"], "slab or wire, not both"),
     (["kspace_style ewald/disp 1e-4", "kspace_modify wire 3.0", "run 0"], "does not take kspace_modify wire; ewald and pppm do"),
-    (["kspace_style ewald 1e-4", "kspace_modify slab ew2d", "run 0"], "does not take kspace_modify slab ew2d"),
     (["kspace_style pppm 1e-4", "kspace_modify scafacos tolerance energy", "run 0"], "unknown kspace_modify keyword 'scafacos'"),
     (["kspace_style scafacos fmm 1e-4"], "unknown kspace style"),
     (["pair_style lj/cut 5.0", "pair_coeff * * 1 1", "kspace_style pppm 1e-4", "run 0"], "needs a pair style that leaves it"),

@@ -33,7 +33,10 @@ CASES = {
     "ewald/disp": case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4"),
     "ewald/disp arithmetic, triclinic": case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-5", mix="arithmetic", box=TILT),
     **{f"ewald/disp, slab {word}": case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4", f"kspace_modify slab {word}")
-       | {"boundary": "p p f", "runs": ["run 0"]} for word in ("3.0", "nozforce")},
+       | {"boundary": "p p f", "runs": ["run 0"]} for word in ("3.0", "nozforce", "ew2d")},
+    **{f"pppm/disp, slab {word}": case("lj/long/coul/long long long 5.0", "kspace_style pppm/disp 1e-4",
+                                       f"kspace_modify slab {word} gewald 0.4 {FORCES}", box=["change_box all z delta -9 9"])
+       | {"boundary": "p p f", "runs": ["run 0"]} for word in ("3.0", "nozforce", "ew2d")},
     "ewald/disp, npt": npt("iso"), "ewald/disp, npt, triclinic": npt("tri", box=TILT),
     "ewald/disp without charges": case("lj/long/coul/long long off 5.0", "kspace_style ewald/disp 1e-4"),
     "ewald/disp, Buckingham": case("buck/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4", coeff=BUCK),

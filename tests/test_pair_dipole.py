@@ -50,6 +50,8 @@ CASES = {
     "lj/cut/dipole/long g": "pair_style lj/cut/dipole/long 5\n" + LJ + SOLVER + "\nkspace_modify gewald 0.4",
     "lj/cut/dipole/long slab": "pair_style lj/cut/dipole/long 4 5\n" + LJ + SOLVER
                                + "\nkspace_modify slab 3.0 gewald 0.35 kmax/ewald 5 6 14",
+    "lj/cut/dipole/long slab ew2d": "pair_style lj/cut/dipole/long 4 5\n" + LJ + SOLVER
+                                    + "\nkspace_modify slab ew2d gewald 0.35 kmax/ewald 5 6 14",
 }
 LONG = "pair_style lj/long/dipole/long {}\npair_coeff 1 1 0.1 2.0\npair_coeff 2 2 0.2 1.7\nkspace_style ewald/disp{} 1e-4"
 CASES |= {
@@ -57,6 +59,7 @@ CASES |= {
     "lj/long/dipole/long cut": LONG.format("cut long 4 5", "") + "\npair_modify shift yes\nkspace_modify gewald 0.4",
     "lj/long/dipole/long off": LONG.format("long off 4 5", ""),
     "lj/long/dipole/long uncharged": LONG.format("long long 5", "/dipole") + "\npair_modify mix arithmetic\nset group all charge 0",
+    "lj/long/dipole/long slab ew2d": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab ew2d gewald 0.35 force 0.3",
     "lj/long/dipole/long slab": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab 3.0 gewald 0.35 force 0.3",
 }
 

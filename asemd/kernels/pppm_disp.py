@@ -114,7 +114,8 @@ def multiply_shares_disp(first, last, numbers, lengths, g, attractive, green, wa
 def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, signs, numbers, pieces, gfb, wrap, held, lengths, own, inverse,
                 green, brick, density, wave, waves, field, packed, shares, share_field, base, weight, values, sums, constants, forward,
                 backward, backward_shares, acc, energy, virial):
-    """All of it for one thread; arguments as in `asemd.kernels.pppm.pppm` and `asemd.kernels.ewald_disp.sums_over_waves`."""
+    """All of it for one thread; arguments as in `asemd.kernels.pppm.pppm` and `asemd.kernels.ewald_disp.sums_over_waves`; without force
+    along z and with a slab's correction it is 5."""
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     least, attractive = constants[6], factors.shape[0] > 0
     nth, nx, n = meeting.nth, numbers[0], values.shape[0]
@@ -163,9 +164,9 @@ def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, sign
         interleave(first, last, field, packed)
         barrier(meeting)
         if AD:
-            gather_ad(x, f, values[c], least, lo, hi, numbers, lengths, signs[c] * scale, own, wrap, base, weight, packed, slabs == 2.0)
+            gather_ad(x, f, values[c], least, lo, hi, numbers, lengths, signs[c] * scale, own, wrap, base, weight, packed, slabs == 5.0)
         else:
-            gather(f, values[c], least, lo, hi, signs[c] * scale, wrap, base, weight, packed, slabs == 2.0)
+            gather(f, values[c], least, lo, hi, signs[c] * scale, wrap, base, weight, packed, slabs == 5.0)
         if PER_ATOM:
             gather_shares(values[c], least, lo, hi, signs[c] * scale, wrap, base, weight, share_field, energy, virial)
             at_zero = signs[c] * constants[9 + c] if attractive else qsum
@@ -186,7 +187,7 @@ def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, sign
         if attractive:
             for k in range(3):
                 acc[2 + k] += all_energy * together
-    if slabs == 1.0 and not attractive:
+    if (slabs == 1.0 or slabs == 5.0) and not attractive:
         height = math.sqrt(held[2, 0] ** 2 + held[2, 1] ** 2 + held[2, 2] ** 2)
         barrier(meeting)
         slab(meeting, tid, x, f, q, least, lo, hi, scale, qsum, height, volume, sums, acc, energy)

@@ -9,6 +9,7 @@ Whatever decides about digits is LAMMPS's: choice of the parameters, estimates o
 from __future__ import annotations
 
 import math
+import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -17,7 +18,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.box import Box
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 from asemd.kspace_settings import DEFAULTS
 from asemd.registry import class_of
 
@@ -52,6 +53,7 @@ class KSpace(ABC):
     takes_slab = True
     takes_wire = False
     nozforce = 2.0              # what kernels are told of ``slab nozforce``: no force along z
+    ew2d = 0.0                  # and of ``slab ew2d``: no correction of a slab, as for solvers of electrodes, which make their own
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
@@ -97,8 +99,6 @@ class KSpace(ABC):
             raise InputError(f"{name} needs three dimensions, this scene has two")
         if system.q is None and self.coulomb:
             raise InputError(f"{name} needs atom attribute q: use atom_style charge or full")
-        if self.slab == "ew2d":
-            raise InputError(f"{name} does not take kspace_modify slab ew2d, which is for solvers of electrodes; for slabs use slab 3.0")
         if self.wire:
             if not self.takes_wire:
                 raise InputError(f"{name} does not take kspace_modify wire; ewald and pppm do")
@@ -131,7 +131,7 @@ class KSpace(ABC):
 
     @property
     def slab(self) -> float | str | None:
-        """Extended volume of a slab, ``nozforce``, or None."""
+        """Extended volume of a slab, ``nozforce``, ``ew2d``, or None."""
         value = self.modify["slab"]
         return value if "slab" in self.given and value != 1.0 else None
 
@@ -155,6 +155,9 @@ class KSpace(ABC):
             Of the pair style's Coulomb part.
         """
         self.check(system)
+        if self.slab == "ew2d":
+            warnings.warn(f"kspace_style {self.style}: slab ew2d is for solvers of electrodes, this one does not sum in two dimensions; "
+                          "slab 3.0 comes close to that", InputWarning, stacklevel=2)
         q = np.asarray(system.q if self.coulomb else np.zeros(system.n), float)
         self.n, self.cutoff = max(system.n, 1), float(cutoff)
         self.qsum, self.qsqsum = float(q.sum()), float(q @ q)

@@ -28,7 +28,7 @@ class EwaldDisp(Ewald):
 
     style = flag = "ewald/disp"
     groups = takes_wire = False
-    nozforce = 1.0              # as in LAMMPS the correction of a slab without empty space, and forces along z
+    nozforce = ew2d = 1.0       # as in LAMMPS the correction of a slab without empty space, and forces along z
     partner = "lj/long/coul/long"
     dispersion = None
     dipoles = False             # the pair style leaves it dipoles

@@ -26,6 +26,7 @@ class PPPMDisp(PPPM):
     style = flag = "pppm/disp"
     groups = takes_wire = False
     partner = "lj/long/coul/long long long"
+    nozforce, ew2d = 5.0, 1.0   # as in LAMMPS the correction of a slab without empty space; 5: without forces of the mesh along z
     g6 = 0.0
 
     def take(self, uses, interactions, system):

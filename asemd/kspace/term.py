@@ -24,7 +24,7 @@ class KSpaceTerm(Term):
 
     def __init__(self, solver):
         self.solver, self.ready = solver, False
-        correction = 3.0 if solver.wire else 0.0 if solver.slab is None else solver.nozforce if solver.slab == "nozforce" else 1.0
+        correction = 3.0 if solver.wire else {None: 0.0, "nozforce": solver.nozforce, "ew2d": solver.ew2d}.get(solver.slab, 1.0)
         a, _, c = solver.stretch
         self.constants = np.array([solver.g_ewald, solver.scale * solver.factor, solver.qsum, solver.qsqsum, -a if solver.wire else c,
                                    correction, solver.least])

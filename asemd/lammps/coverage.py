@@ -22,7 +22,6 @@ PARTIAL = {
     ("command", "molecule"): "no bodies",
     ("command", "read_dump"): "formats native (text) and xyz",
     ("command", "rerun"): "formats native (text) and xyz",
-    ("command", "kspace_modify"): "no slab ew2d, which is for solvers of electrodes",
     ("command", "kspace_style"): "the styles listed under kspace",
     **dict.fromkeys([("kspace", "msm"), ("kspace", "msm/cg")], "pressure/scalar yes: the pressure is that of the virial all the same"),
     ("command", "read_data"): "fix property/atom and cmap read sections; sections of the atom styles listed under atom",
