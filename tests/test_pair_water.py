@@ -95,8 +95,10 @@ def test_against_lammps(theirs, case):
     text, (thermo, forces, energies) = theirs[case]
     mine = Lammps(cmdargs=["-log", "none", "-screen", "none", "-compat", "lammps"])
     mine.commands_string(text)
-    for got, want in (([mine.get_thermo(name) for name in COLUMNS], thermo), (mine.gather_atoms("f", 1, 3), forces),
-                      (mine.numpy.extract_compute("e", 1, 1), energies)):
+    pairs = [([mine.get_thermo(name) for name in COLUMNS], thermo), (mine.gather_atoms("f", 1, 3), forces)]
+    if not set(SLAB) <= set(CASES[case][2]):        # for a slab LAMMPS's shares of atoms do not add up to its energy
+        pairs += [(mine.numpy.extract_compute("e", 1, 1), energies)]
+    for got, want in pairs:
         np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
 
 
