@@ -175,9 +175,9 @@ class Driver:
             session.close_loop()
             fixes = [*scene.dynamic_groups.values(), *scene.fixes.values(), *live_coefficients(session)]
             parts = (scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt)
-            loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
-            loop.warn, loop.say = session.warn, session.later.append        # what is said in the set-up comes after the list
-            loop.watchdog.on = session.switches.watchdog
+            with session.passing_warnings():        # of solvers
+                loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)
+            loop.warn, loop.say, loop.watchdog.on = session.warn, session.later.append, session.switches.watchdog     # said after the list
             loop.watchdog.path = f"{session.log.path}.last_good.dump" if os.path.isfile(session.log.path or "") else ""
             with session.in_a_run(Progress(begin=begin, first=plan.first, last=begin + plan.steps, stop=plan.last)):
                 loop.setup(plan.first, plan.last, virial=True)
