@@ -202,6 +202,16 @@ def test_forces_and_virial_are_derivatives_of_the_energy(potentials, tmp_path):
         assert abs(slope - force) < scale and abs(strained - virial) < scale, name
 
 
+def test_types_are_what_their_elements_say(potentials):
+    """Also where LAMMPS takes types in the order of the file."""
+    lines = scene("meam/spline", "metal")
+    atoms = next(k for k, line in enumerate(lines) if line.startswith("create_atoms"))
+    turned = [line.replace("spline Ti O", "spline O Ti") for line in lines]
+    turned[atoms] = f"create_atoms 1 box {' '.join(f'basis {k + 1} {2 - k % 2}' for k in range(8))}"
+    found = uncompiled(OURS, {"file": lines, "turned": turned}, potentials)
+    assert turned != lines and found["turned"] == found["file"]
+
+
 def test_every_style_is_compared():
     mine = {n for n in style.names("pair") if isinstance(found := style.find("pair", n), ManyBody) and not isinstance(found, Embedded)}
     elsewhere = {"snap", "mliap", "coul/ctip", "coul/streitz"}      # tests/test_snap.py, tests/test_pair_ions.py

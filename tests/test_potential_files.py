@@ -25,7 +25,7 @@ OTHERS = {
     "FeCH_BOP_II.poly": ("polymorphic", "FeCH_BOP_II.poly", "C Fe H"), "GaN_sw.poly": ("polymorphic", "GaN_sw.poly", "N Ga"),
     "GaN_tersoff.poly": ("polymorphic", "GaN_tersoff.poly", "Ga N"), "TlBr_msw.poly": ("polymorphic", "TlBr_msw.poly", "Br Tl"),
     "Si_1.meam.spline": ("meam/spline", "Si_1.meam.spline", "Si"), "Si_2.meam.spline": ("meam/spline", "Si_2.meam.spline", "Si"),
-    "Ti.meam.spline": ("meam/spline", "Ti.meam.spline", "Ti"), "TiO.meam.spline": ("meam/spline", "TiO.meam.spline", "O Ti"),
+    "Ti.meam.spline": ("meam/spline", "Ti.meam.spline", "Ti"), "TiO.meam.spline": ("meam/spline", "TiO.meam.spline", "Ti O"),
     "Si.b.meam.sw.spline": ("meam/sw/spline", "Si.b.meam.sw.spline", "Si"),
     "Ti.meam.sw.spline": ("meam/sw/spline", "Ti.meam.sw.spline", "Ti"),
     "AlSiMgCuFe.meam": ("meam", "library.meam AlS SiS MgS CuS FeS AlSiMgCuFe.meam", "FeS AlS MgS SiS CuS"),
@@ -36,15 +36,16 @@ OTHERS = {
     "CH.rebo": ("rebo", "CH.rebo", "C H"), "CH.airebo": ("airebo 1.4", "CH.airebo", "C H"),
     "CH.airebo-m": ("airebo/morse 1.4", "CH.airebo-m", "H C"),
     "C_SNAP_2021.10.15.quadratic.snapcoeff": ("snap", "C_SNAP_2021.10.15.quadratic.snapcoeff C_SNAP_2021.10.15.quadratic.snapparam", "C"),
+    "Si.nn.mliap.model": ("mliap model nn Si.nn.mliap.model descriptor so3 Si.nn.mliap.descriptor", "", "Si"),
+    "Ni_Mo.mliap.model": ("mliap model linear Ni_Mo.mliap.model descriptor so3 Ni_Mo.mliap.descriptor", "", "Ni Mo"),
     "Cu.nn.mliap.model": ("mliap model nn Cu.nn.mliap.model descriptor sna Cu.snap.mliap.descriptor", "", "Cu"),
 }
 FAR = {"CH.rebo": 1.4, "CH.airebo": 1.5, "CH.airebo-m": 1.5, "BN.extep": 1.5, "BNC.tersoff": 1.6,
        "MOH.nb3b.harmonic": 1.0, "PSiO.nb3b.screened": 1.6}
 # digits that LAMMPS does not have; two entries of a file for one triple of atoms, rounded apart: which one counts depends on their order
 DIGITS = dict.fromkeys(("CH.rebo", "CH.airebo", "CH.airebo-m"), 1e-9) | {"Si.edip": 1e-5, "CdTeZnSeHgS0.sw": 1e-6}
-# for libraries beside LAMMPS, and those with the descriptor so3
-UNREAD = {"SiGeH.sw.quip", "Ta06A.pytorch.mliap"} | {
-    f"{name}.mliap.{kind}" for name in ("Ni_Mo", "Si.nn") for kind in ("model", "descriptor")}
+# for libraries beside LAMMPS
+UNREAD = {"SiGeH.sw.quip", "Ta06A.pytorch.mliap"}
 TALKS = ("energy", "force", "pressure")
 MEASURE = r"""
 import numpy as np

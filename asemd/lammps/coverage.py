@@ -15,7 +15,7 @@ STATES = ("done", "partial", "missing", "extra")
 CATALOG = {"min_style": "minimize", "run_style": "integrate"}
 # what exists in part: what is not there
 PARTIAL = {
-    ("pair", "mliap"): "models linear, quadratic and nn, descriptor sna",
+    ("pair", "mliap"): "models linear, quadratic and nn, descriptors sna and so3",
     ("command", "atom_modify"): "id no: atoms keep their ids, which files show",
     ("command", "atom_style"): "the styles listed under atom",
     ("fix", "msst"): "no dftb",
