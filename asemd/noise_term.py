@@ -44,6 +44,8 @@ class NoiseTerm(PairListTerm):
                              "command run): energies and forces of positions alone it does not have")
         if np.ndim(self.owner.use.factor) > 0:
             raise InputError(f"pair style {self.style.name} cannot have a factor for each atom")
+        if loop.dt == 0.0:
+            raise InputError(f"pair style {self.style.name}: noise grows without bound as time steps become short, and timestep is 0")
         order = getattr(loop, "pair_order", None)
         if order is not None and engine.threads == 1:
             order.arrange(loop, self)

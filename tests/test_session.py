@@ -112,6 +112,18 @@ def test_rows_are_those_of_lammps(session):
         [10, 1.0849398, -4.9896631, 0, -3.4131099, -0.40438158]]
 
 
+def test_no_time_passes(session, tmp_path):
+    """With timestep 0 atoms stay, and there is no number of days; what divides by the step says so."""
+    session.commands("timestep 0\nthermo 2\nrun 2")
+    first, last = session.text.rows()
+    assert first[1:] == last[1:]
+    with pytest.raises(InputError, match="fix langevin: noise grows without bound"):
+        session.commands("fix 2 all langevin 1 1 1 123\nrun 1")
+    session.close()
+    log = (tmp_path / "log.lammps").read_text()
+    assert "Loop time" in log and "Performance" not in log
+
+
 def test_log_has_echo_and_summary(session, tmp_path):
     session.commands("variable n index 3\nrun $n")
     session.close()

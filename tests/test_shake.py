@@ -155,6 +155,7 @@ def test_bad_words(kind, words, message, data):
     (["fix h all ehex 1 0.1 constrain"], "constrain needs a fix shake or rattle"),
     (["bond_style none", "fix s all shake 1e-4 20 0 b 1"], "bond_style must be defined"),
     (["angle_style none", f"fix s all shake 1e-4 20 0 {WATER}"], "angle_style must be defined"),
+    (["fix s all shake 1e-4 20 0 b 1", "timestep 0"], "with timestep 0 no force keeps the distances"),
     (["thermo_modify lost/bond ignore", "fix s all shake 1e-4 20 0 b 1 2 4", "delete_atoms group hydrogen"], "not all of them are there"),
 ])
 def test_bad_runs(commands, message, data):

@@ -223,6 +223,8 @@ class Langevin(Thermostat):
         if wrong:
             raise InputError(f"fix langevin: scale names atom type {wrong[0]}, there are types 1 to {ntypes}")
         check_turning(self, loop)
+        if loop.dt == 0.0:
+            raise InputError("fix langevin: noise grows without bound as time steps become short, and timestep is 0")
         ratios = [float(self.temp.bias)] + [self.scale.get(kind, 1.0) for kind in range(1, ntypes + 1)]
         constant = not callable(self.start)
         ramp = (self.start, self.stop) if constant else (0.0, 0.0)

@@ -76,7 +76,7 @@ class NVELimit(Fix):
         return [repr(self.xmax)]
 
     def parameters(self, loop) -> np.ndarray:
-        self.p = np.array([float(loop.group_bit(self.group)), self.xmax / loop.dt, 0.0])
+        self.p = np.array([float(loop.group_bit(self.group)), self.xmax / loop.dt if loop.dt else np.inf, 0.0])
         return self.p
 
     @hook(uses=[kick_within])

@@ -257,6 +257,8 @@ class Shake(OnLevels, Fix):
             loop.warn(f"Using fix {self.style} with minimization.\n  Substituting constraints with harmonic restraint forces using "
                       f"kbond={self._spring(loop):.8g}")
             return
+        if loop.dt == 0.0:
+            raise InputError(f"fix {self.style}: with timestep 0 no force keeps the distances; choose another step, or unfix it")
         if any(f.style == "nve/limit" for f in loop.fixes):
             loop.warn("Should not use fix nve/limit with fix shake or fix rattle")
         if self.output:

@@ -139,8 +139,8 @@ def loop_line(seconds: float, steps: int, atoms: int) -> str:
 
 
 def performance(seconds: float, steps: int, atoms: int, dt: float, units: str, femtosecond: float) -> str:
-    """``Performance: ...`` in ns/day, hours/ns or tau/day, steps and atom-steps per second."""
-    if seconds <= 0.0 or steps <= 0:
+    """``Performance: ...`` in ns/day, hours/ns or tau/day, steps and atom-steps per second; empty where no time passes."""
+    if seconds <= 0.0 or steps <= 0 or dt == 0.0:
         return ""
     rate = steps / seconds
     atom_rate, prefix = rate * atoms, ""
