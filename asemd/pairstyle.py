@@ -262,7 +262,7 @@ class PairStyle(Style):
         for i, j in sorted(pairs):
             if (i, j) in coeffs:
                 out[i, j] = self.complete(coeffs[i, j], settings)
-            elif i != j and self.mix and (i, i) in coeffs and (j, j) in coeffs:
+            elif i != j and (self.mix or not self.coeff) and (i, i) in coeffs and (j, j) in coeffs:
                 a, b = self.complete(coeffs[i, i], settings), self.complete(coeffs[j, j], settings)
                 try:
                     out[i, j] = self.mixed(a, b, rule or self.mix_rule)
@@ -271,7 +271,7 @@ class PairStyle(Style):
             else:
                 missing.append((i, j))
         if missing:
-            raise InputError(missing_pairs(missing) + ("" if self.mix else f" (pair style {self.name} does not mix)"))
+            raise InputError(missing_pairs(missing) + ("" if self.mix or not self.coeff else f" (pair style {self.name} does not mix)"))
         return out
 
     def constants(self, settings: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -95,7 +95,6 @@ LONG = ["pair_style lj/long/coul/long long long 6.0", "pair_coeff * * 0.1 2.0"]
     ([*LONG, "run 0"], "needs a kspace_style, such as pppm/disp"),
     ([*LONG, "kspace_style pppm 1e-4", "run 0"], "needs a pair style that leaves it"),
     ([*LONG, "kspace_style pppm/disp 1e-4", "run 0"], "needs its accuracy for dispersion"),
-    ([*LONG, "pair_modify mix sixthpower", "kspace_style ewald/disp 1e-4", "run 0"], "mix must be geometric or arithmetic"),
     ([*LONG, "kspace_style ewald/disp 0.1", "run 0"], "too low"),
     ([*LONG, "kspace_style pppm/disp 1e-4", "kspace_modify eigtol 1.5"], "eigtol: must be smaller than 1"),
     (["kspace_style pppm/cg 1e-4 0.1 3"], "smallest charge, got 3 words")])

@@ -73,7 +73,7 @@ def dispersion_of(uses, interactions, system, style: str, mix: str = "pair", tol
     Raises
     ------
     InputError
-        More than one pair style has it, or a rule of mixing that cannot be written as products.
+        More than one pair style has it.
     """
     parts = [(use, part) for use in uses for part in use.style.variant(use.settings).parts if part.long and not part.charged]
     if not parts:
@@ -82,7 +82,7 @@ def dispersion_of(uses, interactions, system, style: str, mix: str = "pair", tol
         raise InputError(f"kspace_style {style}: only one pair style can have a long-range dispersion")
     use = parts[0][0]
     rule = {"pair": interactions.modified(use, "mix") or use.style.mix_rule, "geom": "geometric"}.get(mix, mix)
-    if rule not in ("geometric", "arithmetic", "none"):
-        raise InputError(f"kspace_style {style}: pair_modify mix must be geometric or arithmetic, not {rule}")
+    if rule == "sixthpower":      # its energies and distances have the geometric mean of C6
+        rule = "geometric"
     filled = next(filled for other, filled in complete(interactions, system.counts["ntypes"]) if other is use)
     return Dispersion(rule, filled, use.style.derived, use.settings, system.counts["ntypes"], tolerance), parts

