@@ -250,7 +250,6 @@ def test_mistakes(line, message):
     ("region b block 0 1 0 1 0 1\ncreate_box 0 b", "positive"), ("create_box 1 b", "unknown region"),
     ("region b block 0 1 0 1 0 1\ncreate_box 1 b bond/types 1", "no bonds"),
     ("dimension 2\nregion b block 0 1 0 1 1 2\ncreate_box 1 b", "z = 0"),
-    ("boundary p f p\nregion b prism 0 1 0 1 0 1 0.2 0 0\ncreate_box 1 b", "periodic"),
     ("region b block 0 1 0 1 0 1\ncreate_box 1 b\ncreate_atoms 1 box", "no lattice"),
     ("create_box 1 NULL 0 1 0 1 0 1", "triclinic/general"), (GENERAL.replace("-1 1", "1 1"), "blo 1 must be less"),
     (GENERAL.replace(" 0 3", ""), "6 values"), (GENERAL.replace("a1 1", "a1 -1"), "right-handed"),

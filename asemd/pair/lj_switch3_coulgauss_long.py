@@ -3,8 +3,8 @@ r"""$$E = 4\epsilon \left[ (\sigma/r)^{12} - (\sigma/r)^6 \right] S_3(r) + C \fr
 
 Lennard-Jones switched off over the last `width` before its cutoff, S3 = 3 x^2 - 2 x^3 with x = (cut - r) / width, and the Coulomb
 interaction of charges smeared out as Gaussians, of which this is the part within cut_coul that a long-range solver leaves; beyond cut_lj
-they count as points. The gamma of unlike types always follows from that of the types themselves. ``pair_modify tail yes`` adds what the switch
-takes off, too.
+they count as points. The gamma of unlike types always follows from that of the types themselves. ``pair_modify tail yes`` adds what
+the switch takes off, too.
 Vanduyfhuys et al., J. Comput. Chem. 39, 999 (2018).
 """
 from __future__ import annotations

@@ -2,7 +2,8 @@ r"""$$E = \frac{E_0}{n - m} \left[ m (r_0/r)^n - n (r_0/r)^m \right] \;\; (r \le
     E = 4 E_0 \left[ r^{-12} - r^{-6} \right] \;\; (r_0 < r < r_c)$$
 
 Exponents n and m inside r0, Lennard-Jones with sigma = 1 beyond, which continues it if r0 is 2^(1/6). ``pair_modify shift yes`` takes off
-the energy of the inner function at the cutoff, inside r0 only, and ``tail yes`` adds the tail of the inner function, as in LAMMPS.  Dietz, Kroger and Hoy, Soft Matter 14, 5221 (2018).
+the energy of the inner function at the cutoff, inside r0 only, and ``tail yes`` adds the tail of the inner function, as in LAMMPS.
+Dietz, Kroger and Hoy, Soft Matter 14, 5221 (2018).
 """
 from __future__ import annotations
 
@@ -32,8 +33,8 @@ def nm_cut_split_d2(r2, front, e0, r0, nn, mm, end):
     return 0.25 * front * nn * mm * ((nn + 2.0) * math.pow(s2, 0.5 * nn) - (mm + 2.0) * math.pow(s2, 0.5 * mm)) * r2inv * r2inv
 
 
-@pair("nm/cut/split", settings="cut", coeff="e0 r0 nn mm [cut]", rows="front end", check=check, tail=tail, cls=SplitPair, d2=nm_cut_split_d2,
-      settings_example="2.5", example="1.0 1.1224620483 8.0 6.0 2.4", see="LAMMPS manual, pair_style nm/cut/split")
+@pair("nm/cut/split", settings="cut", coeff="e0 r0 nn mm [cut]", rows="front end", check=check, tail=tail, cls=SplitPair,
+      d2=nm_cut_split_d2, settings_example="2.5", example="1.0 1.1224620483 8.0 6.0 2.4", see="LAMMPS manual, pair_style nm/cut/split")
 def nm_cut_split(r2, front: "energy", e0: "energy", r0: "distance", nn, mm, end):
     r2inv = 1.0 / r2
     s2 = r0 * r0 * r2inv

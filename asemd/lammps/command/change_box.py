@@ -13,7 +13,6 @@ from asemd.words import choice, number, take
 AXES = ("x", "y", "z")
 TILTS = ("xy", "xz", "yz")
 PARAMETERS = (*AXES, *TILTS, "boundary", "ortho", "triclinic", "set", "remap", "units")
-BORDER = {"xy": 1, "xz": 2, "yz": 2}      # the direction that must be periodic where the tilt is not zero
 
 
 def run(session, args):
@@ -105,9 +104,6 @@ class Change:
             self._shape(name)
 
     def _become(self, lo, hi, tilt, boundary, triclinic: bool) -> None:
-        for value, name in zip(tilt, TILTS):
-            if value and boundary[BORDER[name]] != "pp":
-                raise InputError(f"change_box: with tilt {name} the direction {AXES[BORDER[name]]} must be periodic")
         if not np.all(lo < hi):
             raise InputError(f"change_box: the box would have no volume, bounds ({' '.join(f'{v:g}' for v in lo)}) to "
                              f"({' '.join(f'{v:g}' for v in hi)})")

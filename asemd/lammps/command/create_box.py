@@ -77,10 +77,7 @@ def _box(scene, region) -> Box:
     triclinic = isinstance(region, Prism)
     if triclinic:
         tilt, lo, hi = region.tilt, region.lo, region.hi
-        periodic = [b == "pp" for b in scene.boundary]
-        for value, name, b in zip(tilt, ("xy", "xz", "yz"), (1, 2, 2)):
-            if value and not periodic[b]:
-                raise InputError(f"create_box: with tilt {name} the direction {'xyz'[b]} must be periodic")
+        for value, name in zip(tilt, ("xy", "xz", "yz")):
             if scene.dimension == 2 and value and name != "xy":
                 raise InputError(f"create_box: a 2d box must have {name} = 0")
     if scene.dimension == 2 and not (lo[2] < 0.0 < hi[2]):
