@@ -312,7 +312,7 @@ class Box:
         """The box with its shrink-wrapped faces moved to the atoms (LAMMPS's frame only; others come back as they are).
 
         A face ``s`` ends 1e-4 of the initial box length beyond the outermost atom; ``m`` does not go inside the initial bound.
-        Directions whose vector is tilted stay as they are.
+        A vector that is tilted keeps its direction, and becomes longer or shorter.
         """
         if not self.is_lammps_frame or not len(x) or not any(set(b) & set("sm") for b in self.boundary):
             return self
@@ -320,10 +320,8 @@ class Box:
         lo, hi = self.lo, self.hi
         length = hi - lo
         margin = MARGIN * (self.initial[1] - self.initial[0])
-        new_lo, new_hi = lo.copy(), hi.copy()
+        new_lo, new_hi, tilt = lo.copy(), hi.copy(), list(self.tilt)
         for k, (lower, upper) in enumerate(self.boundary):
-            if np.count_nonzero(self.cell[k]) > 1:      # a tilted vector would change its direction, and with it what is inside the cell
-                continue
             if lower in "sm":
                 new_lo[k] = lo[k] + s[:, k].min() * length[k] - margin[k]
             if lower == "m":
@@ -332,7 +330,13 @@ class Box:
                 new_hi[k] = lo[k] + s[:, k].max() * length[k] + margin[k]
             if upper == "m":
                 new_hi[k] = max(new_hi[k], self.initial[1, k])
-        box = Box.from_lammps(new_lo, new_hi, self.tilt, self.boundary, self.triclinic)
+        for k in (1, 2):      # another direction would change what is inside the cell along the others
+            moved, longer = (new_lo[k] - lo[k]) / length[k], (new_hi[k] - new_lo[k]) / length[k]
+            if np.count_nonzero(self.cell[k]) > 1 and (moved, longer) != (0.0, 1.0):
+                new_lo[:k] += moved * self.cell[k, :k]
+                new_hi[:k] += moved * self.cell[k, :k]
+                tilt[k - 1:2 * k - 1] = longer * self.cell[k, :k]
+        box = Box.from_lammps(new_lo, new_hi, tilt, self.boundary, self.triclinic)
         box.initial = self.initial
         return box
 

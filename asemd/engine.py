@@ -347,7 +347,7 @@ class Engine:
             virial_of["fix"] = self.state.virial.sum(axis=0)
         virial = sum(virial_of.values(), np.zeros(6))
         self.store(late)        # the box too, which the tail depends on
-        if self.interactions.tail and self.has_pairs:
+        if self.interactions.tail:
             energy["etail"], p = self.interactions.tail_correction(self.system, self.units)
             p *= abs(np.linalg.det(self.vectors)) / self.units.nktv2p
             virial_of["tail"] = np.array([p, p, p, 0.0, 0.0, 0.0])

@@ -244,8 +244,11 @@ class Interactions:
         return make_terms(self, ntypes, units)
 
     def tail_correction(self, system, units, types: range | None = None) -> tuple[float, float]:
-        """Energy and pressure of ``pair_modify tail yes``, in units of the scene; with `types` of the pairs with an atom of these."""
-        parts = [term.tail(system, units, types) for term in self.pair_terms(system.counts["ntypes"], units)]
+        """Energy and pressure of ``pair_modify tail yes``, in units of the scene; with `types` of the pairs with an atom of these.
+
+        As in LAMMPS also of styles with ``pair_modify compute no``.
+        """
+        parts = [term.tail(system, units, types) for term in make_terms(self, system.counts["ntypes"], units, idle=True)]
         return sum(e for e, _ in parts), sum(p for _, p in parts)
 
     def cutoff(self, ntypes: int, units) -> float:

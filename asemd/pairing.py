@@ -130,11 +130,11 @@ def complete(interactions: Interactions, ntypes: int) -> list[tuple[Use, dict[tu
             for use, only in zip(uses, served, strict=True)]
 
 
-def make_terms(interactions: Interactions, ntypes: int, units) -> list[PairTerm]:
-    """See `asemd.forcefield.Interactions.pair_terms`."""
+def make_terms(interactions: Interactions, ntypes: int, units, idle: bool = False) -> list[PairTerm]:
+    """See `asemd.forcefield.Interactions.pair_terms`; `idle` styles are those with ``pair_modify compute no``."""
     out = []
     for k, (use, filled) in enumerate(complete(interactions, ntypes)):
-        if interactions.modified(use, "compute"):
+        if idle or interactions.modified(use, "compute"):
             shift, tail = interactions.modified(use, "shift"), interactions.modified(use, "tail")
             for style in use.style.variant(use.settings, interactions.compat).pieces():
                 style = style.bind(use.settings, filled)

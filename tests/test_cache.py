@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from asemd.style import Style
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
 import json
+import math
 import numpy as np
 from asemd.box import Box
 from asemd.engine import Settings
@@ -197,3 +199,63 @@ def test_the_folder_stays_bounded(tmp_path, monkeypatch):
         os.utime(compiled / f"k{k}.nbc", (1000 + k, 1000 + k))
     generate._trim(tmp_path)
     assert sorted(p.name for p in compiled.iterdir()) == ["k3.nbc", "k4.nbc", "k5.nbc"]
+
+
+def many(x, out):
+    """Too long to become a part of what calls it."""
+    for k in range(out.shape[0]):
+        a = math.exp(-x * k) + math.sin(x + k)
+        b = math.exp(-a * x) * math.cos(a - k)
+        c = math.exp(b - a) / (1.0 + a * a) + math.atan2(a, b)
+        out[k] = a * b + c * x
+        for j in range(3):
+            d = math.exp(-c * j) + math.sin(c) * math.sinh(b)
+            out[k] += math.exp(d * 1e-3) * a + b * c - math.tan(d) * math.log(1.0 + d * d)
+
+
+def twice(x, out):
+    many(x, out)
+    many(x + out[0], out[1:])
+    many(x - out[0], out[2:])
+
+
+def test_code_calls_its_own_copies():
+    """Not those that were loaded first, which may be rounded otherwise: the last bit would depend on what else was run before."""
+    b = generate.Builder("copies")
+    b.function(many, fast=True)
+    b.function(twice, fast=True)
+    function, out = b.build().twice, np.zeros(5)
+    function(0.3, out)
+    overload, = function.overloads.values()
+    found = [(f.name, f.linkage.name) for f in overload.library._final_module.functions if not f.is_declaration]
+    assert any("many" in name for name, _ in found) and "linkonce_odr" not in {linkage for _, linkage in found}
+    again = np.zeros(5)
+    b.build().twice(0.3, again)
+    assert (out == again).all()
+
+
+NPT = """
+import json
+import math
+from asemd.lammps import Lammps
+lmp = Lammps(cmdargs=["-screen", "none", "-log", "none"])
+lmp.commands_string('''
+units lj
+lattice fcc 0.8442
+region b block 0 4 0 4 0 4
+create_box 1 b
+create_atoms 1 box
+mass 1 1
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1 1
+fix 1 all npt temp 1.44 0.8 0.2 aniso 0 2 0.5 drag 0.3
+run 200
+''')
+print(json.dumps([lmp.get_thermo(k) for k in ("temp", "pe", "press", "lx", "ly", "lz")]))
+lmp.close()
+"""
+
+
+def test_first_run_has_the_digits_of_later_ones(tmp_path):
+    assert answer(launch(NPT, tmp_path)) == answer(launch(NPT, tmp_path))

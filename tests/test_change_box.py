@@ -44,6 +44,7 @@ CASES = {
     "shape of a shrunk box": FCC.format("s p p") + "change_box all triclinic yz final 0.3 x scale 1.2 remap",
     "tilt beyond an open face": OFF + "change_box all triclinic boundary p f f xy final 0.7 remap xz final 0.3 remap yz final 0.1 remap\n"
     "pair_style lj/cut 2.5\npair_coeff * * 1 1\nfix 1 all nve\nrun 3",
+    "tilted shrink-wrapped": OFF + "change_box all triclinic boundary p p s xz final 0.7 remap yz final 0.3 remap",
     "flat": FLAT + "change_box all x scale 1.1 y volume remap\nchange_box all triclinic xy final 0.5 remap",
 }
 

@@ -105,3 +105,17 @@ def test_like_lammps():
             wrong.append((name, mine, want))
     assert not wrong, "\n".join(map(str, wrong))
     assert {name.split(",")[0] for name in given if not isinstance(theirs[name], str)} == set(two_body())
+
+
+def test_tail_of_idle_styles():
+    """``compute no`` takes off forces and energies of pairs, but not the tail."""
+    atoms = ["create_atoms 1 single 1 1 1", "create_atoms 2 single 3 2 1", "mass * 12", "set type * charge 0.0"]
+    two = ["pair_style hybrid/overlay lj/cut 6.0 lj96/cut 5.0", "pair_coeff * * lj/cut 0.1 3.0", "pair_coeff * * lj96/cut 0.05 2.5"]
+    ways = {"one": ["pair_style lj/cut 6.0", "pair_coeff * * 0.1 3.0", "pair_modify tail yes compute no"],
+            "of two": [*two, "pair_modify tail yes", "pair_modify pair lj/cut compute no"],
+            "neither": [*two, "pair_modify tail yes", "pair_modify compute no"]}
+    given = {name: [*HEAD, *atoms, *lines, "thermo_modify norm no", "run 0 post no"] for name, lines in ways.items()}
+    theirs, ours = ask(THEIRS, jobs=given), uncompiled(OURS, given)
+    for name in given:
+        assert np.allclose(ours[name], theirs[name], rtol=1e-12, atol=1e-12), (name, ours[name], theirs[name])
+        assert ours[name][2] < 0.0

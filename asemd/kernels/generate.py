@@ -34,7 +34,7 @@ FAST = "{'contract', 'reassoc', 'nsz', 'arcp'}"
 LIMIT_BYTES = 512 * 2**20
 _DEFINES = re.compile(r"(?:from \S+ import ([^#]+)|(\w+(?:, \w+)*) = )")
 _EVERYWHERE = {"math", "np", *dir(builtins)}
-_HEADER = "import math\nimport numpy as np\nfrom numba import njit\n"
+_HEADER = "import math\nimport numpy as np\nfrom asemd.kernels.target import njit\n"
 
 
 def cache_dir() -> Path:

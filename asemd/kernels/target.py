@@ -1,8 +1,10 @@
-"""The processor that kernels are compiled for. numba settles it when the first function is decorated, so `njit` is taken from here."""
+"""How kernels are compiled: for which processor, which numba settles when the first function is decorated, and that the code of each calls
+nobody else's copies. So `njit` is taken from here."""
 from __future__ import annotations
 
 import numba
 from numba import njit as njit
+from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
 
 def prefer_wide_vectors() -> None:
@@ -15,6 +17,28 @@ def prefer_wide_vectors() -> None:
 
 
 prefer_wide_vectors()
+
+
+class OwnCopies(JITCodeLibrary):
+    """Machine code that calls its own copies of functions that other code has, too.
+
+    numba gives all copies one name, and calls go to the copy that was loaded first. Copies are not rounded alike, for each was optimised
+    with what is around it, so that the last bit of a result depended on what else was loaded, and on whether it came from the cache.
+    """
+
+    def _optimize_final_module(self):
+        super()._optimize_final_module()
+        shared = self._final_module.clone()      # for code that will have copies of this
+        for function in shared.functions:
+            if not function.is_declaration and function.linkage.name == "external":
+                function.linkage = "linkonce_odr"
+        self._shared_module = shared
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "linkonce_odr":
+                function.linkage = "internal"
+
+
+JITCPUCodegen._library_class = OwnCopies
 
 
 def many_registers() -> bool:
