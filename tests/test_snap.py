@@ -115,6 +115,12 @@ def test_like_lammps(tmp_path):
                        for line in given["normed" if name == "Ta" else "linear"]]
     at = next(k for k, line in enumerate(given["linear"]) if line.startswith("compute"))
     given["scaled"] = [*given["linear"][:at], "variable s equal 0.37", "fix a all adapt 1 pair snap scale 1 1 v_s", *given["linear"][at:]]
+    for name in ("linear", "mliap linear ", "mliap nn tanh 2 linear 1", "mliap so3 nn 0"):      # two atoms together, one without neighbours
+        atoms = next(k for k, line in enumerate(given[name]) if line.startswith("create_atoms"))
+        box = ["region wide block 0 30 0 30 0 30", "create_box 2 wide", "create_atoms 1 single 1 1 1", "create_atoms 2 single 1 3 1",
+               "create_atoms 2 single 15 15 15"]
+        rest = [line for line in given[name][atoms + 1:] if not line.startswith(("displace", "change_box"))]
+        given[f"{name}, alone"] = [given[name][0], *box, *rest]
     theirs = ask(THEIRS, jobs=given)
     ours = compiled(OURS, given, theirs["folder"])
     for job in given:
@@ -167,6 +173,7 @@ def test_wrong_files(change, lines, words, says, tmp_path, monkeypatch):
 
 def test_calculator_and_log(tmp_path, monkeypatch):
     """A calculator finds the parameters beside the coefficients; the log tells what was read."""
+    from ase import Atoms
     from ase.build import bulk
 
     from asemd.lammps import Lammps
@@ -175,6 +182,8 @@ def test_calculator_and_log(tmp_path, monkeypatch):
     crystal = bulk("W", "bcc", a=3.2, cubic=True)
     crystal.calc = asemd.Potential.from_file("x.snapcoeff", elements={"W": "Bb"})
     assert np.abs(crystal.get_forces()).max() < 1e-12 and crystal.get_potential_energy() != 0.0
+    atom = Atoms("W", calculator=crystal.calc)      # what energies of atomisation are counted from
+    assert atom.get_potential_energy() == pytest.approx(float((tmp_path / "x.snapcoeff").read_text().split("Bb")[1].split()[2]), rel=1e-12)
     lmp = Lammps(cmdargs=["-screen", "none", "-log", "log.lammps"])
     for line in ("units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "create_atoms 1 single 1 1 1", "pair_style snap",
                  "pair_coeff * * x.snapcoeff x.snapparam Bb"):

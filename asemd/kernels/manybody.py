@@ -5,7 +5,8 @@ Entries ``first[i]..middle[i]-1`` are the pairs that count as those of slot i, `
 the first parts alone are a half list. ``codes`` names the row of `shifts` that leads to the image: d = x[j] + shift - x[i].
 
 The generated module of a style (`kernel`) has `gather_near`, `share_pair`, `share_triple` and `add_virial`, for the whole kernels of
-styles that are no sums of sites too. Constants: PER_ATOM, ENERGY, ROOMS, UNIFORM (one cutoff for all pairs of types).
+styles that are no sums of sites too. Constants: PER_ATOM, ENERGY, ROOMS, UNIFORM (one cutoff for all pairs of types), ALONE (an atom
+without neighbours has an energy).
 """
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ import numpy as np
 from asemd.kernels import vector_math
 from asemd.kernels.generate import Builder
 
-ENERGY = PER_ATOM = UNIFORM = False
+ENERGY = PER_ATOM = UNIFORM = ALONE = False
 ROW = 0
 place = int
 site = None
@@ -242,11 +243,11 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
     numbers, `grad` the next three, and neighbours are filled up to eights with far ones.
     """
     for i in range(lo, hi):
-        if last[i] == first[i]:
+        if last[i] == first[i] and not ALONE:
             continue
         m = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
-        if n == 0:
+        if n == 0 and not (ALONE and cut2[type_of[i], type_of[i]] > 0.0):      # types of other styles, and empty slots, have no cutoff
             continue
         full = n
         if ROW:
@@ -290,7 +291,7 @@ def kernel(style, *, energy: bool, per_atom: bool, uniform: bool, row: int = 0):
     """The compiled kernel of a many-body style; with `row` that of its blocks, which has so many places for neighbours."""
     b = Builder(f"pair {style.name}: rows of neighbours")
     b.line("from asemd.kernels.threads import barrier")
-    for name, value in dict(ENERGY=energy, PER_ATOM=per_atom, UNIFORM=uniform, **style.kernel_constants).items():
+    for name, value in {"ENERGY": energy, "PER_ATOM": per_atom, "UNIFORM": uniform, "ALONE": False, **style.kernel_constants}.items():
         b.constant(name, value)
     b.constant("ROW", row)
     if row:

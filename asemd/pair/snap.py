@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import copy
 from itertools import permutations
+from types import MappingProxyType
 
 import numpy as np
 
@@ -102,6 +103,7 @@ class SNAP(ManyBody):
     head_words = "COEFFICIENTS PARAMETERS"
     coefficients: tuple[str, ...] = ("scale",)      # what ``fix adapt`` may change; of types with themselves it counts
     flat_room = True
+    kernel_constants = MappingProxyType({"ALONE": True})
     like_lammps = False
 
     def variant(self, settings, compat=""):
