@@ -65,7 +65,8 @@ def test_same_atoms_as_lammps(theirs, name):
 def test_shrink_wrapped_across_a_tilt():
     """Volume and pressure are LAMMPS's, while atoms move too, though the vector across the face has another direction."""
     lines = [*OFF.splitlines(), "velocity all create 1 87287",
-             "change_box all triclinic boundary p p s xz final 0.7 remap yz final 0.3 remap", "pair_style lj/cut 2.5", "pair_coeff * * 1 1", "fix 1 all nve", "run 40"]
+             "change_box all triclinic boundary p p s xz final 0.7 remap yz final 0.3 remap",
+             "pair_style lj/cut 2.5", "pair_coeff * * 1 1", "fix 1 all nve", "run 40"]
     what = ("pe", "vol", "lz", "pxx", "pyy", "pzz", "pxy", "pxz", "pyz")
     want = ask("lmp = ran(given['lines'])\nanswer = [lmp.get_thermo(k) for k in given['what']]", lines=lines, what=what)
     lmp = ran(lines)
