@@ -32,7 +32,8 @@ from asemd.style import register
 
 ACTIVATIONS = ("linear", "sigmoid", "tanh", "relu")
 CHOICES = {"model": ("linear", "quadratic", "nn"), "descriptor": ("sna", "so3")}
-SO3 = {"rcutfac": "number", "nmax": "whole", "lmax": "whole", "alpha": "number"}      # keywords of its descriptor files, with DESCRIBED
+WHOLE = {"nmax": (1, 12), "lmax": (0, 12)}      # keywords of descriptor files of so3 with their limits
+SO3 = ("rcutfac", "alpha", *WHOLE)              # all of them, with DESCRIBED
 
 
 class MLIAP(SNAP):
@@ -157,10 +158,15 @@ class PowerSpectrumMLIAP(MLIAP):
             keyword = record.word()
             if keyword not in known:
                 raise file.error(f"unknown keyword {keyword!r}{nearest(keyword, known)}", number)
-            if keyword == "nelems" or SO3.get(keyword) == "whole":
+            if keyword == "nelems" or keyword in WHOLE:
                 found[keyword] = record.whole(keyword)
+                lo, hi = WHOLE.get(keyword, (1, np.inf))
+                if not lo <= found[keyword] <= hi:
+                    raise file.error(f"{keyword} must be {lo} to {hi}, got {found[keyword]}", number)
             elif keyword in SO3:
                 found[keyword] = record.number(keyword)
+                if not found[keyword] > 0.0:
+                    raise file.error(f"{keyword} must be positive, got {found[keyword]:g}", number)
             else:
                 read = record.word if keyword == "elems" else record.number
                 found[keyword] = tuple(read(keyword) for _ in range(found.get("nelems", 0)))
@@ -169,9 +175,6 @@ class PowerSpectrumMLIAP(MLIAP):
         for keyword in known:
             if keyword not in found:
                 raise InputError(f"{file.what}: {file.name} has no {keyword}")
-        if not (found["rcutfac"] > 0.0 and found["alpha"] > 0.0 and 1 <= found["nmax"] <= 12 and 0 <= found["lmax"] <= 12):
-            raise InputError(f"{file.what}: {file.name}: rcutfac and alpha must be positive, nmax 1 to 12 and lmax 0 to 12, got "
-                             + ", ".join(f"{found[k]:g}" for k in ("rcutfac", "alpha", "nmax", "lmax")))
         return found
 
     def described(self, p):
