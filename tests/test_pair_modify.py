@@ -1,4 +1,4 @@
-"""``pair_modify mix``, ``shift`` and ``tail`` of every two-body style in the registry, against LAMMPS."""
+"""``pair_modify mix``, ``shift`` and ``tail`` of the two-body styles in the registry, against LAMMPS."""
 from __future__ import annotations
 
 import numpy as np
@@ -19,34 +19,25 @@ REFUSED = {"cosine/squared": "mix", "lepton/coul": "shift", "lj/spica": "tail", 
            "lj/sdk": "tail", "lj/sdk/coul/long": "tail", "lj/sdk/coul/msm": "tail"}
 IN_MEMORY = {"coul/long", "coul/long/cs", "coul/msm", "coul/slater/long"}
 OTHERWISE = {"coul/diel": "shift"}      # see docs/differences.md
-OURS = r"""
+MEASURE = r"""
+def measure(lmp, lines):
+    try:
+        for line in lines:
+            lmp.command(line)
+        return [lmp.get_thermo(k) for k in ("evdwl", "ecoul", "etail", "press", "pxz")]
+    except Exception as e:
+        return str(e)
+    finally:
+        lmp.close()
+"""
+OURS = MEASURE + r"""
 import json, sys, warnings
 warnings.simplefilter("ignore")
 from asemd.lammps import Lammps
-answer = {}
-for name, lines in json.load(sys.stdin).items():
-    lmp = Lammps(cmdargs=["-screen", "none", "-log", "none", "-compat", "lammps"])
-    try:
-        for line in lines:
-            lmp.command(line)
-        answer[name] = [lmp.get_thermo(k) for k in ("evdwl", "ecoul", "etail", "press", "pxz")]
-    except Exception as e:
-        answer[name] = str(e)
-    lmp.close()
-print(json.dumps(answer))
+switches = ["-screen", "none", "-log", "none", "-compat", "lammps"]
+print(json.dumps({name: measure(Lammps(cmdargs=switches), lines) for name, lines in json.load(sys.stdin).items()}))
 """
-THEIRS = r"""
-answer = {}
-for name, lines in given["jobs"].items():
-    lmp = start()
-    try:
-        for line in lines:
-            lmp.command(line)
-        answer[name] = [lmp.get_thermo(k) for k in ("evdwl", "ecoul", "etail", "press", "pxz")]
-    except Exception as e:
-        answer[name] = str(e)
-    lmp.close()
-"""
+THEIRS = MEASURE + 'answer = {name: measure(start(), lines) for name, lines in given["jobs"].items()}'
 
 
 def two_body() -> list[str]:

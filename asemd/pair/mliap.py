@@ -10,7 +10,7 @@ $$p_{nn'l}=2\sqrt2\,\pi(2l+1)^{-1/2}\sum_mc_{nlm}c_{n'lm},\quad c_{nlm}=\int g_n
 
 The descriptor file has their parameters and the elements. ``pair_coeff * *`` and an element for each type. The descriptor ace and models in
 Python are not supported. The radial part of so3 comes from a table as exact as doubles are; LAMMPS, which computes Bessel functions by
-recursion and spherical harmonics by angles, loses five digits, and leaves out neighbours that are closer than 1e-8.
+recursion and spherical harmonics by angles, loses digits, and leaves out neighbours that are very close (1e-8).
 
 Source: LAMMPS manual, pair_style mliap; A. Rohskopf et al., J. Mater. Res. 38, 5136 (2023); H. Yanxon, D. Zagaceta, B. Tang, D. Matteson
 and Q. Zhu, Mach. Learn.: Sci. Technol. 2, 027001 (2021).
