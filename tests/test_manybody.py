@@ -255,6 +255,16 @@ def test_hybrid_with_threads(potentials, monkeypatch):
         assert np.allclose(got, want, rtol=1e-9, atol=1e-9 * max(map(abs, want))), threads
 
 
+def test_ways_over_excluded_pairs(potentials):
+    """AIREBO: a way over bonds whose last pair is left out of the list counts, and takes off the dispersion of its ends."""
+    jobs = {types: [*scene("airebo 3.0", "metal")[:-1], f"neigh_modify exclude type {types}", "run 0 post no"] for types in ("1 2", "2 2")}
+    want = ask(THEIRS, jobs=jobs)
+    got = uncompiled(OURS, jobs, potentials)
+    for types in jobs:
+        for what, numbers in got[types].items():
+            assert np.allclose(numbers, want[types][what], rtol=1e-9, atol=1e-9 * np.abs(want[types][what]).max()), (types, what)
+
+
 def test_calculator(potentials, monkeypatch):
     """Elements by symbol, whatever their order; forces are the gradient; a file that lacks an element, a name that says nothing."""
     from ase.build import bulk

@@ -55,18 +55,31 @@ def attraction(r, p):
     return i6 * (p[19] * i6 - p[20]), i6 * (6.0 * p[20] - 12.0 * p[19] * i6) / r
 
 
+def leg(shared, pair, i, j, v):
+    """Weight that a bond of atom i with the atom of slot j, `v` away, would have, its derivative, and the length.
+
+    By distance, not by the rows: the last bond of a way counts for atoms that are no neighbours (``neigh_modify exclude``, special bonds) too.
+    """
+    p = pair[int(shared[4, i]), int(shared[4, j])]
+    r2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+    if r2 >= p[1] * p[1]:
+        return 0.0, 0.0, 0.0
+    r = math.sqrt(r2)
+    w, d = fade(r, p[0], p[1])
+    return w, d, r
+
+
 def find_path(shared, pair, i, j, v, r, path):
     """The strongest way over bonds from i to j, at most three, as the product of their weights; how many bonds it has, and which.
 
-    path : (3,) array
-        The bonds of the first, second and third atom on the way.
+    path : (2,) array
+        The bonds of the first and the second atom on the way; the last bond is the one that ends at j.
     """
     best, steps = 0.0, 0
-    ei, ej = int(shared[4, i]), int(shared[4, j])
     if r >= 3.0 * pair[0, 0, 1]:
         return best, steps
-    if r < pair[ei, ej, 1]:
-        best, _ = fade(r, pair[ei, ej, 0], pair[ei, ej, 1])
+    best, _, length = leg(shared, pair, i, j, v)
+    if length > 0.0:
         steps = 1
     for b in range(int(shared[2, i])):
         if best >= 1.0:
@@ -76,42 +89,42 @@ def find_path(shared, pair, i, j, v, r, path):
         if wk <= best or is_atom(shared, i, b, j, v[0], v[1], v[2]):
             continue
         rest = v[0] - d[0], v[1] - d[1], v[2] - d[2]
-        for c in range(int(shared[2, k])):
-            w = wk * shared[FIRST + WIDTH * c + 5, k]
-            if w > best and is_atom(shared, k, c, j, rest[0], rest[1], rest[2]):
-                best, steps = w, 2
-                path[0], path[1] = b, c
+        w, _, _ = leg(shared, pair, k, j, rest)
+        if wk * w > best:
+            best, steps = wk * w, 2
+            path[0] = b
         for c in range(int(shared[2, k])):
             w = wk * shared[FIRST + WIDTH * c + 5, k]
             if w <= best or is_atom(shared, k, c, j, rest[0], rest[1], rest[2]) or is_atom(shared, k, c, i, -d[0], -d[1], -d[2]):
                 continue
             m, e, rm = bond_of(shared, k, c)
-            for h in range(int(shared[2, m])):
-                t = w * shared[FIRST + WIDTH * h + 5, m]
-                if t > best and is_atom(shared, m, h, j, rest[0] - e[0], rest[1] - e[1], rest[2] - e[2]):
-                    best, steps = t, 3
-                    path[0], path[1], path[2] = b, c, h
+            w3, _, _ = leg(shared, pair, m, j, (rest[0] - e[0], rest[1] - e[1], rest[2] - e[2]))
+            if w * w3 > best:
+                best, steps = w * w3, 3
+                path[0], path[1] = b, c
     return best, steps
 
 
 def add_path(shared, pair, out, i, j, v, r, steps, path, weight):
     """Forces of `weight` times the product of the weights on the way from i to j."""
     if steps == 1:
-        ei, ej = int(shared[4, i]), int(shared[4, j])
-        _, d = fade(r, pair[ei, ej, 0], pair[ei, ej, 1])
+        _, d, _ = leg(shared, pair, i, j, v)
         add_pair(out, i, j, v, weight * d / r)
         return
-    b, c, h = int(path[0]), int(path[1]), int(path[2])
+    b, c = int(path[0]), int(path[1])
     k, d, rk = bond_of(shared, i, b)
-    m, e, rm = bond_of(shared, k, c)
-    row, next_row, last_row = FIRST + WIDTH * b, FIRST + WIDTH * c, FIRST + WIDTH * h
-    w1, d1, w2, d2 = shared[row + 5, i], shared[row + 6, i], shared[next_row + 5, k], shared[next_row + 6, k]
+    row, next_row = FIRST + WIDTH * b, FIRST + WIDTH * c
+    w1, d1 = shared[row + 5, i], shared[row + 6, i]
     back = -d[0], -d[1], -d[2]
+    rest = v[0] - d[0], v[1] - d[1], v[2] - d[2]
     if steps == 2:
-        add_triple(out, k, i, j, back, mixed(weight * d1 * w2 / rk, back, 0.0, back), e, mixed(weight * w1 * d2 / rm, e, 0.0, e))
+        w2, d2, rm = leg(shared, pair, k, j, rest)
+        add_triple(out, k, i, j, back, mixed(weight * d1 * w2 / rk, back, 0.0, back), rest, mixed(weight * w1 * d2 / rm, rest, 0.0, rest))
         return
-    _, f, rf = bond_of(shared, m, h)
-    w3, d3 = shared[last_row + 5, m], shared[last_row + 6, m]
+    m, e, rm = bond_of(shared, k, c)
+    w2, d2 = shared[next_row + 5, k], shared[next_row + 6, k]
+    f = rest[0] - e[0], rest[1] - e[1], rest[2] - e[2]
+    w3, d3, rf = leg(shared, pair, m, j, f)
     add_quadruple(out, k, m, i, j, e, mixed(weight * w1 * d2 * w3 / rm, e, 0.0, e), back,
                   mixed(weight * d1 * w2 * w3 / rk, back, 0.0, back), f,
                   mixed(weight * w1 * w2 * d3 / rf, f, 0.0, f))
@@ -215,4 +228,4 @@ def bond_order_forces(x, f, q, type_of, first, middle, last, neighbors, codes, s
 
 HELPERS = (fade, smooth, polynomial, angular, hermite, bicubic, blend, tricubic, is_atom, add_virial_of, add_energy, pull, add_pair,
            add_triple, add_quadruple, dot, mixed, bond_of, add_twist, surroundings, add_surroundings, turns, bond_order, attraction,
-           find_path, add_path, bond)
+           leg, find_path, add_path, bond)
