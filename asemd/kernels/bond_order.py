@@ -58,7 +58,7 @@ def attraction(r, p):
 def leg(shared, pair, i, j, v):
     """Weight that a bond of atom i with the atom of slot j, `v` away, would have, its derivative, and the length.
 
-    By distance, not by the rows: the last bond of a way counts for atoms that are no neighbours (``neigh_modify exclude``, special bonds) too.
+    By distance, not by the rows: the last bond of a way counts for atoms that ``neigh_modify exclude`` takes out of the rows, too.
     """
     p = pair[int(shared[4, i]), int(shared[4, j])]
     r2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
