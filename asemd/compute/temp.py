@@ -70,6 +70,10 @@ class Temp(Compute):
         """(n, 3) velocities without the bias, of all atoms, whatever the group; those of the system stay as they are."""
         return state.system.v
 
+    def created(self, state, flow: np.ndarray) -> np.ndarray:
+        """(n, 3) velocities after ``velocity create ... bias yes``; `flow` is the bias of those before."""
+        return state.system.v + flow
+
     def scalar(self, state) -> float:
         """The temperature; 0 without degrees of freedom."""
         dof = self.dof(state)

@@ -56,3 +56,6 @@ class TempPartial(Temp):
 
     def remove_bias(self, state) -> np.ndarray:
         return np.where(self.directions, state.system.v, 0.0)
+
+    def created(self, state, flow: np.ndarray) -> np.ndarray:
+        return self.remove_bias(state) + flow      # components it is blind to stay those of before

@@ -96,7 +96,7 @@ class NoseHoover(Thermostat):
     brings = ("temp",)
     takes_bias = True
     kinds = ("temp", "temp/com", "temp/partial", "temp/profile", "temp/ramp", "temp/rotate",
-             "temp/sphere", "temp/asphere", "viscosity/cos", "temp/region", "temp/deform")      # of the temperature it takes
+             "temp/sphere", "temp/asphere", "viscosity/cos", "temp/region", "temp/deform", "temp/cs")      # of the temperature it takes
     turns = False       # whether it moves bodies that turn: fixes nvt/sphere, nvt/asphere ...
 
     def modify_option(self, keyword, value, session):

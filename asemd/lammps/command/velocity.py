@@ -94,7 +94,9 @@ class Velocity:
         if self.rot:
             self._zero_rotation()
         self._rescale(target, bare=self.bias)
-        self._give_bias(flow)
+        if flow is not None:
+            mask = self.scene.groups.mask(self.temp.group)[:, None]
+            self.system.v[:] = np.where(mask, self.temp.created(State(self.scene), flow), self.system.v)
         if self.sum:
             self.system.v[self.rows] += old[self.rows]
 
@@ -137,7 +139,8 @@ class Velocity:
     def scale(self, words: list[str]) -> None:
         target, flow = self._temperature(words[0]), self._take_bias()
         self._rescale(target)
-        self._give_bias(flow)
+        if flow is not None:
+            self.system.v += flow
 
     def ramp(self, words: list[str]) -> None:
         v = ("vx", "vy", "vz").index(choice(words[0], ("vx", "vy", "vz"), self.what))
@@ -213,15 +216,6 @@ class Velocity:
         flow = np.where(mask[:, None], v - self.temp.remove_bias(State(self.scene)), 0.0)
         v -= flow
         return flow
-
-    def _give_bias(self, flow: np.ndarray | None) -> None:
-        """Put the bias back; velocities that the compute does not see at all are those of before."""
-        if flow is None:
-            return
-        if self.temp.hides:
-            mask = self.scene.groups.mask(self.temp.group)[:, None]
-            self.system.v[:] = np.where(mask, self.temp.remove_bias(State(self.scene)), self.system.v)
-        self.system.v += flow
 
     def _current(self, bare: bool = False) -> float:
         """Temperature of the group: of the chosen compute, else 3 N - 3 degrees of freedom less those fixes remove."""
