@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import pytest
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import registry, style
 from asemd.lammps import Lammps
@@ -41,6 +41,7 @@ SOLVERS = {"msm": "kspace_style msm 1e-4\nkspace_modify compute no cutoff/adjust
 # LAMMPS goes on with what it had, all or part of it; whole numbers, which it takes for real ones
 IDLE = {("lj/cubic", "sigma"), ("lj/long/coul/long", "epsilon"), ("lj/long/coul/long", "sigma"), ("coul/long/soft", "scale"),
         ("wf/cut", "nu"), ("wf/cut", "mu")}
+CUTOFFS = {"harmonic/cut": ["cut"], **dict.fromkeys(("lj/cut/coul/cut", "lj/cut/coul/debye", "nm/cut/coul/cut"), ["cut_coul"])}
 ENERGIES = """
 import os
 answer, error = {}, None
@@ -76,8 +77,8 @@ def two_body(s) -> bool:
 
 
 def scenes(file: str) -> dict[str, list[str]]:
-    """A change of every coefficient of every style by itself, and what pair_write makes of the style; cutoffs, which asemd does not change,
-    are left out."""
+    """A change of every coefficient of every style by itself, and what pair_write makes of the style; of cutoffs those that LAMMPS changes
+    without an accident."""
     out = {}
     for name in registry.names("pair"):
         s = style.find("pair", name)
@@ -89,6 +90,8 @@ def scenes(file: str) -> dict[str, list[str]]:
         scene = dict(name=name, settings=s.settings_example, coeff=f"pair_coeff * * {s.example}", solver=solver)
         out[name] = SCENE.format(**scene, then=WRITE.format(file=file)).splitlines()
         own = [p.name for p in s.coeff if not p.name.startswith(("cut", "inner", "outer"))]
+        for p in CUTOFFS.get(name, ()):
+            out[f"{name} {p}"] = SCENE.format(**scene, then=CHANGE.replace("1.07", "0.9").format(name=name, coefficient=p)).splitlines()
         for p in sorted({*own, *map(str.lower, own)}) + ["scale"] * s.scales:
             if (name, p) not in IDLE:
                 out[f"{name} {p}"] = SCENE.format(**scene, then=CHANGE.format(name=name, coefficient=p)).splitlines()
@@ -109,6 +112,21 @@ def test_energies_and_tables(tmp_path):
     assert not wrong, "\n".join(wrong)
     assert sum(e[2] != 0.0 for e in ours.values()) > 0.95 * len(ours) > 200, [n for n, e in ours.items() if e[2] == 0.0]
     assert sum(len(e) == 3 + 36 for e in ours.values()) > 70
+
+
+@pytest.mark.parametrize("change", ["harmonic/cut cut", "lj/cut/coul/cut cut_coul", "lj/cut cut"])
+def test_larger_cutoff(change):
+    """Lists grow with the cutoff, and energies are those of a style that had it from the beginning; afterwards it is as before."""
+    name, coefficient = change.split()
+    given = {"harmonic/cut": "30.0 {}", "lj/cut/coul/cut": "0.2 1.2 2.0 {}", "lj/cut": "0.1 1.2 {}"}[name]
+    settings = "" if name == "harmonic/cut" else "2.0"
+    adapt = f"variable c equal 1.5+step\nfix change all adapt 1 pair {name} {coefficient} * * v_c reset yes"
+    scene = SCENE.format(name=name, settings=settings, coeff="pair_coeff * * " + given, solver="", then="velocity all set 0 0 0\ntimestep 0")
+    want = [ran(scene.format(cut) + "run 0 post no").get_thermo("pe") for cut in (1.5, 4.5)]
+    lmp = ran(scene.format(1.5) + adapt + "\nrun 3 post no")
+    assert lmp.get_thermo("pe") == pytest.approx(want[1], rel=1e-13)
+    lmp.commands_string("unfix change\nrun 0 post no")
+    assert lmp.get_thermo("pe") == pytest.approx(want[0], rel=1e-13) and want[0] != want[1]
 
 
 @pytest.mark.parametrize("precision", ["double", "mixed"])

@@ -32,8 +32,8 @@ class Perturbed(Compute):
         return math.exp(exponent) if exponent < 709.0 else math.inf
 
 
-def uses_of(interactions, category: str, style: str, name: str, what: str) -> list:
-    """The uses of a style, which must have a coefficient of that name that can change.
+def uses_of(interactions, category: str, style: str, name: str, what: str, cutoffs: bool = True) -> list:
+    """The uses of a style, which must have a coefficient of that name that can change; cutoffs only where lists can.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def uses_of(interactions, category: str, style: str, name: str, what: str) -> li
     if not uses:
         known = [u.label for u in interactions.uses[category]]
         raise InputError(f"{what}: there is no {category} style {style!r} in use{nearest(style, known)}")
-    known = [p.name for p in uses[0].style.coeff if p.unit not in ("word", "path", "integer") and not p.name.startswith("cut")]
+    known = [p.name for p in uses[0].style.coeff if p.unit not in ("word", "path", "integer") and (cutoffs or not p.name.startswith("cut"))]
     known += [*getattr(uses[0].style, "coefficients", ()), *["scale"] * getattr(uses[0].style, "scales", False)]
     if spelled(uses[0].style, name) not in known:
         raise InputError(f"{what}: {category} style {style} has no coefficient {name!r} that can change, it has "
@@ -62,7 +62,10 @@ def held(use, pair, name: str) -> tuple[dict, object, float] | None:
     """Where a coefficient of a pair of types stands: a mapping, the key there, and the value; None if the pair does not have it."""
     if name == "scale" and getattr(use.style, "scales", False):
         return use.coulomb, pair, use.coulomb.get(pair, 1.0)
-    return (use.coeff[pair], name, use.coeff[pair][name]) if name in use.coeff.get(pair, ()) else None
+    coeff = use.coeff.get(pair)
+    if coeff is not None and name not in coeff and name.startswith("cut") and name in use.settings:
+        return coeff, name, use.settings[name]
+    return (coeff, name, coeff[name]) if name in (coeff or ()) else None
 
 
 def perturbed_terms(state, changes, what: str) -> list:
@@ -82,7 +85,7 @@ def perturbed_terms(state, changes, what: str) -> list:
         use.factor = before.factor
     for style, name, i, j, delta in changes:
         (ilo, ihi), (jlo, jhi) = (bounds(t, 1, n, what, system.labels["atom"]) for t in (i, j))
-        for use in uses_of(new, "pair", style, name, what):
+        for use in uses_of(new, "pair", style, name, what, cutoffs=False):
             first, name = next(o for u, o in zip(new.uses["pair"], old.uses["pair"]) if u is use), spelled(use.style, name)
             for pair in [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]:
                 if place := held(use, pair, name):

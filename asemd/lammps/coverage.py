@@ -32,7 +32,6 @@ PARTIAL = {
     ("atom", "dipole"): "only fixes nve/sphere, nvt/sphere, npt/sphere and nph/sphere turn dipoles, of atom_style hybrid sphere dipole",
     ("dump", "image"): "atoms, bonds, box and axes; no perspective, no lines, triangles, bodies, grids",
     ("dump", "movie"): "as dump image; gif, webp, apng, others with the program ffmpeg",
-    ("fix", "adapt"): "no cutoffs; LAMMPS takes cut of harmonic/cut and cut_coul of some styles, which its table does not list",
 }
 # words in the place of a style that are no style
 OTHERWISE: dict[str, set[str]] = {"kspace": {"none"}, "region": {"delete"}}
