@@ -121,7 +121,7 @@ def test_larger_cutoff(change):
     given = {"harmonic/cut": "30.0 {}", "lj/cut/coul/cut": "0.2 1.2 2.0 {}", "lj/cut": "0.1 1.2 {}"}[name]
     settings = "" if name == "harmonic/cut" else "2.0"
     adapt = f"variable c equal 1.5+step\nfix change all adapt 1 pair {name} {coefficient} * * v_c reset yes"
-    scene = SCENE.format(name=name, settings=settings, coeff="pair_coeff * * " + given, solver="", then="velocity all set 0 0 0\ntimestep 0")
+    scene = SCENE.format(name=name, settings=settings, coeff="pair_coeff * * " + given, solver="", then="timestep 0")
     want = [ran(scene.format(cut) + "run 0 post no").get_thermo("pe") for cut in (1.5, 4.5)]
     lmp = ran(scene.format(1.5) + adapt + "\nrun 3 post no")
     assert lmp.get_thermo("pe") == pytest.approx(want[1], rel=1e-13)

@@ -69,7 +69,7 @@ class FEP(Perturbed):
         while rest and rest[0] not in OPTIONS:
             key, *rest = rest
             if key == "pair":
-                style, name, i, j, delta = take(rest, 5, f"{what} pair", cutoffs=False)
+                style, name, i, j, delta = take(rest, 5, f"{what} pair")
                 uses_of(scene.interactions, "pair", style, name, f"{what} pair", cutoffs=False)
                 for t in (i, j):
                     bounds(t, 1, system.counts["ntypes"], f"{what} pair: type", system.labels["atom"])
