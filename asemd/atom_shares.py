@@ -13,6 +13,7 @@ from asemd.kernels.cluster import CLUSTER
 from asemd.kernels.hooks import bound
 from asemd.kernels.state import aligned
 from asemd.manybody_term import ManyBodyTerm
+from asemd.noise_term import NoiseTerm
 from asemd.result import Result
 from asemd.site_terms import OnSites
 from asemd.term import PairRowsTerm
@@ -130,7 +131,8 @@ def _of_others(engine: Engine, t, energies: bool, virials: bool, energy: np.ndar
             t.index = index
             t.rebuild(engine)
         f, many = t.kernel(True, True), isinstance(t, ManyBodyTerm)
-        given = [t.arguments(engine, tid, shares=True) if many else t.arguments(engine, tid) for tid in range(engine.threads)]
+        apart = {"shares": True} if many or isinstance(t, NoiseTerm) else {}
+        given = [t.arguments(engine, tid, **apart) for tid in range(engine.threads)]
         calls = [bound(f, arguments, 2) for arguments in given]
         engine.parallel(lambda tid: calls[tid]())
         scale = float(t.owner.use.factor) if many else 1.0

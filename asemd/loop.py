@@ -21,6 +21,7 @@ from asemd.watchdog import Watchdog
 
 IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
 ABOUT_LISTS = ("pre_exchange", "pre_neighbor", "post_neighbor")
+SHARES = {"energies", "virials"}
 
 
 def warn(message: str) -> None:
@@ -90,8 +91,9 @@ class Loop:
         return self.engine.ns
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
-    def setup(self, begin: int | None = None, end: int | None = None, virial: bool = True) -> Result:
-        """Lists, first forces, and the fixes' part in them; compiles what the run needs. Returns the result of the first step."""
+    def setup(self, begin: int | None = None, end: int | None = None, virial: bool = True, needs=()) -> Result:
+        """Lists, first forces, and the fixes' part in them; compiles what the run needs. Returns the result of the first step, with the
+        shares of atoms that `needs` names."""
         self.begin = self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
         e, self.fix_data = self.engine, ()
@@ -103,9 +105,9 @@ class Loop:
         e.forces(True)
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
-        self._collect()
+        first = e.per_atom(self._collect(), needs)      # fixes may move atoms
         self._set_up_fixes()
-        self._collect()
+        self._collect().take_shares(first)
         e.timings, e.builds, e.dangerous = dict.fromkeys(e.timings, 0.0), 0, 0
         self.watchdog.begin()
         return self.result
@@ -142,6 +144,9 @@ class Loop:
         self._about_lists = [f for f, kinds in zip(self.fixes, self._kinds) if any(name in kinds for name in ABOUT_LISTS)]
         self._compiled = not (self._in_python or any("post_neighbor" in kinds for kinds in self._kinds))
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
+        # shares of atoms are those of where the forces were, or of velocities that are gone when a step is over
+        self._fleeting = any(f.box_moves and "end_of_step" in kinds for f, kinds in zip(self.fixes, self._kinds)) or any(
+            use.style.stirred for use in self.interactions.uses["pair"])
 
     def _next_whole(self, step: int) -> int:
         """The next step after `step` that is made by Python, hook by hook."""
@@ -176,13 +181,16 @@ class Loop:
         KeyboardInterrupt
             After Ctrl-C, between two steps: `step` and the system are those of the last complete one, and the loop can go on.
         """
+        shares = {name for name, wanted in (("energies", energies), ("virials", virials)) if wanted}
         want, last, self.halted = virial or energies or virials, self.step + int(steps), False
         self.engine.bonds.hold(False)
         with Interrupt() as interrupt, self.watchdog as watchdog:
             while self.step < last and not (interrupt.asked or self.halted):
                 whole, due = self._next_whole(self.step), self._next_end(self.step)
+                if self._fleeting:
+                    whole = min([whole, *[last] * bool(shares), *[due] * (due <= last and bool(SHARES & self._needs(due)))])
                 if whole == self.step + 1:
-                    self._python_step(want and whole == last)
+                    self._python_step(want and whole == last, shares if whole == last else set())
                 else:
                     began, at = time.perf_counter(), self.step
                     stop = min(last, at + self._chunk, whole - 1, due)
@@ -203,11 +211,11 @@ class Loop:
             self.engine.store()
             return None
         with self.watchdog as watchdog:
-            result = self._collect()
+            before, result = self.result, self._collect()
             watchdog.energy(result)
-        if energies or virials:
-            self.engine.per_atom(result, ["energies"] * energies + ["virials"] * virials)
-        return result
+        if self._fleeting and shares:
+            result.take_shares(before)
+        return self.engine.per_atom(result, shares)
 
     def _end(self, needs: set[str]) -> None:
         """The `end_of_step` hooks in Python that are due."""
@@ -329,10 +337,10 @@ class Loop:
                 self._call(n, name)
         self.engine.timings["Modify"] += time.perf_counter() - began
 
-    def _python_step(self, energy: bool) -> None:
+    def _python_step(self, energy: bool, shares: set[str]) -> None:
         e, s = self.engine, self.settings
         self.step += 1
-        needs = self._needs(self.step)
+        needs = self._needs(self.step) | shares
         energy = energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0
         self._hook("initial_integrate")
         self._hook("post_integrate")

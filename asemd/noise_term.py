@@ -52,15 +52,26 @@ class NoiseTerm(PairListTerm):
         if self.streams is None:
             if len(settings.get("streams", ())) < engine.threads:        # they go on from run to run
                 settings["streams"] = np.array([stream(settings["seed"] + k) for k in range(engine.threads)])
-            self.streams, self.control = settings["streams"], np.zeros((engine.threads, 5))
+            self.streams, self.control = settings["streams"], np.zeros((engine.threads, 6))
+            self.before = self.streams.copy()
         ends = [2.0 * engine.units.boltz * settings[name] for name in self.style.temperatures]
-        self.control[:] = [loop.dt**-0.5, ends[0], ends[-1], loop.step - loop.begin, loop.end - loop.begin]
+        self.control[:] = [loop.dt**-0.5, ends[0], ends[-1], loop.step - loop.begin, loop.end - loop.begin, 1.0]
+        self.scale(engine)
 
-    def arguments(self, engine, tid):
+    def scale(self, engine):
+        """The factor stands apart: noise has the root of the weights of special pairs, but all of the factor."""
+        super().scale(engine)
+        self.control[:, 5] = factor = float(self.owner.use.factor)
+        self.lj /= factor or 1.0
+
+    def arguments(self, engine, tid, shares=False):
         s, m, nth = engine.state, len(self.i), engine.threads
+        random = self.streams[tid], self.before[tid], self.control[tid]
+        if shares:      # the same random numbers once more
+            random = self.before[tid].copy(), np.empty_like(self.before[tid]), self.control[tid] - [0, 0, 0, 1, 0, 0]
         return (s.x, engine.buffers[tid], s.v, s.type, self.i, self.j, self.code, self.shifts, self.lj, m * tid // nth,
-                m * (tid + 1) // nth, self.tables.rows, self.streams[tid], self.control[tid], engine.acc[tid, self.index],
-                engine.atom_energy[tid], engine.atom_virial[tid])
+                m * (tid + 1) // nth, self.tables.rows, *random, engine.acc[tid, self.index], engine.atom_energy[tid],
+                engine.atom_virial[tid])
 
 
 def stream(seed: int) -> np.ndarray:

@@ -242,10 +242,10 @@ class RespaLoop(Loop):
         return self._term_calls[level, energy]
 
     # ---- steps --------------------------------------------------------------------------------------------------------------------------
-    def _python_step(self, energy: bool) -> None:
+    def _python_step(self, energy: bool, shares: set[str]) -> None:
         self.step += 1
         self._times = self.levels.steps(self.dt)
-        needs = self._needs(self.step)
+        needs = self._needs(self.step) | shares
         self._recurse(self.levels.n, energy or bool(needs) or bool(self._virial_every) and self.step % self._virial_every == 0)
         self._total()
         if needs:

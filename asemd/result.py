@@ -76,6 +76,10 @@ class Result:
     energies_of: dict[str, np.ndarray] = field(default_factory=dict)
     virials_of: dict[str, np.ndarray] = field(default_factory=dict)
 
+    def take_shares(self, other: Result) -> None:
+        """Have the shares of another result of the same evaluation."""
+        self.energies, self.energies_of, self.virials, self.virials_of = other.energies, other.energies_of, other.virials, other.virials_of
+
     @property
     def forces(self) -> np.ndarray:
         """(n, 3) by atom row, until the next computation."""

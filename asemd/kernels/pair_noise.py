@@ -13,16 +13,20 @@ from asemd.kernels.pair_sums import add, eight, halve
 ENERGY = PER_ATOM = ACROSS = False
 
 
-def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi, rows, stream, control, acc, atom_energy, atom_virial):
+def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi, rows, stream, before, control, acc, atom_energy,
+                 atom_virial):
     """Pairs lo..hi-1: forces added to `f`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and `atom_virial (6, cap)`.
 
     `rows`: cut^2, 0, a0, cut, gamma, gamma across, exponents along and across. `control`: 1/sqrt(dt), 2 kT at the beginning and at the end
-    of the run, evaluations up to now, steps of the run.
+    of the run, evaluations up to now, steps of the run, factor of all forces. `before` becomes what `stream` was.
     """
+    for k in range(len(stream)):
+        before[k] = stream[k]
     part = min(control[3] / control[4], 1.0) if control[4] > 0.0 else 0.0
     heat = control[1] + part * (control[2] - control[1])
     control[3] += 1.0
     scale = control[0]
+    factor = control[5]
     for m in range(lo, hi):
         i = pair_i[m]
         j = pair_j[m]
@@ -39,8 +43,8 @@ def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi,
         r = math.sqrt(r2)
         if r < 1e-10:
             continue
-        w = weight[kind]
-        root = math.sqrt(w)
+        w = factor * weight[kind]
+        root = factor * math.sqrt(weight[kind])
         rinv = 1.0 / r
         ux = v[0, i] - v[0, j]
         uy = v[1, i] - v[1, j]

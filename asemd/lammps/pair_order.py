@@ -39,11 +39,13 @@ class PairOrder(ListOrder):
         i, j, step, same = i[keep], j[keep], step[keep], same[keep]
         order = np.lexsort((j, step[:, 0], step[:, 1], step[:, 2], ~same, i))
         i, j = i[order], j[order]
+        known = {tuple(k): n for n, k in enumerate(np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(int).tolist())}
         kinds, code = np.unique(image[j], axis=0, return_inverse=True)
-        term.shifts = np.ascontiguousarray(kinds @ np.diag(self.high - self.low))
+        code = np.array([known[tuple(k)] for k in kinds.tolist()], int)[code.ravel()]
+        term.shifts = e.plain_shifts        # they follow a box that moves
         slots = [np.ascontiguousarray(e.slot_of[local[row[a]]], np.int32) for a in (i, j)]
         s = e.state
-        term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, *slots, (4 * code.ravel()).astype(np.int32), term.shifts, e.cell,
+        term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, *slots, (4 * code).astype(np.int32), term.shifts, e.cell,
                                                       e.periodic)
         return True
 
