@@ -44,6 +44,7 @@ class HydrogenBondTerm(Term):
             self._hydrogens(engine.system)
         i, j, code, self.shifts, opposite = all_pairs(engine)
         self.params, kind_of = self.tables.arrays
+        kind_of = np.where(self.tables.rows[0, :, :, None] > 0.0, kind_of, -1)      # types that neigh_modify excludes have no cutoff
         while True:
             n = kernels.finder()(i, j, code, opposite, s.type, s.row, kind_of, self.start, self.partner, engine.slot_of, self.found)
             if n <= self.found.shape[1]:

@@ -15,13 +15,13 @@ class ItemsTerm(BondedTerm):
     Raises
     ------
     InputError
-        The pair style has a factor, or atoms do not exist.
+        The pair style has a variable for a factor, or atoms do not exist.
     """
 
     def __init__(self, use, system, interactions, units):
-        if isinstance(use.scale, str) or use.scale != 1.0:
-            raise InputError(f"pair style {use.style.name} cannot have a factor")
-        rows, coeff = use.style.items(use.settings, system, interactions.modified(use, "shift"))
+        if isinstance(use.scale, str):
+            raise InputError(f"pair style {use.style.name} cannot have a factor that changes during a run, v_{use.scale}")
+        rows, coeff = use.style.items(use.settings, system, interactions.modified(use, "shift"), use.scale)
         kinds = np.arange(1, len(rows) + 1)
         bonds = SimpleNamespace(style=use.style.items_style, settings={}, coeff=dict(zip(kinds.tolist(), coeff)))
         super().__init__("pair", bonds, np.array(rows, np.int32).reshape(-1, 2), kinds, len(rows), units)

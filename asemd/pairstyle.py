@@ -122,7 +122,8 @@ class PairStyle(Style):
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
     extra = 0                        # numbers that compute pair gives beside the energy
-    restarts = True                  # restart files keep settings and coefficients
+    restarts = True                  # restart files keep settings, and coefficients unless they are numbers of a file
+    from_files = False
     takes_tables = True              # ``pair_modify table`` has an effect, as in LAMMPS
     tables: dict[Callable, Callable] = {}       # functions looked up in a table by others than their own ``table``
     needs_newton = False             # newton off is refused, as by LAMMPS

@@ -24,7 +24,7 @@ def find_triples(i, j, code, opposite, type_of, row, kind_of, first, partner, sl
             for p in range(first[row[d]], first[row[d] + 1]):
                 h = slot_of[partner[p]]
                 kind = kind_of[type_of[d], type_of[a], type_of[h]]
-                if kind >= 0:
+                if kind >= 0 and row[h] != row[a]:
                     if n < out.shape[1]:
                         out[0, n] = d
                         out[1, n] = a

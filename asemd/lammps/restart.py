@@ -126,11 +126,11 @@ def force_field(interactions: Interactions) -> dict[str, Any]:
     names = ("settings", "coeff", "label", "modify", "special", "scale", "memory")
     out["uses"] = {category: [{"style": use.style.name, **{n: getattr(use, n) for n in names}} for use in uses]
                    for category, uses in interactions.uses.items()}
-    # potential files are not kept, as in LAMMPS: the script gives the style (a sub-style's coefficients) again
-    if out["hybrid"]["pair"]:
-        for use in out["uses"]["pair"]:
-            use["coeff"] = use["coeff"] if find("pair", use["style"]).restarts else {}
-    else:
+    # potential files are not kept, as in LAMMPS: the script gives the style (a sub-style's or a table's coefficients) again
+    for use in out["uses"]["pair"]:
+        style = find("pair", use["style"])
+        use["coeff"] = use["coeff"] if style.restarts and not style.from_files else {}
+    if not out["hybrid"]["pair"]:
         out["uses"]["pair"] = [use for use in out["uses"]["pair"] if find("pair", use["style"]).restarts]
     return out
 

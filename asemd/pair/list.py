@@ -95,8 +95,8 @@ class ListPair(PairStyle):
             values["check"] = words.choice(words_[2], ("check", "nocheck"), "pair_style list: keyword")
         return values | {"pairs": read(values["file"], values["cut"])}
 
-    def items(self, settings, system, shift: bool):
-        """Rows of the atoms (m, 2) and coefficients of all pairs.
+    def items(self, settings, system, shift: bool, factor: float):
+        """Rows of the atoms (m, 2) and coefficients of all pairs, with energies times `factor`.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class ListPair(PairStyle):
             if shift:
                 c = {**c, "offset": listed(math.nextafter(c["cut"], 0.0), *[c[n] for n in BOND.arguments[:5]], c["cut"], 0.0)[0]}
             rows.append((row[i], row[j]))
-            coeff.append(c)
+            coeff.append({**c, "a": factor * c["a"], "offset": factor * c["offset"]})
         return rows, coeff
 
 

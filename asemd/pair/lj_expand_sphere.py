@@ -11,6 +11,7 @@ from __future__ import annotations
 import copy
 from dataclasses import replace
 
+from asemd.errors import InputError
 from asemd.pairstyle import PairStyle, pair
 from asemd.style import find
 
@@ -19,6 +20,8 @@ class ExpandSpherePair(PairStyle):
     """Cutoffs are counted from the surfaces of the largest spheres on."""
 
     def filled(self, coeffs, settings, ntypes, rule=None, only=None):
+        if rule == "sixthpower":
+            raise InputError(f"pair_modify mix sixthpower does not work with pair style {self.name}")
         radii = settings.get("radii", (0.5,) * (ntypes + 1))
         return {(i, j): {**c, "largest": radii[i] + radii[j]} for (i, j), c in super().filled(coeffs, settings, ntypes, rule, only).items()}
 

@@ -28,6 +28,12 @@ class LongDipoles(PairStyle):
     radial = staticmethod(radial)
 
 
+class Dispersion(PairStyle):
+    """The parts of the style without charges and dipoles."""
+
+    takes_tables = False
+
+
 class DipoleDispersion(DispersionPair):
     def parse_settings(self, words):
         values = super().parse_settings(words)
@@ -37,7 +43,7 @@ class DipoleDispersion(DispersionPair):
         return values
 
     def form(self, coulomb):
-        return PairStyle if coulomb == "off" else LongDipoles
+        return Dispersion if coulomb == "off" else LongDipoles
 
     def needs(self, settings):
         if settings["dispersion"] == "long":

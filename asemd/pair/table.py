@@ -160,6 +160,8 @@ def even_pieces(file: FileTable, method: str, n: int, cut: float, unit: float):
 class Table(PairStyle):
     """Reads files when coefficients are given and makes the pieces when kernels are."""
 
+    from_files = True
+
     def parse_settings(self, words_):
         what = "pair_style table"
         if len(words_) < 2:
