@@ -206,6 +206,14 @@ class Box:
                 raise SimulationError(f"atom row {int(np.argmax(far))} is {far.max():.3g} boxes away, too far to be wrapped")
         (self._wrap_aligned if self.aligned else self._wrap_tilted if self.is_lammps_frame else self._wrap_general)(x, image)
 
+    def remap(self, x: np.ndarray, image: np.ndarray) -> None:
+        """`wrap` with LAMMPS's last bits for atoms of files: in tilted boxes all of them go through fractional coordinates and back."""
+        before = image.copy()
+        self.wrap(x, image)
+        if self.triclinic and self.is_lammps_frame:
+            stayed = (image == before).all(axis=1)
+            x[stayed] = tilted.positions(self.fractional(x[stayed]), self.cell, self.origin)
+
     def _wrap_aligned(self, x, image):
         for k in np.flatnonzero(self.periodic):
             lo, length = self.origin[k], self.cell[k, k]

@@ -274,7 +274,7 @@ class _Reader(DataText):
         rmass = extra.pop("rmass", None)
         if rotation is not None:
             v, extra = v @ rotation, extra | atom_styles.rotated(extra, rotation)
-        whole.wrap(x, image)
+        whole.remap(x, image)
         top = self.read_topology(ids)
         system = System(
             box=whole.shrink_wrapped(x), x=x, id=ids, type=a["type"][order], image=image, v=v, mass=mass, topology=top, counts=counts,
