@@ -39,6 +39,12 @@ class Room:
         return self._columns
 
 
+def fleeting(fixes, kinds, interactions) -> bool:
+    """Whether shares must be taken with the forces: when the step is over the box, or velocities that forces depend on, are others."""
+    moved = any(f.box_moves and "end_of_step" in hooks for f, hooks in zip(fixes, kinds))
+    return moved or any(use.style.stirred for use in interactions.uses["pair"])
+
+
 def add(engine: Engine, result: Result, energies: bool = True, virials: bool = True) -> Result:
     """Add `energies`, `virials` and their parts by category to the result of the engine's last evaluation, unless they are there."""
     energies, virials = energies and result.energies is None, virials and result.virials is None

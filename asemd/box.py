@@ -210,8 +210,7 @@ class Box:
         """`wrap` with LAMMPS's last bits for atoms of files: in tilted boxes all of them go through fractional coordinates and back."""
         before = image.copy()
         self.wrap(x, image)
-        if self.triclinic and self.is_lammps_frame:
-            stayed = (image == before).all(axis=1)
+        if (stayed := (image == before).all(axis=1) & self.triclinic & self.is_lammps_frame).any():
             x[stayed] = tilted.positions(self.fractional(x[stayed]), self.cell, self.origin)
 
     def _wrap_aligned(self, x, image):

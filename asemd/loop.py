@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 
-from asemd import population
+from asemd import atom_shares, population
 from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import NEVER, Fix
@@ -21,7 +21,6 @@ from asemd.watchdog import Watchdog
 
 IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
 ABOUT_LISTS = ("pre_exchange", "pre_neighbor", "post_neighbor")
-SHARES = {"energies", "virials"}
 
 
 def warn(message: str) -> None:
@@ -68,13 +67,7 @@ class Loop:
         self._relist, self.watchdog, self.trial_step = Relist(), Watchdog(self), 0      # the step that a minimisation evaluates
 
     def group_bit(self, name: str) -> int:
-        """The bit value of a group: 1 for ``all``, 2, 4, ...
-
-        Raises
-        ------
-        InputError
-            Unknown group.
-        """
+        """The bit value of a group: 1 for ``all``, 2, 4, ...; `InputError` for an unknown one, or one too many."""
         if name not in self.groups:
             raise InputError(f"unknown group {name!r}")
         at = self.groups.bit(name) if hasattr(self.groups, "bit") else list(self.groups).index(name)
@@ -92,8 +85,7 @@ class Loop:
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
     def setup(self, begin: int | None = None, end: int | None = None, virial: bool = True, needs=()) -> Result:
-        """Lists, first forces, and the fixes' part in them; compiles what the run needs. Returns the result of the first step, with the
-        shares of atoms that `needs` names."""
+        """Lists, first forces, the fixes' part in them; compiles what the run needs. The first step's result, with what `needs` names."""
         self.begin = self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
         e, self.fix_data = self.engine, ()
@@ -144,9 +136,7 @@ class Loop:
         self._about_lists = [f for f, kinds in zip(self.fixes, self._kinds) if any(name in kinds for name in ABOUT_LISTS)]
         self._compiled = not (self._in_python or any("post_neighbor" in kinds for kinds in self._kinds))
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
-        # shares of atoms are those of where the forces were, or of velocities that are gone when a step is over
-        self._fleeting = any(f.box_moves and "end_of_step" in kinds for f, kinds in zip(self.fixes, self._kinds)) or any(
-            use.style.stirred for use in self.interactions.uses["pair"])
+        self._fleeting = atom_shares.fleeting(self.fixes, self._kinds, self.interactions)
 
     def _next_whole(self, step: int) -> int:
         """The next step after `step` that is made by Python, hook by hook."""
@@ -188,7 +178,7 @@ class Loop:
             while self.step < last and not (interrupt.asked or self.halted):
                 whole, due = self._next_whole(self.step), self._next_end(self.step)
                 if self._fleeting:
-                    whole = min([whole, *[last] * bool(shares), *[due] * (due <= last and bool(SHARES & self._needs(due)))])
+                    whole = min([whole, *[last] * bool(shares), *[due] * (due <= last and bool({"energies", "virials"} & self._needs(due)))])
                 if whole == self.step + 1:
                     self._python_step(want and whole == last, shares if whole == last else set())
                 else:
