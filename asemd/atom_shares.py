@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from asemd.engine import Engine
 
 
+KINDS = {"energies", "virials"}
+
+
 class Room:
     """Arrays that kernels for shares write to, kept by the engine: tables by slot (see `asemd.kernels.pair_shares`); columns, forces and
     sums for kernels that give forces as well, which nobody reads."""

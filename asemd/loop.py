@@ -178,7 +178,8 @@ class Loop:
             while self.step < last and not (interrupt.asked or self.halted):
                 whole, due = self._next_whole(self.step), self._next_end(self.step)
                 if self._fleeting:
-                    whole = min([whole, *[last] * bool(shares), *[due] * (due <= last and bool({"energies", "virials"} & self._needs(due)))])
+                    ends = due <= last and not atom_shares.KINDS.isdisjoint(self._needs(due))
+                    whole = min([whole, *[last] * bool(shares), *[due] * ends])
                 if whole == self.step + 1:
                     self._python_step(want and whole == last, shares if whole == last else set())
                 else:

@@ -58,6 +58,7 @@ CASES |= {
     "lj/long/dipole/long": LONG.format("long long 5", "/dipole"),
     "lj/long/dipole/long cut": LONG.format("cut long 4 5", "") + "\npair_modify shift yes\nkspace_modify gewald 0.4",
     "lj/long/dipole/long off": LONG.format("long off 4 5", ""),
+    "lj/long/dipole/long off, far": LONG.format("long off 9", ""),
     "lj/long/dipole/long uncharged": LONG.format("long long 5", "/dipole") + "\npair_modify mix arithmetic\nset group all charge 0",
     "lj/long/dipole/long slab ew2d": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab ew2d gewald 0.35 force 0.3",
     "lj/long/dipole/long slab": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab 3.0 gewald 0.35 force 0.3",

