@@ -1,0 +1,81 @@
+"""Long-range solvers of a few atoms where few scenes go: meshes very fine and very small, waves and mixing by settings, factors."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from wheel import ask, ran
+
+ATOMS = ["create_atoms 1 single 1 1 1", "create_atoms 2 single 4 3 6", "create_atoms 3 single 6 8 2", "create_atoms 1 single 7 2 5",
+         "mass * 10", *(f"set atom {i} charge {q}" for i, q in enumerate((0.5, -0.4, 0.3, -0.4), 1))]
+SHARES = ["compute e all pe/atom kspace", "compute es all reduce max c_e", "compute s all stress/atom NULL kspace",
+          "compute ss all reduce max c_s[2]", "thermo_style custom step elong press pxy evdwl c_es c_ss"]
+VALUES = ["elong", "press", "pxy", "evdwl", "c_es", "c_ss"]
+BLOCK, PRISM = "block 0 10 0 11 0 12", "prism 0 10 0 11 0 12 2 1 -1.5"
+CHARGED = ["pair_style coul/long 6", "pair_coeff * *", "pair_modify table 0"]
+LJ = ["pair_coeff 1 1 0.1 2", "pair_coeff 2 2 0.2 3", "pair_coeff 3 3 0.05 2.5"]
+
+
+def case(*solver, box=BLOCK, pairs=CHARGED):
+    return ["units real", "atom_style charge", f"region b {box}", "create_box 3 b", *ATOMS, *pairs, *solver, *SHARES, "run 0"]
+
+
+def on_mesh(style, words, **options):
+    return case(f"kspace_style {style} 1e-4", f"kspace_modify {words}", **options)
+
+
+def long(mix, *solver, coeff=LJ, coulomb="long"):
+    return case(*solver, pairs=[f"pair_style lj/long/coul/long long {coulomb} 5", *coeff, f"pair_modify table 0 table/disp 0 mix {mix}"])
+
+
+CASES = {
+    **{f"{style}, a fine mesh": on_mesh(style, "mesh 40 48 48 gewald 0.3") for style in ("pppm", "pppm/cg", "pppm/stagger")},
+    "pppm, a fine mesh, diff ad": on_mesh("pppm", "mesh 64 64 64 gewald 0.3 diff ad"),
+    "pppm/stagger, a very fine mesh": on_mesh("pppm/stagger", "mesh 60 72 72 gewald 0.2"),
+    **{f"{style}, factors of 7, 11 and 13, {words}": on_mesh(style, f"mesh 7 11 13 gewald 0.4 diff {words}")
+       for style in ("pppm", "pppm/cg", "pppm/stagger") for words in ("ik", "ad")},
+    "pppm, factors of 7, 11 and 13, triclinic": on_mesh("pppm", "mesh 7 11 13 gewald 0.4", box=PRISM),
+    "pppm, factors of 7, 11 and 13, no gewald": on_mesh("pppm", "mesh 7 11 13"),
+    **{f"{style}, mesh {mesh}, {words}": on_mesh(style, f"mesh {mesh} gewald 0.4 {words}")
+       for style, mesh, words in (("pppm", "3 2 2", "order 7"), ("pppm", "1 2 9", "order 7 diff ad"), ("pppm", "1 1 1", "order 5"),
+                                  ("pppm/stagger", "3 2 1", "order 6"), ("pppm/cg", "2 1 2", "order 7"))},
+    "pppm, mesh 2 1 2, triclinic": on_mesh("pppm", "mesh 2 1 2 gewald 0.4 order 7", box=PRISM),
+    "pppm/disp, meshes of 2 1 2 and 1 3 2": long("geometric", "kspace_style pppm/disp 1e-4",
+                                                 "kspace_modify gewald 0.4 mesh 2 1 2 order 7 gewald/disp 0.4 mesh/disp 1 3 2"),
+    **{f"ewald, kmax {words}": on_mesh("ewald", f"kmax/ewald {words}") for words in ("2 0 5", "0 2 2", "4 0 0")},
+    "ewald, kmax 2 0 5, triclinic": on_mesh("ewald", "kmax/ewald 2 0 5", box=PRISM),
+}
+ASK = """
+import numpy as np
+answer = {}
+for name, lines in given["scripts"].items():
+    lmp = ran(lines)
+    values = [lmp.extract_compute(v[2:], 0, 0) if v[:2] == "c_" else lmp.get_thermo(v) for v in given["values"]]
+    answer[name] = [values, np.array(lmp.gather_atoms("f", 1, 3)).tolist()]
+    lmp.close()
+"""
+
+
+def measured(lines, values):
+    lmp = ran(lines, "-compat", "lammps")
+    return [lmp.extract_compute(v[2:], 0, 0) if v[:2] == "c_" else lmp.get_thermo(v) for v in values], lmp.gather_atoms("f", 1, 3)
+
+
+@pytest.fixture(scope="module")
+def theirs():
+    return ask(ASK, scripts=CASES, values=VALUES)
+
+
+@pytest.mark.part(4)
+@pytest.mark.parametrize("name", CASES)
+def test_against_lammps(name, theirs):
+    for got, want in zip(measured(CASES[name], VALUES), theirs[name], strict=True):
+        want = np.array(want)
+        assert np.abs(np.array(got) - want).max() < 1e-10 * np.abs(want).max(), (name, got, want)
+
+
+def test_the_log_tells_the_mesh_that_is_taken(tmp_path):
+    from wheel import start
+    lmp = start("-log", str(tmp_path / "log"))
+    lmp.commands_list(case("kspace_style pppm 1e-4", "kspace_modify mesh 7 11 13 gewald 0.4"))
+    lmp.close()
+    assert "grid = 8 12 15" in (tmp_path / "log").read_text()
