@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from wheel import ask, ran
 
+from asemd.errors import InputWarning
+
 ATOMS = ["create_atoms 1 single 1 1 1", "create_atoms 2 single 4 3 6", "create_atoms 3 single 6 8 2", "create_atoms 1 single 7 2 5",
          "mass * 10", *(f"set atom {i} charge {q}" for i, q in enumerate((0.5, -0.4, 0.3, -0.4), 1))]
 SHARES = ["compute e all pe/atom kspace", "compute es all reduce max c_e", "compute s all stress/atom NULL kspace",
@@ -13,6 +15,7 @@ VALUES = ["elong", "press", "pxy", "evdwl", "c_es", "c_ss"]
 BLOCK, PRISM = "block 0 10 0 11 0 12", "prism 0 10 0 11 0 12 2 1 -1.5"
 CHARGED = ["pair_style coul/long 6", "pair_coeff * *", "pair_modify table 0"]
 LJ = ["pair_coeff 1 1 0.1 2", "pair_coeff 2 2 0.2 3", "pair_coeff 3 3 0.05 2.5"]
+UNLIKE = ["pair_coeff 1 1 0.1 1.0", "pair_coeff 2 2 0.2 3.5", "pair_coeff 3 3 0.05 2.5"]
 
 
 def case(*solver, box=BLOCK, pairs=CHARGED):
@@ -27,6 +30,7 @@ def long(mix, *solver, coeff=LJ, coulomb="long"):
     return case(*solver, pairs=[f"pair_style lj/long/coul/long long {coulomb} 5", *coeff, f"pair_modify table 0 table/disp 0 mix {mix}"])
 
 
+MESHES = "gewald 0.4 mesh 8 9 10 gewald/disp 0.4 mesh/disp 8 9 10"
 CASES = {
     **{f"{style}, a fine mesh": on_mesh(style, "mesh 40 48 48 gewald 0.3") for style in ("pppm", "pppm/cg", "pppm/stagger")},
     "pppm, a fine mesh, diff ad": on_mesh("pppm", "mesh 64 64 64 gewald 0.3 diff ad"),
@@ -43,6 +47,13 @@ CASES = {
                                                  "kspace_modify gewald 0.4 mesh 2 1 2 order 7 gewald/disp 0.4 mesh/disp 1 3 2"),
     **{f"ewald, kmax {words}": on_mesh("ewald", f"kmax/ewald {words}") for words in ("2 0 5", "0 2 2", "4 0 0")},
     "ewald, kmax 2 0 5, triclinic": on_mesh("ewald", "kmax/ewald 2 0 5", box=PRISM),
+    **{f"pppm/disp, splittol {tolerance}, {name}": long(mix, "kspace_style pppm/disp 1e-4", f"kspace_modify {MESHES} splittol {tolerance}",
+                                                        coeff=coeff)
+       for tolerance, name, mix, coeff in (("0.5", "arithmetic", "arithmetic", LJ), ("0.01", "arithmetic", "arithmetic", LJ),
+                                           ("0.01", "unlike", "arithmetic", UNLIKE), ("0.001", "unlike", "arithmetic", UNLIKE),
+                                           ("0.5", "geometric", "geometric", LJ))},
+    **{f"ewald/disp {accuracy}, {mix}, coulomb {coulomb}": long(mix, f"kspace_style ewald/disp {accuracy}", coulomb=coulomb)
+       for mix in ("arithmetic", "geometric") for accuracy in ("1e-3", "1e-5", "1e-7") for coulomb in ("long", "off")},
 }
 ASK = """
 import numpy as np
@@ -79,3 +90,9 @@ def test_the_log_tells_the_mesh_that_is_taken(tmp_path):
     lmp.commands_list(case("kspace_style pppm 1e-4", "kspace_modify mesh 7 11 13 gewald 0.4"))
     lmp.close()
     assert "grid = 8 12 15" in (tmp_path / "log").read_text()
+
+
+def test_what_splittol_leaves_out_is_told():
+    for tolerance, coeff, part in ((0.5, LJ, "0.012910687"), (0.001, UNLIKE, "0.00059220167")):
+        with pytest.warns(InputWarning, match=f"splitting of dispersion coeffs is {part}"):
+            ran(long("arithmetic", "kspace_style pppm/disp 1e-4", f"kspace_modify {MESHES} splittol {tolerance}", coeff=coeff))

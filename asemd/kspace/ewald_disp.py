@@ -47,8 +47,8 @@ class EwaldDisp(Ewald):
         self.squares_mu = float((np.asarray(system.extra["mu"]) ** 2).sum()) if self.dipoles else 0.0
         if self.dispersion is not None:
             self.b2 = self.dispersion.sums(system.type)[1]
-            if self.dispersion.rule == "arithmetic":      # LAMMPS's estimates count one sixteenth of it then
-                self.b2 /= 16.0
+            if self.dispersion.rule == "arithmetic":      # LAMMPS's estimates count a quarter of it then
+                self.b2 /= 4.0
         super().prepare(system, interactions, units, cutoff)
 
     def first_guess(self):
