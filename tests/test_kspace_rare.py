@@ -96,3 +96,42 @@ def test_what_splittol_leaves_out_is_told():
     for tolerance, coeff, part in ((0.5, LJ, "0.012910687"), (0.001, UNLIKE, "0.00059220167")):
         with pytest.warns(InputWarning, match=f"splitting of dispersion coeffs is {part}"):
             ran(long("arithmetic", "kspace_style pppm/disp 1e-4", f"kspace_modify {MESHES} splittol {tolerance}", coeff=coeff))
+
+
+# ------------------------------------------------------------------------------------------- charges with dipoles and a factor of fix adapt
+
+def polar(*solver, boundary="p p p", charges=True, moved="0 0 0"):
+    return ["units real", "atom_style hybrid dipole sphere", f"boundary {boundary}", f"region b {BLOCK}", "create_box 3 b",
+            *(a for a in ATOMS if "mass" not in a and (charges or "charge" not in a)), "set group all diameter 1 density 10",
+            *(f"set atom {i} dipole {p}" for i, p in enumerate(("0.3 0.2 0.5", "0.3 -0.2 0.1", "-0.3 0.2 0.4", "0.1 0.2 -0.15"), 1)),
+            "pair_style lj/long/dipole/long cut long 5", "pair_coeff * * 0.1 2", "pair_modify table 0", "kspace_style ewald/disp 1e-4",
+            *solver, "group one id 1", f"displace_atoms one move {moved}", "fix n all nve", "variable f equal 0.5",
+            "fix f all adapt 1 kspace v_f", "compute t all property/atom tqx", "compute ts all reduce max c_t",
+            "thermo_style custom step elong press pxy c_ts", "run 0"]
+
+
+POLAR = {
+    "neutral": polar(), "charged": polar("set atom 3 charge 0.7"), "without charges": polar(charges=False),
+    "slab": polar("kspace_modify slab 3.0", boundary="p p f"), "nozforce": polar("kspace_modify slab nozforce", boundary="p p f")}
+
+
+def test_a_factor_acts_on_what_charges_do_to_each_other():
+    """Energy and pressure are LAMMPS's; its forces have the dipoles' part multiplied on the charge and not on the dipole that makes it."""
+    values = ["elong", "press", "pxy", "c_ts"]
+    theirs = ask(ASK, scripts=POLAR, values=values)
+    for name, lines in POLAR.items():
+        got, want = measured(lines, values)[0], theirs[name][0]
+        assert np.allclose(got, want, rtol=1e-10, atol=1e-10 * max(map(abs, want))), (name, got, want)
+
+
+@pytest.mark.parametrize("boundary, words", [("p p p", ()), ("p p f", ("kspace_modify slab 3.0",))])
+def test_forces_with_a_factor_are_the_gradient(boundary, words):
+    lmp = ran(polar(*words, boundary=boundary))
+    forces, h = np.array(lmp.gather_atoms("f", 1, 3)).reshape(-1, 3), 1e-3
+    assert np.abs(forces.sum(axis=0)).max() < 1e-12
+    pe = [[ran(polar(*words, boundary=boundary, moved=" ".join(map(str, sign * h * np.eye(3)[d])))).get_thermo("pe") for sign in (1, -1)]
+          for d in range(3)]
+    assert np.allclose([(b - a) / (2 * h) for a, b in pe], forces[0], rtol=0, atol=2e-7)
+    lmp = ran([*polar(*words, boundary=boundary)[:-2], "compute e all pe/atom kspace", "compute es all reduce sum c_e",
+               "thermo_style custom step elong c_es", "run 0"])
+    assert lmp.extract_compute("es", 0, 0) == pytest.approx(lmp.get_thermo("elong"), rel=1e-12)
