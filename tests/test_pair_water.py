@@ -102,6 +102,29 @@ def test_against_lammps(theirs, case):
         np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
 
 
+@pytest.mark.parametrize("more", [("kspace_style pppm/tip4p 1e-3", "kspace_modify gewald 0.4 mesh 7 9 11"), MESHES[:2]])
+def test_shares_of_the_mesh_alone(tmp_path, more):
+    """Virials without energies, and energies of charges that do not add up to 0 in a box that moves."""
+    style = "lj/long/tip4p/long long long 1 2 1 1 0.15 5.0" if "disp" in more[0] else "lj/cut/tip4p/long 1 2 1 1 0.15 4.5 5.0"
+    more = (*UPRIGHT, "set type 1 charge -0.9", *more, "pair_modify table 0 table/disp 0")
+    lines = script(data(tmp_path / "water.data"), style, LJ, more).splitlines()[:-3]
+    scripts = [[*lines, "compute s all stress/atom NULL kspace", "compute m all reduce max c_s[1] c_s[5]",
+                "thermo_style custom step c_m[1] c_m[2]", "run 0"],
+               [*lines, "compute e all pe/atom kspace", "compute m all reduce max c_e", "thermo_style custom step c_m press",
+                "timestep 0.1", "fix n all nph aniso 500 500 10 ptemp 300", "run 9"]]
+    theirs = wheel.ask("""
+answer = []
+for lines in given["scripts"]:
+    lmp = ran(lines)
+    answer.append([*lmp.numpy.extract_compute("m", 0, 1)] if "c_m[1]" in lines[-2] else [lmp.extract_compute("m", 0, 0)])
+""", scripts=scripts)
+    for lines, want in zip(scripts, theirs, strict=True):
+        mine = Lammps(cmdargs=["-log", "none", "-screen", "none"])
+        mine.commands_list(lines)
+        got = mine.extract_compute("m", 0, 1)[:2] if "c_m[1]" in lines[-2] else [mine.extract_compute("m", 0, 0)]
+        np.testing.assert_allclose(got, want, rtol=1e-9)
+
+
 @pytest.mark.part(3)
 @pytest.mark.parametrize("name", ["dreiding/lj 4", "dreiding/lj/angleoffset", "dreiding/morse/angleoffset"])
 def test_force_of_a_hydrogen_bond_is_the_gradient(tmp_path, name):

@@ -1,6 +1,7 @@
 """The sum over waves of charges with point dipoles, shared between threads by atoms; waves as in `asemd.kernels.ewald_disp`.
 
-With rho(k) = sum of (q_i + i p_i . k) exp(i k . x_i) the energy of a wave is its weight times |rho|^2.
+With rho(k) = sum of (q_i + i p_i . k) exp(i k . x_i) the energy of a wave is its weight times |rho|^2. A factor of fix adapt acts on what
+charges do to each other, as in LAMMPS, so that their part of rho is held too.
 """
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ def take(mu, row, lo, hi, p):
 
 
 def both(q, mu, row, numbers, waves, table, lo, hi, out):
-    """rho of the waves over slots lo..hi-1, ``out (m, 2)``."""
+    """rho of the waves over slots lo..hi-1, and the part of charges, ``out (m, 4)``."""
     re, im, p = np.empty(BLOCK), np.empty(BLOCK), np.empty((3, BLOCK))
     out[:] = 0.0
     for b in range(lo, hi, BLOCK):
@@ -39,20 +40,24 @@ def both(q, mu, row, numbers, waves, table, lo, hi, out):
             sign = 1.0 if numbers[m, 2] >= 0 else -1.0
             c, s, charge = table[2, abs(numbers[m, 2]), 0, b:e], table[2, abs(numbers[m, 2]), 1, b:e], q[b:e]
             k0, k1, k2 = waves[m, 1], waves[m, 2], waves[m, 3]
-            real, imaginary = 0.0, 0.0
+            real, imaginary, charged, imaginary_charged = 0.0, 0.0, 0.0, 0.0
             for i in range(e - b):
                 u = re[i] * c[i] - sign * im[i] * s[i]
                 w = im[i] * c[i] + sign * re[i] * s[i]
                 pk = p[0, i] * k0 + p[1, i] * k1 + p[2, i] * k2
-                real += charge[i] * u - pk * w
-                imaginary += charge[i] * w + pk * u
-            out[m, 0] += real
-            out[m, 1] += imaginary
+                charged += charge[i] * u
+                imaginary_charged += charge[i] * w
+                real -= pk * w
+                imaginary += pk * u
+            out[m, 0] += charged + real
+            out[m, 1] += imaginary_charged + imaginary
+            out[m, 2] += charged
+            out[m, 3] += imaginary_charged
 
 
-def act(f, q, mu, row, torque, scale, g, qsum, all_energy, numbers, waves, total, table, lo, hi, flat, acc, energy, virial):
+def act(f, q, mu, row, torque, scale, unit, g, qsum, all_energy, numbers, waves, total, table, lo, hi, flat, acc, energy, virial):
     """Forces and torques on slots lo..hi-1; if ENERGY what their dipoles add to the virial, if PER_ATOM their energies and virials too;
-    `flat` leaves out the third component of forces."""
+    `scale`: of charges with each other, `unit`: of all else; `flat` leaves out the third component of forces."""
     re, im = np.empty(BLOCK), np.empty(BLOCK)
     field, force, p = np.empty((3, BLOCK)), np.empty((3, BLOCK)), np.empty((3, BLOCK))
     root = math.sqrt(math.pi)
@@ -68,15 +73,16 @@ def act(f, q, mu, row, torque, scale, g, qsum, all_energy, numbers, waves, total
             sign = 1.0 if numbers[m, 2] >= 0 else -1.0
             c, s = table[2, abs(numbers[m, 2]), 0, b:e], table[2, abs(numbers[m, 2]), 1, b:e]
             k0, k1, k2 = waves[m, 1], waves[m, 2], waves[m, 3]
-            weight = 2.0 * scale * waves[m, 0]
+            weight, more = 2.0 * unit * waves[m, 0], 2.0 * (scale - unit) * waves[m, 0]
             real, imaginary = weight * total[m, 0], weight * total[m, 1]
+            real_more, imaginary_more = more * total[m, 2], more * total[m, 3]
             for i in range(e - b):
                 u = re[i] * c[i] - sign * im[i] * s[i]
                 w = im[i] * c[i] + sign * re[i] * s[i]
                 pk = p[0, i] * k0 + p[1, i] * k1 + p[2, i] * k2
                 along = imaginary * u - real * w
                 across = real * u + imaginary * w
-                push = pk * across - q[b + i] * along
+                push = pk * across - q[b + i] * (along + imaginary_more * u - real_more * w)
                 field[0, i] -= k0 * along
                 field[1, i] -= k1 * along
                 field[2, i] -= k2 * along
@@ -84,7 +90,7 @@ def act(f, q, mu, row, torque, scale, g, qsum, all_energy, numbers, waves, total
                 force[1, i] += k1 * push
                 force[2, i] += k2 * push
                 if PER_ATOM:
-                    share = 0.5 * (q[b + i] * across + pk * along)
+                    share = 0.5 * (q[b + i] * (across + real_more * u + imaginary_more * w) + pk * along)
                     energy[b + i] += share
                     for d in range(6):
                         virial[d, b + i] += share * waves[m, 4 + d]
@@ -105,7 +111,7 @@ def act(f, q, mu, row, torque, scale, g, qsum, all_energy, numbers, waves, total
             if PER_ATOM:
                 share = all_energy * qsum * q[b + i]
                 square = p[0, i] ** 2 + p[1, i] ** 2 + p[2, i] ** 2
-                energy[b + i] -= scale * g / root * (q[b + i] ** 2 + 2.0 * g * g / 3.0 * square) - share
+                energy[b + i] -= g / root * (scale * q[b + i] ** 2 + unit * 2.0 * g * g / 3.0 * square) - share
                 for d in range(3):
                     virial[d, b + i] -= p[d, i] * field[d, i] + share
                 virial[3, b + i] -= p[0, i] * field[1, i]
@@ -144,10 +150,11 @@ def charges_and_dipoles(meeting, tid, x, f, q, lo, hi, box, origin, mu, row, tor
                         sums, constants, choice, acc, energy, virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
-    `constants` as in `asemd.kernels.ewald.ewald`, then the sum of squared dipoles; `choice`, `held` as in `asemd.kernels.ewald_disp`.
+    `constants` as in `asemd.kernels.ewald.ewald`, then the sum of squared dipoles and the factor without fix adapt;
+    `choice`, `held` as in `asemd.kernels.ewald_disp`.
     """
-    g, scale, qsum, qsqsum, stretch, slabs, squares = (constants[0], constants[1], constants[2], constants[3], constants[4], constants[5],
-                                                       constants[7])
+    g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
+    squares, unit = constants[7], constants[8]
     if tid == 0 and not is_same(box, stretch, held):
         stretched(box, stretch, held[:3], inverse)
         found, top = choose(held[:3], g, choice[0], choice[1], choice[2], choice[3], choice[4], room)
@@ -166,14 +173,14 @@ def charges_and_dipoles(meeting, tid, x, f, q, lo, hi, box, origin, mu, row, tor
     total = all_sums[0].copy()
     for t in range(1, all_sums.shape[0]):
         total += all_sums[t]
-    act(f, q, mu, row, torque, scale, g, qsum, all_energy, numbers, waves, total, table, lo, hi, slabs == 2.0, acc, energy, virial)
+    act(f, q, mu, row, torque, scale, unit, g, qsum, all_energy, numbers, waves, total, table, lo, hi, slabs == 2.0, acc, energy, virial)
     if ENERGY and tid == 0:
         for k in range(m):
-            e = scale * waves[k, 0] * (total[k, 0] ** 2 + total[k, 1] ** 2)
+            e = waves[k, 0] * (unit * (total[k, 0] ** 2 + total[k, 1] ** 2) + (scale - unit) * (total[k, 2] ** 2 + total[k, 3] ** 2))
             acc[0] += e
             for d in range(6):
                 acc[2 + d] += e * waves[k, 4 + d]
-        acc[0] -= scale * g / math.sqrt(math.pi) * (qsqsum + 2.0 * g * g / 3.0 * squares) - all_energy * qsum * qsum
+        acc[0] -= g / math.sqrt(math.pi) * (scale * qsqsum + unit * 2.0 * g * g / 3.0 * squares) - all_energy * qsum * qsum
         for d in range(3):
             acc[2 + d] -= all_energy * qsum * qsum        # LAMMPS's sign for charges that do not add up to 0
     if slabs == 1.0:

@@ -54,7 +54,7 @@ def spread(x, q, least, lo, hi, origin, inverse, numbers, density_of, pieces, wr
             else:
                 k = int(u)
                 t = k + 0.5 - u
-            base[i, d] = wrap[d, k + numbers[d] - half]
+            base[i, d] = wrap[d, k + 3 * numbers[d] - half]      # not negative on a mesh of one point either
             for m in range(ORDER):
                 p = pieces[ORDER - 1, m]
                 for c in range(ORDER - 2, -1, -1):
@@ -121,6 +121,8 @@ def mean_shape(n, o, numbers, turn, g, most, b, v, u):
     if n[0] != -o[0] or n[1] != -o[1] or n[2] != -o[2]:
         shape(o, turn, g, u)
         one, other = influence(n, numbers, turn, g, most, b), influence(o, numbers, turn, g, most, b)
+        if abs(one + other) < 1e-300:       # waves so short that they have no energy
+            return
         for m in range(6):
             v[m] = (one * v[m] + other * u[m]) / (one + other)
 

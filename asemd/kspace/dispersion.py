@@ -9,7 +9,7 @@ import numpy as np
 from asemd.errors import InputError, InputWarning
 from asemd.pairing import complete
 
-DROPPED = 1e-6      # eigenvalues, as parts of the largest, whose loss is told
+DROPPED = 1e-4      # eigenvalues, as parts of the largest, whose loss is told
 
 
 class Dispersion:
@@ -25,8 +25,8 @@ class Dispersion:
     derived : callable
         ``derived(coefficients, settings)["C6"]``.
     tolerance : float
-        For ``none``: eigenvalues of the matrix of C6 that are smaller than this part of the largest are left out. If one is left, mixing is
-        geometric, as in LAMMPS.
+        Eigenvalues of the matrix of C6 that are smaller than this part of the largest are left out. If one is left, mixing is geometric; if
+        more are, arithmetic mixing takes them all nevertheless, as in LAMMPS.
 
     Attributes
     ----------
@@ -51,14 +51,15 @@ class Dispersion:
         self.own = np.diag(c6).copy()
         values, vectors = np.linalg.eigh(c6)
         part = abs(values) / (abs(values).max(initial=0.0) or 1.0)
-        kept = part > (tolerance if rule == "none" else 1e-15)
-        if rule == "geometric" or rule == "none" and kept.sum() == 1:
+        large = part > tolerance
+        if rule == "geometric" or large.sum() == 1:
             self.factors, self.signs = np.sqrt(self.own)[:, None], np.ones(1)
         else:
+            kept = large if rule == "none" else part > 1e-15
             self.factors, self.signs = np.ascontiguousarray(vectors[:, kept] * np.sqrt(abs(values[kept]))), np.sign(values[kept])
             self.own = self.factors**2 @ self.signs
-        if rule == "none" and part[~kept].max(initial=0.0) > DROPPED:
-            warnings.warn(f"Estimated error in splitting of dispersion coeffs is {part[~kept].max():.8g}", InputWarning, stacklevel=2)
+        if rule != "geometric" and part[~large].max(initial=0.0) > DROPPED:
+            warnings.warn(f"Estimated error in splitting of dispersion coeffs is {part[~large].max():.8g}", InputWarning, stacklevel=2)
 
     def sums(self, types) -> tuple[float, float, np.ndarray]:
         """Sum of C6 over all pairs of atoms, ordered and with themselves; over atoms with themselves; of each factor over atoms."""

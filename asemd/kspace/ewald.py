@@ -26,7 +26,8 @@ class Ewald(KSpace):
     chooser = staticmethod(ewald.chooser)
 
     def choose(self, system):
-        self.kmax = np.array(self.modify["kmax/ewald"], np.int64)
+        given = np.array(self.modify["kmax/ewald"], np.int64)
+        self.kmax = given * given.all()       # with one of them 0 LAMMPS chooses all three
         self.tilted = self._tilted(system)
         vectors, self.most = system.box.cell * self.stretch[:, None], np.zeros((2, 3), np.int64)
         arguments = vectors, self.kmax, self.g_ewald, self.strength, float(self.n), self.accuracy

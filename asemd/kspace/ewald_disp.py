@@ -47,8 +47,8 @@ class EwaldDisp(Ewald):
         self.squares_mu = float((np.asarray(system.extra["mu"]) ** 2).sum()) if self.dipoles else 0.0
         if self.dispersion is not None:
             self.b2 = self.dispersion.sums(system.type)[1]
-            if self.dispersion.rule == "arithmetic":      # LAMMPS's estimates count one sixteenth of it then
-                self.b2 /= 16.0
+            if self.dispersion.rule == "arithmetic":      # LAMMPS's estimates count a quarter of it then
+                self.b2 /= 4.0
         super().prepare(system, interactions, units, cutoff)
 
     def first_guess(self):
@@ -150,9 +150,9 @@ class DipoleWavesTerm(Waves):
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads
-        self.constants = np.append(self.constants[:7], s.squares_mu)
+        self.constants = np.append(self.constants[:7], [s.squares_mu, s.scale])
         m, top = self.make_waves(engine, s.waves, s.top)
-        self.all_sums, self.sums, self.most = np.zeros((nth, m, 2)), np.zeros((nth, 8)), np.zeros(3, np.int64)
+        self.all_sums, self.sums, self.most = np.zeros((nth, m, 4)), np.zeros((nth, 8)), np.zeros(3, np.int64)
         self.table = np.zeros((3, 1 + top, 2, 0))
 
     def make_room(self, slots):

@@ -84,8 +84,8 @@ class MSM(KSpace):
         return 0.0
 
     def choose(self, system):
-        if self.q2 == 0.0:
-            raise InputError(f"kspace_style {self.style}: all charges are 0; use no kspace_style")
+        if not self.q2:
+            warnings.warn("Using kspace solver on system with no charge", InputWarning, stacklevel=2)
         if abs(self.qsum) > 1e-5:
             raise InputError(f"kspace_style {self.style}: charges must add up to 0, here they add up to {self.qsum:g}")
         self.order = self.modify["order"] or 10
@@ -105,7 +105,8 @@ class MSM(KSpace):
         if any(given) and self.mesh != tuple(given):
             warnings.warn("Number of MSM mesh points changed to be a multiple of 2", InputWarning, stacklevel=2)
         self.spacing = self.prd / self.mesh
-        if adjust:
+        self.adjusts = adjust and self.q2 > 0.0       # without charges there is no error to match
+        if self.adjusts:
             p = self.order - 1
             self.cutoff = (self.cutoff**p * self.mesh_error / self.accuracy) ** (1.0 / p)
             for settings, name in self.cut_by:
@@ -155,7 +156,7 @@ class MSM(KSpace):
 
     def lines(self):
         out = ["MSM initialization ..."]
-        if self.modify["cutoff/adjust"]:
+        if self.adjusts:
             out.append(f"WARNING: Adjusting Coulombic cutoff for MSM, new cutoff = {self.cutoff:.8g}")
         return [*out, "  using polynomial approximation for long-range coulomb",
                 f"  estimated absolute RMS force accuracy = {self.mesh_error:.8g}",

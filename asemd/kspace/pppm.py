@@ -92,8 +92,7 @@ class PPPM(KSpace):
             mesh = self.fine_enough_ad() if self.ad else self.fine_enough()
             if self._tilted(system):
                 mesh = [int(m) + 1 for m in np.abs(upright) @ (np.array(mesh) / self.prd)]
-            mesh = [with_small_factors(m) for m in mesh]
-        self.mesh = tuple(mesh)
+        self.mesh = tuple(map(with_small_factors, mesh))
         self.spacing = self.prd / self.mesh
         if self._tilted(system):
             self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
@@ -164,7 +163,7 @@ class PPPM(KSpace):
         """Estimated error of forces that the mesh makes."""
         if self.ad:
             quality = pppm_ad.quality_of(self.order)(np.array(self.mesh), self.prd, self.g_ewald)
-            return math.sqrt(quality / self.n) * self.q2 / self.volume
+            return math.sqrt(max(quality, 0.0) / self.n) * self.q2 / self.volume
         return math.sqrt(sum(self.error(h, length) ** 2 for h, length in zip(self.spacing, self.prd)) / 3.0)
 
     @property
@@ -241,7 +240,7 @@ class PPPMTerm(KSpaceTerm):
         self.pieces[:, :self.order] = pieces(self.order).T
         # a sum over images that LAMMPS's estimate finds large enough
         self.images = (np.abs(s.upright) @ (s.g_ewald / (math.pi * self.numbers)) * (-math.log(1e-7)) ** 0.25).astype(np.int64)
-        self.wrap = np.arange(3 * max(self.mesh) + 8)[None] % self.numbers[:, None]
+        self.wrap = np.arange(4 * max(self.mesh) + 8)[None] % self.numbers[:, None]
         self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
         self.lengths, self.own = np.zeros(3), np.zeros((3, 2))
         single = engine.settings.precision == "mixed" and s.accuracy_relative >= SINGLE

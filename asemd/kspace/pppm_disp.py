@@ -98,12 +98,12 @@ class PPPMDisp(PPPM):
     def coulomb_error(self, mesh, g: float) -> float:
         """Estimated error of forces by that mesh."""
         quality = pppm_disp.quality_of(self.order, self.ad)(np.array(mesh), self.prd, g, False)
-        return math.sqrt(quality / self.n) * self.q2 / self.volume
+        return math.sqrt(max(quality, 0.0) / self.n) * self.q2 / self.volume
 
     def dispersion_error(self, mesh, g: float) -> float:
         """The same of the attraction."""
         quality = pppm_disp.quality_of(self.order6, self.ad)(np.array(mesh), self.prd, g, True)
-        return math.sqrt(quality / self.n) * self.c6 / self.volume
+        return math.sqrt(max(quality, 0.0) / self.n) * self.c6 / self.volume
 
     @property
     def mesh_error(self):

@@ -50,7 +50,7 @@ class PPPMStagger(PPPM):
     @property
     def mesh_error(self):
         quality = pppm_stagger.quality_of(self.order, self.ad)(np.array(self.mesh), self.prd, self.g_ewald, weights(self.order))
-        return math.sqrt(quality / self.n) * self.q2 / self.volume
+        return math.sqrt(max(quality, 0.0) / self.n) * self.q2 / self.volume
 
     def lines(self):
         return ["PPPMStagger initialization ...", *super().lines()[1:]]

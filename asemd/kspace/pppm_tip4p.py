@@ -42,9 +42,12 @@ class ChargesOnSites(OnSites):
 
     def hand_over(self, engine, energy, virial):
         """As others, but the energy of a charge by itself stays with its oxygen atom."""
-        s, oxygen = self.solver, self._atoms[:, 0]
+        if not len(energy):
+            super().hand_over(engine, energy, virial)
+            return
+        s, oxygen, volume = self.solver, self._atoms[:, 0], self.held[3, 0]
         q = engine.system.q[oxygen]
-        own = self.constants[1] * (s.g_ewald * q * q / math.sqrt(math.pi) + 0.5 * math.pi * q * s.qsum / (s.g_ewald**2 * s.volume))
+        own = self.constants[1] * (s.g_ewald * q * q / math.sqrt(math.pi) + 0.5 * math.pi * q * s.qsum / (s.g_ewald**2 * volume))
         energy[oxygen] += own
         super().hand_over(engine, energy, virial)
         energy[oxygen] -= own
