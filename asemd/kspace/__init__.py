@@ -118,8 +118,8 @@ class KSpace(ABC):
             if not periodic[:2].all() or tuple(system.box.boundary[2]) != ("f", "f"):
                 raise InputError(f"{name} with kspace_modify slab needs boundary p p f (of ase.Atoms pbc = 1 1 0), "
                                  f"here it is {' '.join(system.box.boundary)}")
-            if self._tilted(system):
-                raise InputError(f"{name}: kspace_modify slab needs a box that is not triclinic")
+            if np.count_nonzero(system.box.cell[2, :2]) or np.count_nonzero(system.box.cell[:2, 2]):
+                raise InputError(f"{name}: kspace_modify slab needs a third box vector along z and the others across it")
         elif not periodic.all():
             raise InputError(f"{name} needs a box that is periodic in all directions, here is boundary {' '.join(system.box.boundary)}; "
                              "for slabs use boundary p p f and kspace_modify slab 3.0, for wires boundary f f p and kspace_modify wire "

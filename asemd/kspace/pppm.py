@@ -86,16 +86,15 @@ class PPPM(KSpace):
 
     def choose_mesh(self, system) -> None:
         """`mesh` and `spacing` for the order."""
-        upright = self.upright / self.stretch[:, None]
         mesh = list(self.modify["mesh"])
         if not any(mesh):
             mesh = self.fine_enough_ad() if self.ad else self.fine_enough()
             if self._tilted(system):
-                mesh = [int(m) + 1 for m in np.abs(upright) @ (np.array(mesh) / self.prd)]
+                mesh = [int(m) + 1 for m in np.abs(self.upright) @ (np.array(mesh) / self.prd)]
         self.mesh = tuple(map(with_small_factors, mesh))
         self.spacing = self.prd / self.mesh
         if self._tilted(system):
-            self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
+            self.spacing = 1.0 / np.linalg.solve(self.upright, np.array(self.mesh, float))
 
     def is_too_wide(self, mesh, order: int) -> bool:
         """Whether ``kspace_modify overlap no`` forbids the weights of that order: those of an atom that is as far outside of the box as it
