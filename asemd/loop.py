@@ -43,7 +43,6 @@ class Loop:
     dt : float
         Time step, in the system's units.
     step : int
-        Number of the present step.
     """
 
     in_levels = False       # whether fixes act on the forces of one level after the other
@@ -97,12 +96,17 @@ class Loop:
         e.forces(True)
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
-        first = e.per_atom(self._collect(), needs)      # fixes may move atoms
+        self._wanted = needs
+        self.first_shares()
         self._set_up_fixes()
-        self._collect().take_shares(first)
+        self._collect().take_shares(self._first)
         e.timings, e.builds, e.dangerous = dict.fromkeys(e.timings, 0.0), 0, 0
         self.watchdog.begin()
         return self.result
+
+    def first_shares(self) -> None:
+        """Atoms' shares that the first step shows, as soon as there are forces: fixes may move atoms then."""
+        self._first = self.engine.per_atom(self._collect(), self._wanted)
 
     def _set_up_fixes(self) -> None:
         """One after the other: `Fix.setup`, and its part in the first forces."""
@@ -178,8 +182,7 @@ class Loop:
             while self.step < last and not (interrupt.asked or self.halted):
                 whole, due = self._next_whole(self.step), self._next_end(self.step)
                 if self._fleeting:
-                    ends = due <= last and not atom_shares.KINDS.isdisjoint(self._needs(due))
-                    whole = min([whole, *[last] * bool(shares), *[due] * ends])
+                    whole = min([whole, *[last] * bool(shares), *[due] * (due <= last and bool(atom_shares.KINDS & self._needs(due)))])
                 if whole == self.step + 1:
                     self._python_step(want and whole == last, shares if whole == last else set())
                 else:
@@ -212,8 +215,7 @@ class Loop:
         """The `end_of_step` hooks in Python that are due."""
         began = time.perf_counter()
         if needs:
-            self._collect(late=True)
-            self.engine.per_atom(self.result, needs)
+            self.engine.per_atom(self._collect(late=True), needs)
             self._in_sync = True
         for n in self._ends:
             if self.fixes[n].next_end(self.step - 1) == self.step:
@@ -353,8 +355,7 @@ class Loop:
             e.store()
             raise SimulationError(f"step {self.step}: {error}") from None
         if needs:
-            self._collect()
-            e.per_atom(self.result, needs)
+            e.per_atom(self._collect(), needs)
         for name in ("post_force", "final_integrate", "end_of_step"):
             self._hook(name)
 

@@ -26,6 +26,8 @@ def case(solver, *more, fixes=NVE, box=(), boundary="p p p", values=(), runs=("r
 
 
 CASES = {
+    # the first: in a process that had other scenes before LAMMPS has other numbers for it
+    "ewald triclinic, kmax": case(["kspace_style ewald 1e-5", "kspace_modify kmax/ewald 7 4 3"], box=TILT),
     "pppm": case(["kspace_style pppm 1e-4"]),
     "pppm order 3": case(["kspace_style pppm 1e-5", "kspace_modify order 3"]),
     "pppm order 6, mesh and splitting given": case(["kspace_style pppm 1e-4", "kspace_modify order 6 mesh 9 10 12 gewald 0.33"]),
@@ -57,7 +59,6 @@ CASES = {
     "pppm/stagger ad": case(["kspace_style pppm/stagger 1e-4", "kspace_modify gewald 0.4 mesh 8 9 10 diff ad order 4"]),
     "ewald": case(["kspace_style ewald 1e-4"]),
     "ewald triclinic, shares": case(["kspace_style ewald 1e-5"], *SHARES, box=TILT, values=["c_es", "c_em", "c_ss[1]", "c_ss[2]", "c_sm"]),
-    "ewald triclinic, kmax": case(["kspace_style ewald 1e-5", "kspace_modify kmax/ewald 7 4 3"], box=TILT),
     "ewald kmax": case(["kspace_style ewald 1e-5", "kspace_modify kmax/ewald 4 5 6"]),
     "ewald slab": case(["kspace_style ewald 1e-4", "kspace_modify slab 2.5"], boundary="p p f",
                        fixes=[*NVE, "fix w all wall/reflect zlo EDGE zhi EDGE"]),

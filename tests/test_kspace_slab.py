@@ -24,7 +24,8 @@ def charges(n: int = 10) -> tuple[np.ndarray, np.ndarray]:
 def lines(box: str, x, q, solver: str, modify: str = "slab 3.0") -> list[str]:
     pair = "lj/long/coul/long cut long 5" if "disp" in solver else "coul/long 5"
     return ["units real", "atom_style charge", "boundary p p f", "box tilt large", f"region r {box}", "create_box 1 r",
-            *(f"create_atoms 1 single {a} {b} {c}" for a, b, c in x), "mass 1 10", *(f"set atom {k} charge {c}" for k, c in enumerate(q, 1)),
+            *(f"create_atoms 1 single {a} {b} {c}" for a, b, c in x), "mass 1 10",
+            *(f"set atom {k} charge {c}" for k, c in enumerate(q, 1)),
             f"pair_style {pair}", "pair_coeff * * " + "0.1 1.0" * ("disp" in solver), "pair_modify table 0", f"kspace_style {solver} 1e-5",
             f"kspace_modify {modify} gewald 0.45", "thermo_modify norm no", "run 0"]
 

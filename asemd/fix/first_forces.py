@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 def forces_again(loop: Loop, fix: Fix) -> None:
     """Compute the first forces, and what the fixes before `fix` do to them, in its `setup`."""
     loop.engine.forces(True)
-    loop._collect()
+    loop.first_shares()
     for n in range(loop.fixes.index(fix)):
         if "post_force" in loop._kinds[n]:
             loop._call(n, "post_force")
