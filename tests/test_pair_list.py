@@ -73,6 +73,16 @@ def test_closest_images_and_compute_pair(pairs):
     assert lmp.get_thermo("c_p") == pytest.approx(2.0 * (r - 1.0) ** 2, rel=1e-10)
 
 
+@pytest.mark.parametrize("compute", ["group/group all", "pair/local eng", "fep 300 pair lj/cut epsilon 1 1 v_d"])
+def test_single_pairs_are_refused(pairs, compute):
+    """Listed pairs are not in the list of neighbours: what goes over that would miss them."""
+    text = script(pairs, HYBRID).replace("thermo_style", f"variable d equal 0.1\ncompute c all {compute}\n" + (
+        "compute r all reduce sum c_c inputs local\n" if "local" in compute else "") + "thermo_style")
+    column = "c_r" if "local" in compute else "c_c[1]" if "fep" in compute else "c_c"
+    with pytest.raises(InputError, match="list names its pairs one by one"):
+        run(text.replace("custom pe", f"custom {column} pe"))
+
+
 @pytest.mark.parametrize("line, message", [
     ("1 2 foo 1 2", "function harmonic morse lj126 quartic.*pairs.txt:1"), ("1 2 harmonic 1", "harmonic needs 2 coefficients"),
     ("1 2 harmonic 1 2 3 4", "got 4 values"), ("1 x harmonic 1 2", "atom ID"), ("1 2 harmonic x 1", "expected a number, got 'x'"),

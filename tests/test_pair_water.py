@@ -189,6 +189,16 @@ def test_hydrogen_bonds_of_excluded_types_and_of_hydrogen_types(acceptor, weight
     assert wheel.ran(lines).get_thermo("pe") == pytest.approx(want, rel=1e-12)
 
 
+@pytest.mark.parametrize("compute", ["group/group all", "pair/local eng"])
+def test_single_pairs_are_refused(compute, tmp_path):
+    """Charges are not where atoms are."""
+    lines = script(data(tmp_path / "w.data"), *CASES[0]).splitlines()
+    more = [f"compute c all {compute}", *["compute r all reduce sum c_c inputs local"] * ("local" in compute),
+            f"thermo_style custom {'c_r' if 'local' in compute else 'c_c'}", "run 0"]
+    with pytest.raises(Exception, match="charges that are not on atoms"):
+        wheel.ran([*lines, *more])
+
+
 def test_hydrogen_atoms_follow_their_oxygen_atom(tmp_path):
     with pytest.raises(Exception, match="TIP4P hydrogen is missing|incorrect atom type"):
         Lammps(cmdargs=["-log", "none", "-screen", "none"]).commands_string(script(data(tmp_path / "w.data", "H O H"), *CASES[0]))

@@ -34,6 +34,8 @@ SCENES = {
     "ewald, switched": LONG.format("ewald").replace("lj/cut/coul/long 6.0", "lj/switch3/coulgauss/long 6.0 1.0").replace(
         "0.1 3.0", "0.1 3.0 1.2"),
     "noise": "pair_style dpd 300.0 6.0 4711\npair_coeff * * 3.0 1.0",
+    "listed pairs": "pair_style hybrid/overlay lj/cut 5.0 list pairs.txt 5.0\npair_coeff * * lj/cut 0.1 3.0\npair_coeff * * list",
+    "spheres": "set group all diameter 3.0\nset group all mass 20\npair_style lj/expand/sphere 4.0\npair_coeff * * 0.1 1.5",
     "many bodies": "pair_style sw\npair_coeff * * two.sw A A",
     "many bodies, tersoff": "pair_style tersoff\npair_coeff * * two.tersoff A A",
 }
@@ -48,9 +50,11 @@ def script(request, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two.sw").write_text(SW)
     (tmp_path / "two.tersoff").write_text(TERSOFF)
+    (tmp_path / "pairs.txt").write_text("1 2 harmonic 1.0 3.0\n")
     dense = dict(SALT, lattice=SALT["lattice"].replace("6.0", "3.0"), cells=6)
-    units = dense if request.param.startswith("many bodies") else SALT
-    (tmp_path / "in.x").write_text(ATOMS.format(**units, more=SCENES[request.param]) + "run 2\n")
+    units = dense if request.param.startswith("many bodies") else SALT | {"style": "sphere"} if request.param == "spheres" else SALT
+    text = ATOMS.format(**units, more=SCENES[request.param]) + "run 2\n"
+    (tmp_path / "in.x").write_text(text.replace("mass * 20\n", "") if request.param == "spheres" else text)
     return request.param
 
 

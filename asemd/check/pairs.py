@@ -38,7 +38,8 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
             values = [float(table[row + 2 + k, i, j]) for k in range(len(part.rows))]
             values += [float(c) for c in numbers[constant:constant + len(part.constants)]] + list(arrays[array:array + len(part.arrays)])
             if cut2 > 0.0 and (qq or not part.charged):
-                values = [qq] * part.charged + values
+                radii = [_radius(case, t) for t in (i, j)] if part.sized else []
+                values = [qq] * part.charged + radii + values
                 pieces.append((part.function, part.coordinate == "r2", cut2, offset, values,
                                whole if part.long else coulomb if part.charged else weight))
                 if part.long and not part.charged and weight != whole:
@@ -59,6 +60,11 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
                 slope += weight * d * (2.0 * r if squared else 1.0)
         return (total, slope) if math.isfinite(total) else (math.inf, math.inf)
     return of
+
+
+def _radius(case, t: int) -> float:
+    """Mean radius of the atoms of a type."""
+    return float(case.system.extra["radius"][case.system.type == t].mean())
 
 
 def tabled(case) -> list:

@@ -12,6 +12,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.exclusions import Exclusions
+from asemd.items_term import ItemsTerm
 from asemd.kernels import surroundings as loops
 from asemd.kernels.hooks import bound
 from asemd.kernels.rows import extent
@@ -194,7 +195,7 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         A style whose forces are not those of its energy (a factor for each atom).
     """
     engine, m = state.engine, len(pairs.i)
-    check_pairwise([*engine.many_terms, *engine.pair_terms] if terms is None else terms)
+    check_pairwise(all_of(engine) if terms is None else terms)
     energy, force = np.zeros(m), np.zeros((m, 3))
     x, q = np.zeros((3, 2 * m)), np.zeros(2 * m)
     x[:, :m] = pairs.d.T
@@ -228,6 +229,12 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
     return energy, force
 
 
+def all_of(engine) -> list:
+    """What has the pair styles of an engine, those too whose pairs are no matter of distance."""
+    named = [t.owner.use for t in engine.terms if isinstance(t, ItemsTerm)]
+    return [*engine.many_terms, *engine.pair_terms, *named]
+
+
 def check_pairwise(terms) -> None:
     """Refuse pair styles without energies of single pairs that are functions of the distance.
 
@@ -242,6 +249,10 @@ def check_pairwise(terms) -> None:
                              "atoms")
         if term.style.oriented:
             raise InputError(f"pair style {term.style.name} depends on the orientation of atoms: single pairs are not available")
+        if term.style.on_sites:
+            raise InputError(f"pair style {term.style.name} has charges that are not on atoms: single pairs of atoms are not available")
+        if hasattr(term.style, "items_style"):
+            raise InputError(f"pair style {term.style.name} names its pairs one by one: these are not available, use compute pair")
         if term.style.dielectric:
             raise InputError(f"pair style {term.style.name} depends on dielectric constants of atoms: single pairs are not available")
 

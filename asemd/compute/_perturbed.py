@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import check_pairwise
+from asemd.compute._pairs import all_of, check_pairwise
 from asemd.errors import InputError, nearest
 from asemd.words import bounds
 
@@ -90,7 +90,7 @@ def perturbed_terms(state, changes, what: str) -> list:
             for pair in [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]:
                 if place := held(use, pair, name):
                     place[0][place[1]] = held(first, pair, name)[2] + delta
-    check_pairwise([*state.engine.many_terms, *state.engine.pair_terms])
+    check_pairwise(all_of(state.engine))
     terms = [t for t in new.pair_terms(n, state.units) if t.style.parts]
     for kind, *pair in state.engine.settings.exclude:
         if kind == "type":

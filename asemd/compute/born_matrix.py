@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import check_pairwise, half
+from asemd.compute._pairs import all_of, check_pairwise, half
 from asemd.compute.pressure import Pressure
 from asemd.curvatures import bonded_items, of_list, of_pairs
 from asemd.engine import Engine
@@ -107,8 +107,9 @@ class BornMatrix(Compute):
         out = np.zeros((6, 6))
         if "pair" in chosen and engine.many_terms:
             raise InputError(f"compute born/matrix: pair style {engine.many_terms[0].style.name} has no second derivatives: use numdiff")
+        if "pair" in chosen:
+            check_pairwise(all_of(engine))
         if "pair" in chosen and engine.pair_terms:
-            check_pairwise(engine.pair_terms)
             for d, b in _pairs(state, mask):
                 add_pairs(out, d, b)
         for term in engine.terms:

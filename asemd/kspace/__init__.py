@@ -9,6 +9,7 @@ Whatever decides about digits is LAMMPS's: choice of the parameters, estimates o
 from __future__ import annotations
 
 import math
+import re
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -23,6 +24,7 @@ from asemd.kspace_settings import DEFAULTS
 from asemd.registry import class_of
 
 __all__ = ["KSpace", "hold", "solve"]
+CUT = re.compile("coul/(cut|debye|dsf|wolf|charmm|gromacs)")      # pair styles that leave nothing to a solver
 EXAMPLES = ("pppm", "ewald", "pppm/disp", "ewald/disp", "msm")      # the first one that fits is named in messages
 
 
@@ -264,6 +266,10 @@ def solve(system, interactions, units, skin: float) -> KSpace | None:
     mine = [use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings)]
     if not mine:
         raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as {solver.partner}")
+    twice = [use.label for use in interactions.uses["pair"] if CUT.search(use.style.name)]
+    if twice:
+        warnings.warn(f"pair style {twice[0]} has all of the Coulomb energy of its pairs, of which kspace_style {name} has a part too: charges "
+                      f"count twice; use {'coul/msm' if solver.flag == 'msm' else 'coul/long'} for all pairs", InputWarning, stacklevel=2)
     solver.skin = skin
     solver.prepare(system, interactions, units, solver.take(mine, interactions, system))
     interactions.long_range = solver.constants

@@ -12,7 +12,6 @@ from asemd.engine import Engine
 from asemd.kernels.cluster import CLUSTER
 from asemd.manybody_term import ManyBodyTerm
 from asemd.term import BondedTerm, PairListTerm, PairRowsTerm
-from asemd.topology import ATOMS
 
 
 @dataclass
@@ -99,8 +98,7 @@ def holdings(e: Engine, per_atom: bool = False) -> list[Holding]:
         elif isinstance(t, ManyBodyTerm):
             out.append(Holding(f"pair {t.style.name}", 24.0 * cap + 10.0 * pairs, "rows of all neighbours", "pair_style"))
         elif isinstance(t, BondedTerm):
-            k = ATOMS[t.category]
-            m = len(t.items)
+            m, k = t.items.shape
             out.append(Holding(f"{t.category} {t.style.name}", m * (8.0 * k + 12.0) + 4.0 * n, f"{m} {t.category}s in order of the atoms",
                                f"{t.category}_style"))
         elif isinstance(t, PairListTerm) and t.pairs == "special":

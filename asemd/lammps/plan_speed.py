@@ -73,7 +73,7 @@ def expected(e: Engine, costs: Costs, dt: float, moving: bool = True, rows: floa
     parts = {"Pair": 0.0, "Bond": 0.0}
     for t in e.terms:
         if isinstance(t, BondedTerm):
-            parts["Bond"] += len(t.items) * costs.items[t.category]
+            parts["Bond"] += len(t.items) * costs.items["bond" if t.category == "pair" else t.category]
             continue
         if isinstance(t, EmbeddedTerm):
             parts["Pair"] += pairs * EMBEDDED * costs.pair

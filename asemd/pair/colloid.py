@@ -42,7 +42,7 @@ def spheres(r, A: "energy", sigma: "distance", a1: "distance", a2: "distance"):
               - (2.0 * r + 7.0 * d - 7.0 * n3 * w) * w7 - (2.0 * r - 7.0 * d - 7.0 * n4 * x) * x7)
     s2 = sigma * sigma
     front = A * s2 * s2 * s2 / (37800.0 * r)
-    return (e + front * total if apart else math.inf), (slope + front * (change - total / r) if apart else math.inf)
+    return (e + front * total if apart else 1e999), (slope + front * (change - total / r) if apart else 1e999)      # infinite
 
 
 def solvated(r2, A: "energy", sigma: "distance", radius: "distance"):
@@ -57,7 +57,7 @@ def solvated(r2, A: "energy", sigma: "distance", radius: "distance"):
     slope = 45.0 * a2 * a2 + r2 * (126.0 * a2 + 45.0 * r2)
     x = s6 * w3 * w3
     apart = r > radius
-    return (front * (1.0 - p * x) if apart else math.inf), (front * (3.0 * w - x * (slope + 9.0 * p * w)) if apart else math.inf)
+    return (front * (1.0 - p * x) if apart else 1e999), (front * (3.0 * w - x * (slope + 9.0 * p * w)) if apart else 1e999)
 
 
 def spheres_d2(r, A, sigma, a1, a2):

@@ -4,7 +4,8 @@ $$E=\tfrac12\sum_i\sum_{j\ne i}\phi_{ij}(r_{ij})+\tfrac12\sum_iq_i\sigma_i,\quad
 \sigma_i=\sum_{j\ne i}q_j\psi_{ij}(r_{ij})$$
 $$\eta_{ji}=A_\eta(\chi_j-\chi_i)f_c(r;r_{s,\eta},r_{c,\eta}),\quad\psi=A_\psi e^{-\zeta r}f_c(r;r_{s,\psi},r_{c,\psi})$$
 
-and $\phi$ with two exponentials or two powers of the distance. As in LAMMPS the functions are tables of 5000 values, cubic in between.
+and $\phi$ with two exponentials or two powers of the distance, less $q_{0,i}q_{0,j}\psi_{ij}$ of the charges q0 in the file. As in
+LAMMPS the functions are tables of 5000 values, cubic in between.
 The file has lines ``global:``, ``element:`` and ``pair:``; ``pair_coeff * * EL1 EL2 ... FILE`` names the elements first, then for each
 type one of them.
 
@@ -137,6 +138,7 @@ class EmbeddedIon(ManyBody):
                 at[key] = len(blocks) * (POINTS - 1)
                 a, b = (data[(e,)]["negativity"] for e in key)
                 values = functions(pairs[key], b - a, edges, r) * np.array([[1.0], [unit], [unit]])
+                values[2] -= data[(key[0],)]["q0"] * data[(key[1],)]["q0"] * values[1]
                 blocks.append(polynomials(values, flat=True).swapaxes(0, 1).reshape(POINTS - 1, 12))
             offset[i, j] = at[key]
             rows[0, i, j] = cuts[key] ** 2

@@ -1,9 +1,10 @@
 r"""Tersoff potential of Kumagai: another angular term and a smoother cutoff, fitted to elastic constants and the melting point of silicon.
 
-$$b_{ij}=(1+\zeta_{ij}^\eta)^{-1/2n},\quad\zeta_{ij}=\sum_{k\ne i,j}f_C(r_{ik})\,g(\theta)\,e^{\alpha^\beta(r_{ij}-r_{ik})^\beta},\quad
+$$b_{ij}=(1+(\beta_t\zeta_{ij})^\eta)^{-1/2n},\quad
+\zeta_{ij}=\sum_{k\ne i,j}f_C(r_{ik})\,g(\theta)\,e^{\alpha^\beta(r_{ij}-r_{ik})^\beta},\quad
 g=c_1+\frac{c_2(h-\cos\theta)^2}{c_3+(h-\cos\theta)^2}\big[1+c_4e^{-c_5(h-\cos\theta)^2}\big]$$
 
-The rest is as in `pair tersoff`; beta is 1 or 3.
+The rest is as in `pair tersoff`; beta is 1 or 3, and beta_t, ``beta_ters`` of the file, is 1 in potentials that were published.
 """
 from __future__ import annotations
 
@@ -36,11 +37,12 @@ def angular(x, p):
 
 def order(zeta, p):
     """Bond order and its derivative by zeta."""
-    if zeta <= 0.0:
+    z = p[20] * zeta
+    if z <= 0.0:
         return 1.0, 0.0
-    t = math.pow(zeta, p[15])
+    t = math.pow(z, p[15])
     if not t < 1e300:
-        b = math.pow(zeta, -0.5 * p[15] / p[14])
+        b = math.pow(z, -0.5 * p[15] / p[14])
         return b, -0.5 * p[15] / p[14] * b / zeta
     b = math.pow(1.0 + t, -0.5 / p[14])
     return b, -0.5 * p[15] / p[14] * b * t / ((1.0 + t) * zeta)
@@ -48,8 +50,8 @@ def order(zeta, p):
 
 class TersoffMod(Tersoff):
     names = "m alpha h eta beta_ters lambda2 B R D lambda1 A n c1 c2 c3 c4 c5"
-    columns = "reach inner R D A lambda1 B lambda2 alpha m c3 c1 c4 h n eta c2 c3 c4 c5".split()
-    positive = "lambda2 B R D lambda1 A n"
+    columns = "reach inner R D A lambda1 B lambda2 alpha m c3 c1 c4 h n eta c2 c3 c4 c5 beta_ters".split()
+    positive = "eta beta_ters lambda2 B R D lambda1 A n"
 
 
 HELPERS = (taper, repulsion, attraction, angular, order, longer)

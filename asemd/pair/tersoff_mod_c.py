@@ -11,7 +11,7 @@ from asemd.style import register
 def repulsion(r, p):
     fc, slope = taper(r, p)
     e = p[4] * math.exp(-p[5] * r)
-    return fc * (e + p[20]), slope * (e + p[20]) - fc * p[5] * e
+    return fc * (e + p[21]), slope * (e + p[21]) - fc * p[5] * e
 
 
 class TersoffModC(TersoffMod):
