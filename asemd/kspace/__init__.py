@@ -268,8 +268,9 @@ def solve(system, interactions, units, skin: float) -> KSpace | None:
         raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as {solver.partner}")
     twice = [use.label for use in interactions.uses["pair"] if CUT.search(use.style.name)]
     if twice:
-        warnings.warn(f"pair style {twice[0]} has all of the Coulomb energy of its pairs, of which kspace_style {name} has a part too: charges "
-                      f"count twice; use {'coul/msm' if solver.flag == 'msm' else 'coul/long'} for all pairs", InputWarning, stacklevel=2)
+        long = "coul/msm" if solver.flag == "msm" else "coul/long"
+        warnings.warn(f"pair style {twice[0]} has all of the Coulomb energy of its pairs, of which kspace_style {name} has a part too: "
+                      f"charges count twice; use {long} for all pairs", InputWarning, stacklevel=2)
     solver.skin = skin
     solver.prepare(system, interactions, units, solver.take(mine, interactions, system))
     interactions.long_range = solver.constants
