@@ -148,7 +148,7 @@ def test_hooks_in_python_only_when_due():
     loop = loop_of(crystal(), [NVE(), diary])
     made_in_python = []
     step = loop._python_step
-    loop._python_step = lambda energy: (step(energy), made_in_python.append(loop.step))
+    loop._python_step = lambda energy, shares: (step(energy, shares), made_in_python.append(loop.step))
     loop.setup(0, 45)
     diary.steps.clear()
     loop.advance(45)
