@@ -1,0 +1,57 @@
+"""Numbers that no formula is for: zero, huge, tiny, negative, in digits of other alphabets; four charges of two types in a small box."""
+from __future__ import annotations
+
+from bad_scenes import CASES, Case
+
+BOX = """\
+units real
+atom_style full
+region b block 0 14 0 13 0 15
+create_box 2 b
+create_atoms 1 single 3 3 3
+create_atoms 2 single 6 3 3
+create_atoms 1 single 3 7 3
+create_atoms 2 single 3 3 8
+mass * 10.0
+set type 1 charge 0.5
+set type 2 charge -0.5
+"""
+
+
+def numbers(name, text, words, at, expect="error", **more) -> None:
+    """Lines after the box and before a run of no steps, and the words of the message at one of the lines."""
+    script = f"{BOX}{text}\nrun 0\n"
+    CASES.append(Case(f"numbers {name}", expect, words.split(";") if words else [], ("in.scene", at) if at else None, text=script, **more))
+
+
+LONG = "pair_style lj/cut/coul/long 5\npair_coeff * * 0.1 3"
+for words, text in {"gewald -1": "gewald must not be negative;-1", "gewald 1e308": "too large;mesh", "order 0": "order must be 2 to 7;0",
+                    "mesh 20000 1 1": "mesh 20000 1 1;too large", "force 1e-300": "too large;mesh"}.items():
+    numbers(f"kspace_modify {words}", f"{LONG}\nkspace_style pppm 1e-4\nkspace_modify {words}", text, "run 0")
+for style in ("pppm", "ewald", "msm", "pppm/disp", "ewald/disp"):
+    numbers(f"accuracy of {style}", f"{LONG}\nkspace_style {style} 2", f"kspace_style {style};accuracy;at most 1;2", f"kspace_style {style} 2")
+numbers("accuracy 1e308", f"{LONG}\nkspace_style pppm 1e308", "at most 1;1e308", "kspace_style pppm 1e308")
+numbers("accuracy 1", f"{LONG}\nkspace_style ewald 1", "", None, "fine")
+numbers("msm of order 0", f"{LONG.replace('long', 'msm')}\nkspace_style msm 1e-3\nkspace_modify order 0", "order must be 4, 6, 8 or 10;0", "run 0")
+for style in ("pppm", "ewald"):
+    numbers(f"Coulomb cutoff 0 {style}", f"{LONG.replace('long 5', 'long 5 0')}\nkspace_style {style} 1e-4", "could not compute g_ewald;cutoff 0", "run 0")
+    numbers(f"charges beyond measure {style}", f"{LONG}\nset type 1 charge 1e200\nkspace_style {style} 1e-4", "could not compute g_ewald;charges", "run 0")
+numbers("Coulomb cutoff 1e-10", f"{LONG.replace('long 5', 'long 5 1e-10')}\nkspace_style pppm 1e-4", "kspace_style pppm;mesh 16385;0.0001;use", "run 0")
+numbers("mesh beyond memory", f"{LONG}\nkspace_style pppm 1e-4\nkspace_modify mesh 16000 16000 16000", "mesh 16000 16000 16000;too large;use", "run 0")
+numbers("msm cutoff 1e-320", "pair_style coul/msm 1e-320\npair_coeff * *\nkspace_style msm 1e-3", "kspace_style msm;cutoff 9.99989e-321", "run 0")
+
+# ---- digits
+for digits in ("1_0", "\uff15", "\u0665"):
+    numbers(f"cutoff {digits!a}", f"pair_style lj/cut {digits}", f"pair_style lj/cut: cut must be a number;{digits}", f"pair_style lj/cut {digits}")
+    at = f"pair_coeff * * {digits} 3"
+    numbers(f"epsilon {digits!a}", f"pair_style lj/cut 5\n{at}", f"pair_coeff lj/cut: epsilon must be a number;{digits}", at)
+for word, message in {"\u0661": "number or a range;\u0661", "9" * 5000: "999;too large", "1*" + "9" * 5000: "999;too large", "2*1": "2\\*1 is empty"}.items():
+    numbers(f"type {word[:4]!a} of {len(word)} letters", f"pair_style lj/cut 5\npair_coeff {word} * 1 3", message, f"pair_coeff {word} * 1 3")
+    numbers(f"excluded type {word[:4]!a} of {len(word)} letters", f"neigh_modify exclude type {word} 1", message, f"neigh_modify exclude type {word} 1")
+FUNCFL = "a comment\n13 27 4.05 fcc\n5 0.1 5 1.0 {}\n" + 3 * "1 2 3 {} 5\n"
+for word in ("1_0", "\uff15", "\u0665"):
+    for k, line in enumerate((FUNCFL.format(word, 4, 4, 4), FUNCFL.format(5, word, 4, 4)), 3):
+        numbers(f"{word!a} in line {k} of a funcfl file", "pair_style eam\npair_coeff * * al.eam", f"must be a number;{word}", None, files={"al.eam": line})
+numbers("mark of UTF-8 in a list", "pair_style list x.list 5\npair_coeff * *", "", None, "fine", files={"x.list": "\ufeff1 2 lj126 0.1 3\n"})
+for word in "10":
+    numbers(f"pair_modify shift {word}", f"pair_style lj/cut 5\npair_coeff * * 0.1 3\npair_modify shift {word}", "", None, "fine")
