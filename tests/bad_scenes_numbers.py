@@ -55,3 +55,38 @@ for word in ("1_0", "\uff15", "\u0665"):
 numbers("mark of UTF-8 in a list", "pair_style list x.list 5\npair_coeff * *", "", None, "fine", files={"x.list": "\ufeff1 2 lj126 0.1 3\n"})
 for word in "10":
     numbers(f"pair_modify shift {word}", f"pair_style lj/cut 5\npair_coeff * * 0.1 3\npair_modify shift {word}", "", None, "fine")
+
+# ---- cutoffs and skins
+FAR = "cutoff plus skin;images"
+numbers("pair_style 1e308", "pair_style lj/cut 1e308\npair_coeff * * 0.1 3", FAR, "run 0")
+numbers("cutoff of a pair 1e308", "pair_style lj/cut 5\npair_coeff * * 0.1 3 1e308", FAR, "run 0")
+for skin in ("1e200", "1e308"):
+    numbers(f"skin {skin}", f"pair_style lj/cut 5\npair_coeff * * 0.1 3\nneighbor {skin} bin", FAR, "run 0")
+TERSOFF = "Si Si Si 3 1 0 1.0 1.0 -0.5 0.78 1e-6 1.7 471 {R} 0.15 2.4 1830 {more}\n"
+numbers("tersoff R", "pair_style tersoff\npair_coeff * * Si.tersoff Si Si", "images", "run 0", files={"Si.tersoff": TERSOFF.format(R="1e308", more="")})
+numbers("Coulomb table", f"{LONG.replace('long 5', 'long 5 1e150')}\npair_modify table 12\nkspace_style ewald 1e-4\nkspace_modify gewald 0.3",
+        "pair_modify table;1e\\+150", "run 0")
+
+# ---- formulas without a value
+for style, coeff, words in [
+        ("mie/cut 5", "1 1 12 -1", "mie/cut, types 1 1;gamR = 12, gamA = -1;cut = 5"), ("mie/cut 5", "1 1 12 0", "no value;gamA = 0"),
+        ("morse/soft 2 0.9 5", "1 1 1e300 1", "morse/soft;no value;r0 = 1e\\+300"),
+        ("lj/charmmfsw/coul/charmmfsh 1e-320 5", "0.1 3", "lj/charmmfsw/coul/charmmfsh;too small")]:
+    numbers(f"{style} {coeff}", f"pair_style {style}\npair_coeff * * {coeff}", words, "run 0")
+for style, coeff, words in [
+        ("gauss/cut 5", "1 3 0", "sigmah must be > 0"), ("gauss/cut 5", "1 3 -1", "sigmah must be > 0;-1"),
+        ("lj/cut/soft 1 0.5 5", "1 0 1", "lj/cut/soft: sigma must be > 0"), ("lj/class2/soft 1 0.5 5", "1 -1 1", "sigma must be > 0;-1"),
+        ("lj/class2/coul/long/soft 1 0.5 10 5", "1 0 1", "lj/class2/coul/long/soft: sigma must be > 0"),
+        ("lj/pirani 5", "4 8 0 1 1", "gamma must be > 0"), ("lj/pirani 5", "4 8 6 0 1", "rm must be > 0"),
+        ("lj/pirani 5", "4 8 6 1 -1", "epsilon must not be negative")]:
+    numbers(f"{style} {coeff}", f"pair_style {style}\npair_coeff * * {coeff}", words, f"pair_coeff * * {coeff}")
+for style in ("lj/smooth/linear 0", "lj/sf 0", "lj/cubic"):
+    numbers(f"{style} of cutoff 0", f"pair_style {style}\npair_coeff * * 1 {int(style != 'lj/cubic')}", "", None, "fine")
+for style in ("lj/mdf 0 5", "buck/mdf 0 5", "lennard/mdf 0 5"):
+    numbers(style, f"pair_style {style}", "inner must be greater than 0", f"pair_style {style}")
+for name in ("Z_i", "Z_j", "ZBLcut", "ZBLexpscale"):
+    more = " ".join("-1" if n == name else "14" for n in ("Z_i", "Z_j", "ZBLcut", "ZBLexpscale"))
+    numbers(f"tersoff/zbl {name}", "pair_style tersoff/zbl\npair_coeff * * Si.tersoff Si Si", f"entry Si Si Si: {name} must be at least;-1", None,
+            files={"Si.tersoff": TERSOFF.format(R="2.85", more=more)})
+at = "pair_write 1 1 5 r 1e-200 2 table.txt LJ"
+numbers("table from 1e-200", f"pair_style lj/cut 5\npair_coeff * * 0.1 3\n{at}", "pair_write;not finite", at)
