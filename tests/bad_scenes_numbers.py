@@ -36,7 +36,10 @@ numbers("msm of order 0", f"{LONG.replace('long', 'msm')}\nkspace_style msm 1e-3
 for style in ("pppm", "ewald"):
     numbers(f"Coulomb cutoff 0 {style}", f"{LONG.replace('long 5', 'long 5 0')}\nkspace_style {style} 1e-4", "could not compute g_ewald;cutoff 0", "run 0")
     numbers(f"charges beyond measure {style}", f"{LONG}\nset type 1 charge 1e200\nkspace_style {style} 1e-4", "could not compute g_ewald;charges", "run 0")
-numbers("Coulomb cutoff 1e-10", f"{LONG.replace('long 5', 'long 5 1e-10')}\nkspace_style pppm 1e-4", "kspace_style pppm;mesh 16385;0.0001;use", "run 0")
+numbers("Coulomb cutoff 1e-10", f"{LONG.replace('long 5', 'long 5 1e-10')}\nkspace_style pppm 1e-4", "kspace_style pppm;mesh 1638[45] along an edge;0.0001;use", "run 0")
+for words in ("long 5 1e-10", "long 5"):
+    numbers(f"endless sum {words}", f"{LONG.replace('long 5', words)}\nkspace_style ewald 1e-4\nkspace_modify gewald {1e200 if words == 'long 5' else 0}",
+            "kspace_style ewald: the sum over waves;too large;use", "run 0")
 numbers("mesh beyond memory", f"{LONG}\nkspace_style pppm 1e-4\nkspace_modify mesh 16000 16000 16000", "mesh 16000 16000 16000;too large;use", "run 0")
 numbers("msm cutoff 1e-320", "pair_style coul/msm 1e-320\npair_coeff * *\nkspace_style msm 1e-3", "kspace_style msm;cutoff 9.99989e-321", "run 0")
 
@@ -90,3 +93,18 @@ for name in ("Z_i", "Z_j", "ZBLcut", "ZBLexpscale"):
             files={"Si.tersoff": TERSOFF.format(R="2.85", more=more)})
 at = "pair_write 1 1 5 r 1e-200 2 table.txt LJ"
 numbers("table from 1e-200", f"pair_style lj/cut 5\npair_coeff * * 0.1 3\n{at}", "pair_write;not finite", at)
+
+# ---- others
+at = "pair_modify mix geometric arithmetic"
+numbers("pair_modify with a value too many", f"pair_style lj/cut 5\n{at}", "unknown pair_modify keyword 'arithmetic'", at)
+numbers("pair_modify of a keyword nobody knows", "pair_style lj/cut 5\npair_modify shfit", "unknown pair_modify keyword 'shfit';did you mean shift", "pair_modify shfit")
+SPLINE = "a comment\n3\n0 0\n0 0 0 0\n1 {}\n2 1\n3 1\n" + 4 * "3\n0 0\n0 0 0 0\n1 1\n2 1\n3 1\n"
+numbers("spline of 1e308", "pair_style meam/spline\npair_coeff * * Ti.spline Ti Ti", "phi Ti Ti are too large for a spline;Ti.spline:2", None,
+        files={"Ti.spline": SPLINE.format("1e308")})
+EMPTY = "units lj\natom_style charge\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\nset type 1 charge 1\n"
+CASES.append(Case("numbers set without atoms", "error", ["set", "no atoms"], ("in.scene", "set type 1 charge 1"), text=EMPTY))
+SIZES = "Si Si Si 1 0 7 0.1 10 1 4 1 5 0 2 0 0 0\n"
+numbers("vashishta/table from 1e308", "pair_style vashishta/table 100 1e308\npair_coeff * * Si.vashishta Si Si", "vashishta/table;1e\\+308 is beyond the cutoff",
+        "pair_coeff * * Si.vashishta Si Si", files={"Si.vashishta": SIZES})
+numbers("mark of UTF-8 in a potential file", "pair_style tersoff\npair_coeff * * Si.tersoff Si Si", "", None, "fine",
+        files={"Si.tersoff": "\ufeff" + TERSOFF.format(R="2.85", more="")})

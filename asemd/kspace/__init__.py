@@ -224,9 +224,9 @@ class KSpace(ABC):
                           f"cutoff {self.cutoff:g}, a sum of squared charges or dipoles of {squares:g} (in energy) and box lengths "
                           f"{' '.join(f'{x:g}' for x in self.prd)}: check these numbers and kspace_modify")
 
-    def too_large(self, mesh) -> InputError:
-        """The message where a mesh, if there is one, does not fit into memory."""
-        needs = f"mesh {' '.join(map(str, mesh))}" if len(mesh) else "sum over waves"
+    def too_large(self, mesh=()) -> InputError:
+        """The message where a mesh, of one or three numbers, or without them a sum over waves does not fit into memory."""
+        needs = f"mesh {' '.join(map(str, mesh))}{' along an edge' * (len(mesh) == 1)}" if len(mesh) else "sum over waves"
         return InputError(f"kspace_style {self.style}: the {needs} for accuracy {self.accuracy_relative:g} and Coulomb cutoff "
                           f"{self.cutoff:g} is too large; use a lower accuracy, a larger Coulomb cutoff, or kspace_modify")
 

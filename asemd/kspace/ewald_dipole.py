@@ -69,7 +69,7 @@ class EwaldDipole(Ewald):
                 return g
         return 0.0
 
-    chooser = staticmethod(ewald_dipole.chooser)
+    chooser, error = staticmethod(ewald_dipole.chooser), staticmethod(ewald_dipole.error)
 
     @property
     def strength(self):

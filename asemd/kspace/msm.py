@@ -135,7 +135,7 @@ class MSM(KSpace):
             while self.error(length / n, length) > self.accuracy:
                 n *= 2
                 if n > MOST:
-                    raise self.too_large([n] * 3)
+                    raise self.too_large([n])
             out.append(n)
         return out
 

@@ -140,7 +140,7 @@ class PPPM(KSpace):
                 n += 1
                 spacing = length / n
             if n >= MOST:
-                raise self.too_large([n] * 3)
+                raise self.too_large([n])
             mesh.append(n + (spacing != 1.0 / self.g_ewald))
         return mesh
 
