@@ -32,10 +32,13 @@ class Bits:
             raise InputError(f"pair_modify tabinner {inner:g} must be less than the Coulomb cutoff {outer:g}")
         lowest = math.frexp(inner * inner)[1] - 1
         exponent_bits = 0
-        while 2.0 ** (2.0**exponent_bits) < outer * outer / 2.0**lowest:
+        while exponent_bits <= 8 and 2.0 ** (2.0**exponent_bits) < outer * outer / 2.0**lowest:
             exponent_bits += 1
         mantissa_bits = bits - exponent_bits
-        if not 3 <= mantissa_bits <= 23 or exponent_bits > 8:
+        if exponent_bits > 8:
+            raise InputError(f"pair_modify table: no table goes from {inner:g} to {outer:g}: choose cutoff and tabinner closer together, "
+                             "or pair_modify table 0")
+        if not 3 <= mantissa_bits <= 23:
             few = "few" if mantissa_bits < 3 else "many"
             raise InputError(f"pair_modify table {bits}: too {few} bits for a table from {inner:g} to {outer:g}")
         shift = 23 - mantissa_bits

@@ -16,6 +16,7 @@ import numpy as np
 
 from asemd.errors import InputError, InputWarning
 from asemd.potential_file import PotentialFile, Record
+from asemd.words import real
 
 
 @dataclass
@@ -97,7 +98,7 @@ class Lines:
             record = self.record(f"{what}, which has {count} values, {n} of them were read")
             words = record.words[:count - n]
             try:
-                values = np.array(words, float)
+                values = np.array([real(w) for w in words])
             except ValueError:
                 for _ in words:
                     record.number(f"a value of {what}")      # raises, with the word

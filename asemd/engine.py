@@ -128,7 +128,7 @@ class Engine:
         return mode, expanded, sparse, packed, why
 
     def few(self, n: int) -> bool:
-        return 2.1 * self.reach**3 * n < SPARSE * self.volume
+        return 2.1 * self.reach * self.reach * self.reach * n < SPARSE * self.volume
 
     def _make_terms(self) -> list:
         terms, single = [], self.settings.precision == "mixed"

@@ -77,7 +77,10 @@ class ManyBodyTerm(FactorTerm):
         longest = int(lengths.max(initial=0)) + 1
         if longest > self.width or len(self.near) != engine.threads:
             if self.blocks:       # kernels know how wide it is; not a power of two, to spare the cache's sets
-                self.width = next(w for w in (40, 72, 136, 264, 520, 1032, 2056, 4104, 8200, 16392) if w > longest + 8)
+                self.width = next((w for w in (40, 72, 136, 264, 520, 1032, 2056, 4104, 8200, 16392) if w > longest + 8), 0)
+                if not self.width:
+                    raise InputError(f"pair style {self.style.name}: an atom has {longest - 1} neighbours within cutoff plus skin, more "
+                                     "than 16380: are positions and cutoff in the units of the scene?")
                 engine.changed = True
             else:
                 self.width = longest + longest // 4 + 7 & -8

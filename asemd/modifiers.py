@@ -41,6 +41,8 @@ def modify_pair(interactions: Interactions, words: list[str]) -> None:
             continue
         if keyword in ("special", "compute/tally", "pair"):
             raise InputError(f"{what} must stand first: pair_modify pair NAME {keyword} ...")
+        if keyword not in KEYWORDS:
+            raise InputError(f"unknown pair_modify keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
         value = read.take(words, 1, what)[0]
         words = words[1:]
         if keyword in ("shift", "tail", "compute", "neigh/trim"):
@@ -49,14 +51,12 @@ def modify_pair(interactions: Interactions, words: list[str]) -> None:
                 continue
         elif keyword == "mix":
             new = read.choice(value, MIX_RULES, what)
-        elif keyword in ("table", "table/disp", "tabinner", "tabinner/disp"):
+        else:
             new = read.whole(value, what) if keyword.startswith("table") else read.number(value, what)
             if new < 0:
                 raise InputError(f"{what} must not be negative, got {value}")
             interactions.table[keyword] = new
             continue
-        else:
-            raise InputError(f"unknown pair_modify keyword {keyword!r}{nearest(keyword, KEYWORDS)}")
         if target is not None:
             if keyword == "tail":       # of the hybrid as a whole, too: without it no sub-style has a tail
                 for use in interactions.uses["pair"]:

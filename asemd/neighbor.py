@@ -112,7 +112,7 @@ class BinCell:
 
     def squeeze(self, state, ns: int, n: int, reach: float, ortho: bool, mark: bool, order: bool) -> None:
         """Leave out empty stretches where few atoms (`n`) are in much space, so that cells are small where the atoms are."""
-        if CLUSTER * self.volume <= n * reach**3:
+        if CLUSTER * self.volume <= n * reach * reach * reach:
             return
         k, low, high, places = squeezed_kernels(ortho, mark, order), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
         k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, APART * reach / self.widths, low, high, places)
@@ -124,7 +124,7 @@ class BinCell:
 def image_shifts(vectors: np.ndarray, periodic: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """All image shifts that may bring an atom within `reach`: vectors (m, 3), no shift first, and the index of each one's opposite."""
     widths = 1.0 / np.linalg.norm(np.linalg.inv(vectors), axis=0)
-    counts = [int(math.floor(reach / w)) + 1 if p else 0 for w, p in zip(widths, periodic)]
+    counts = [int(min(reach / w, MOST_IMAGES)) + 1 if p else 0 for w, p in zip(widths, periodic)]
     if math.prod(2 * c + 1 for c in counts) > MOST_IMAGES:
         raise InputError(f"cutoff plus skin, {reach:g}, is {reach / widths[periodic].min():.3g} times the width of the periodic cell: "
                          f"more than {MOST_IMAGES} images of each atom are in reach; is the cutoff in the units of the scene?")

@@ -293,9 +293,36 @@ class PairStyle(Style):
             ``pair_modify shift yes``: the offset of parts without charges is their energy at the cutoff.
         """
         if self.derived:
-            filled = {pair: {**c, **self.derived(c, settings)} for pair, c in filled.items()}
-        return pack_parts(self.parts, self.constants(settings), filled, ntypes, lambda c: self.cutoffs(c, settings), shift and self.shifts,
-                          {p.name for p in self.coeff if p.unit == "angle"})
+            filled = {pair: {**c, **self.follow(pair, c, settings)} for pair, c in filled.items()}
+        try:
+            return pack_parts(self.parts, self.constants(settings), filled, ntypes, lambda c: self.cutoffs(c, settings),
+                              shift and self.shifts, {p.name for p in self.coeff if p.unit == "angle"})
+        except ArithmeticError:
+            raise InputError(f"pair style {self.name}: a number is too large or too small for the formula, in its settings "
+                             f"({stated(settings, self.settings)}) or coefficients") from None
+
+    def follow(self, pair: tuple[int, int], c: Mapping[str, Any], settings: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What `derived` makes of the coefficients of a pair of types; zeros where no pair is within the cutoff of 0.
+
+        Raises
+        ------
+        InputError
+            The formula has no value for these coefficients.
+        """
+        try:
+            out = self.derived(c, settings)
+            if not any(isinstance(value, complex) for value in out.values()):
+                return out
+        except (ArithmeticError, ValueError):
+            if not self.reach(c, settings) > 0.0:
+                return {name: 0.0 for part in self.parts for name in part.rows if name not in c}
+        raise InputError(f"pair style {self.name}, types {pair[0]} {pair[1]}: the formula has no value for {stated(c, self.coeff)}"
+                         f"{' and ' + stated(settings, self.settings) if self.settings else ''}")
+
+
+def stated(values: Mapping[str, Any], parameters: Sequence[Parameter]) -> str:
+    """Names and values of parameters, for messages."""
+    return ", ".join(f"{p.name} = {values[p.name]:g}" for p in parameters if isinstance(values.get(p.name), (int, float)))
 
 
 def make_part(function: Callable, cut: str, by_pair) -> Part:

@@ -13,6 +13,7 @@ from typing import Any
 
 from asemd.errors import InputError, Where
 from asemd.tabulated import find_file, lines_of_file
+from asemd.words import real
 
 EV = 23.060549     # kcal/mol, LAMMPS's factor between real and metal
 CONVERT = {("metal", "real"): EV, ("real", "metal"): 1.0 / EV, ("metal", "ase"): 1.0, ("real", "ase"): 1.0 / EV}
@@ -52,7 +53,7 @@ class Record:
     def _as(self, kind: Callable, name: str, expected: str):
         word = self.word(name)
         try:
-            if "_" in word or not isfinite(value := kind(word)):
+            if not isfinite(real(word)) or not isfinite(value := kind(word)):
                 raise ValueError
             return value
         except ValueError:

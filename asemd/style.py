@@ -43,6 +43,7 @@ import numpy as np
 
 from asemd.errors import InputError
 from asemd.registry import exists, find, module_of, names, register
+from asemd.words import real
 
 __all__ = ["Packed", "Parameter", "Style", "ZeroStyle", "angle", "bond", "dihedral", "exists", "find", "improper", "module_of", "names",
            "radians", "register", "units_of"]
@@ -71,7 +72,9 @@ class Parameter:
         if self.unit in ("word", "path"):
             return word
         try:
-            value = int(word) if self.unit == "integer" else float(word)
+            value: float = real(word)
+            if self.unit == "integer":
+                value = int(word)
         except ValueError:
             kind = "a whole number" if self.unit == "integer" else "a number"
             raise InputError(f"{what}: {self.name} must be {kind}, got {word!r}") from None

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from asemd.errors import InputError, InputWarning, Where, nearest
+from asemd.words import real
 
 PACKED = (b"\x1f\x8b", b"BZh", b"\xfd7zXZ", b"PK\x03\x04")      # how files of gzip, bzip2, xz and zip begin
 
@@ -104,7 +105,7 @@ def lines_of_file(path: Path, name: str, what: str) -> list[str]:
         raise InputError(f"{what}: the file is not a text file, it has bytes of value 0", Where(name, line))
     if not content.strip():
         raise InputError(f"{what}: the file is empty", Where(name, 1))
-    return content.decode("utf-8", "replace").splitlines()
+    return content.decode("utf-8-sig", "replace").splitlines()
 
 
 def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int, what: str, texts: Collection[str] = (),
@@ -158,10 +159,10 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         if word not in known:
             raise wrong(f"unknown parameter {word!r} of table {keyword}{nearest(word, known)}", k)
         count = known[word]
-        if word == "N" and rest and not re.fullmatch(r"[+-]?\d+", rest[0]):
+        if word == "N" and rest and not re.fullmatch(r"[+-]?[0-9]+", rest[0]):
             raise wrong(f"parameter N of table {keyword} needs 1 number, a whole one, got {rest[0]!r}", k)
         try:
-            parameters[word] = tuple(float(w) for w in rest[:count])
+            parameters[word] = tuple(real(w) for w in rest[:count])
         except ValueError:
             parameters[word] = ()
         if len(parameters[word]) != count:
@@ -186,7 +187,7 @@ def read_section(name: str, keyword: str, known: Mapping[str, int], columns: int
         if not re.fullmatch(r"\d+", row[0]):
             raise wrong(f"table {keyword} has {m} of {total} lines", k)
         try:
-            values[m] = [float(w) for w in row[:columns]]
+            values[m] = [real(w) for w in row[:columns]]
         except ValueError:
             raise wrong(f"line {m + 1} of table {keyword} must have {columns} numbers", k) from None
     if len(rows) < n:

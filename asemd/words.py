@@ -11,6 +11,19 @@ BIG = 1.0e20    # LAMMPS's INF in regions
 LARGEST = 2**62     # sums of two such numbers still fit into 64 bits
 
 
+def real(word: str) -> float:
+    """`float` of a word without what only Python reads: underscores, and digits of other alphabets.
+
+    Raises
+    ------
+    ValueError
+        Not a number.
+    """
+    if "_" in word or not word.isascii():
+        raise ValueError(word)
+    return float(word)
+
+
 def number(word: str, what: str) -> float:
     """A finite number.
 
@@ -20,10 +33,10 @@ def number(word: str, what: str) -> float:
         Not a number, nan or inf; the message starts with `what`.
     """
     try:
-        value = float(word)
+        value = real(word)
     except ValueError:
         raise InputError(f"{what}: expected a number, got {word!r}") from None
-    if not math.isfinite(value) or "_" in word or not word.isascii():
+    if not math.isfinite(value):
         raise InputError(f"{what}: expected a finite number, got {word!r}")
     return value
 
@@ -39,9 +52,9 @@ def whole(word: str, what: str) -> int:
 
 def yes_no(word: str, what: str) -> bool:
     """LAMMPS's logical words."""
-    if word in ("yes", "on", "true"):
+    if word in ("yes", "on", "true", "1"):
         return True
-    if word in ("no", "off", "false"):
+    if word in ("no", "off", "false", "0"):
         return False
     raise InputError(f"{what}: expected yes or no, got {word!r}")
 
@@ -67,14 +80,18 @@ def bounds(word: str, lo: int, hi: int, what: str, labels: Mapping[int, str] | N
     for number_, label in (labels or {}).items():
         if word == label:
             return number_, number_
-    match = re.fullmatch(r"(-?\d+)|(-?\d*)\*(-?\d*)", word)
+    match = re.fullmatch(r"(-?[0-9]+)|(-?[0-9]*)\*(-?[0-9]*)", word)
     if not match:
         raise InputError(f"{what}: expected a number or a range such as 2*4, got {word!r}{nearest(word, (labels or {}).values())}")
+    if len(word) > 4000:
+        raise InputError(f"{what}: {word} is too large")
     if match[1] is not None:
         first = last = int(match[1])
     else:
         first = int(match[2]) if match[2] else lo
         last = int(match[3]) if match[3] else hi
+    if lo <= last < first <= hi:
+        raise InputError(f"{what}: the range {word} is empty, its first number is above its last one")
     if first < lo or last > hi or first > last:
         raise InputError(f"{what}: {word} is outside the valid range {lo} to {hi}")
     return first, last

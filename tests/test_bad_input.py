@@ -9,6 +9,7 @@ import bad_scenes_bonded  # noqa: F401  adds its scenes to CASES
 import bad_scenes_files  # noqa: F401
 import bad_scenes_loops  # noqa: F401
 import bad_scenes_mistakes  # noqa: F401
+import bad_scenes_numbers  # noqa: F401
 import pytest
 from bad_scenes import CASES, DATA, SCRIPT, Case
 

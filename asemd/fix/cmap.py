@@ -22,7 +22,7 @@ from asemd.fix.forcing import Forcing
 from asemd.kernels.correction_map import GRID, OUT, USES, cross_terms, with_slopes
 from asemd.kernels.threads import barrier
 from asemd.topology import CROSSTERM
-from asemd.words import whole
+from asemd.words import real, whole
 
 
 def read_maps(path: str) -> np.ndarray:
@@ -39,7 +39,7 @@ def read_maps(path: str) -> np.ndarray:
             for number, line in enumerate(f, 1):
                 for word in line.split("#", 1)[0].split():
                     try:
-                        values.append(float(word))
+                        values.append(real(word))
                     except ValueError:
                         raise InputError(f"{what}: expected a number in line {number} of {path}, got {word!r}") from None
     except (OSError, UnicodeDecodeError) as e:

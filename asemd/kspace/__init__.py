@@ -25,6 +25,7 @@ from asemd.registry import class_of
 
 __all__ = ["KSpace", "hold", "solve"]
 CUT = re.compile("coul/(cut|debye|dsf|wolf|charmm|gromacs)")      # pair styles that leave nothing to a solver
+MOST = 16384       # points of a mesh along an edge, as in LAMMPS
 EXAMPLES = ("pppm", "ewald", "pppm/disp", "ewald/disp", "msm")      # the first one that fits is named in messages
 
 
@@ -59,12 +60,13 @@ class KSpace(ABC):
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
+    usual_order = 5             # of the interpolation, where kspace_modify says none
     g_ewald = skin = 0.0
 
     def __init__(self, accuracy: float, modify: Mapping[str, Any] | None = None):
         self.accuracy_relative = float(accuracy)
         self.given = dict(modify or {})
-        self.modify = {**DEFAULTS, **self.given}
+        self.modify = {**DEFAULTS, "order": self.usual_order, **self.given}
 
     @classmethod
     def from_words(cls, words: Sequence[str], modify: Mapping[str, Any] | None = None) -> KSpace:
@@ -81,10 +83,12 @@ class KSpace(ABC):
 
     @classmethod
     def read_accuracy(cls, word: str) -> float:
-        """A positive number."""
+        """A positive number, at most 1."""
         value = abs(read.number(word, f"kspace_style {cls.style}: accuracy"))
         if value == 0.0:
             raise InputError(f"kspace_style {cls.style}: the accuracy must not be 0")
+        if value > 1.0:
+            raise InputError(f"kspace_style {cls.style}: the relative accuracy must be at most 1, got {word}")
         return value
 
     # ------------------------------------------------------------------------------------------------------ what a scene needs
@@ -175,8 +179,13 @@ class KSpace(ABC):
         two_charges = interactions.coulomb_constant(units) * units.qelectron**2 / units.angstrom**2
         self.two_charges = two_charges
         self.accuracy = self.modify["force"] if self.modify["force"] >= 0.0 else self.accuracy_relative * two_charges
-        self.g_ewald = self.modify["gewald"] or self.first_guess()
-        self.choose(system)
+        if self.modify["gewald"] < 0.0:
+            raise InputError(f"kspace_modify gewald must not be negative, got {self.modify['gewald']:g}")
+        try:
+            self.g_ewald = self.modify["gewald"] or self.first_guess()
+            self.choose(system)
+        except ArithmeticError:
+            raise self.impossible(self.q2) from None
 
     def charge_squares(self, system, q: np.ndarray) -> float:
         """The sum of squared charges that estimates of errors take."""
@@ -194,8 +203,34 @@ class KSpace(ABC):
             raise InputError(f"kspace_style {self.style}: the accuracy must be positive")
         if self.q2 == 0.0:
             raise InputError(f"kspace_style {self.style}: all charges are 0; give kspace_modify gewald, or use no kspace_style")
-        g = self.accuracy * math.sqrt(self.n * self.cutoff * self.inner.prod()) / (2.0 * self.q2)
+        g = self.share_of_error(self.q2)
         return (1.35 - 0.15 * math.log(self.accuracy)) / self.cutoff if g >= 1.0 else math.sqrt(-math.log(g)) / self.cutoff
+
+    def share_of_error(self, squares: float) -> float:
+        """The accuracy in units of the error that the pair part would make without splitting; `squares` as `q2`.
+
+        Raises
+        ------
+        InputError
+            It has no logarithm.
+        """
+        error = 2.0 * squares
+        share = self.accuracy * math.sqrt(self.n * self.cutoff * self.inner.prod()) / error if math.isfinite(error) else 0.0
+        if not 0.0 < share < math.inf:
+            raise self.impossible(squares)
+        return share
+
+    def impossible(self, squares: float) -> InputError:
+        """The message where numbers are too large or too small."""
+        return InputError(f"kspace_style {self.style}: could not compute g_ewald and mesh for accuracy {self.accuracy_relative:g}, Coulomb "
+                          f"cutoff {self.cutoff:g}, a sum of squared charges or dipoles of {squares:g} (in energy) and box lengths "
+                          f"{' '.join(f'{x:g}' for x in self.prd)}: check these numbers and kspace_modify")
+
+    def too_large(self, mesh=()) -> InputError:
+        """The message where a mesh, of one or three numbers, or without them a sum over waves does not fit into memory."""
+        needs = f"mesh {' '.join(map(str, mesh))}{' along an edge' * (len(mesh) == 1)}" if len(mesh) else "sum over waves"
+        return InputError(f"kspace_style {self.style}: the {needs} for accuracy {self.accuracy_relative:g} and Coulomb cutoff "
+                          f"{self.cutoff:g} is too large; use a lower accuracy, a larger Coulomb cutoff, or kspace_modify")
 
     @abstractmethod
     def choose(self, system) -> None:
@@ -209,7 +244,8 @@ class KSpace(ABC):
     @property
     def real_error(self) -> float:
         """Estimated error of forces that the pair part makes."""
-        return 2.0 * self.q2 * math.exp(-(self.g_ewald * self.cutoff) ** 2) / math.sqrt(self.n * self.cutoff * self.volume)
+        x = self.g_ewald * self.cutoff
+        return 2.0 * self.q2 * math.exp(-x * x) / math.sqrt(self.n * self.cutoff * self.volume)
 
     def lines(self) -> list[str]:
         """What LAMMPS's log says of the solver."""

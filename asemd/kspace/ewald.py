@@ -13,7 +13,7 @@ import numpy as np
 
 from asemd.errors import SimulationError
 from asemd.kernels import ewald
-from asemd.kspace import KSpace
+from asemd.kspace import MOST, KSpace
 from asemd.kspace.term import KSpaceTerm
 
 
@@ -23,15 +23,34 @@ class Ewald(KSpace):
     style = flag = "ewald"
     groups = takes_wire = True
 
-    chooser = staticmethod(ewald.chooser)
+    chooser, error = staticmethod(ewald.chooser), staticmethod(ewald.error)
 
     def choose(self, system):
         given = np.array(self.modify["kmax/ewald"], np.int64)
         self.kmax = given * given.all()       # with one of them 0 LAMMPS chooses all three
         self.tilted = self._tilted(system)
         vectors, self.most = system.box.cell * self.stretch[:, None], np.zeros((2, 3), np.int64)
+        if not self.kmax.any():
+            self.check_size()
         arguments = vectors, self.kmax, self.g_ewald, self.strength, float(self.n), self.accuracy
         self.waves = self.chooser()(*arguments, np.zeros((0, 3), np.int64), self.most)
+
+    def check_size(self) -> None:
+        """Refuse a sum of more waves than any memory holds.
+
+        Raises
+        ------
+        InputError
+            The message says for what.
+        """
+        most = []
+        for length in self.prd:
+            n = 1
+            while n <= MOST and self.error(n, length, self.g_ewald, self.strength, self.n) > self.accuracy:
+                n *= 2
+            most.append(n)
+        if max(most) > MOST or math.prod(most) > 2**33:
+            raise self.too_large()
 
     @property
     def strength(self) -> float:

@@ -52,7 +52,7 @@ class EwaldDipole(Ewald):
             raise InputError(f"kspace_style {self.style}: the accuracy must be positive")
         if self.mu2 == 0.0:
             raise InputError(f"kspace_style {self.style}: all dipoles are 0; give kspace_modify gewald, or use no kspace_style")
-        g = self.accuracy * math.sqrt(self.n * self.cutoff * self.inner.prod()) / (2.0 * self.mu2)
+        g = self.share_of_error(self.mu2)
         g = (1.35 - 0.15 * math.log(self.accuracy)) / self.cutoff if g >= 1.0 else math.sqrt(-math.log(g)) / self.cutoff
         return self.newton(g) or g
 
@@ -69,7 +69,7 @@ class EwaldDipole(Ewald):
                 return g
         return 0.0
 
-    chooser = staticmethod(ewald_dipole.chooser)
+    chooser, error = staticmethod(ewald_dipole.chooser), staticmethod(ewald_dipole.error)
 
     @property
     def strength(self):

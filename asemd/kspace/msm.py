@@ -27,7 +27,7 @@ from numpy.polynomial import Polynomial
 from asemd.errors import InputError, InputWarning
 from asemd.kernels import msm
 from asemd.kernels.callback import Callback
-from asemd.kspace import KSpace
+from asemd.kspace import MOST, KSpace
 from asemd.kspace.term import KSpaceTerm
 
 # of order 4, 6, 8, 10: M and c' of the thesis (table 5.1, equation 4.17), and a factor that makes an estimate of the mean of its bound
@@ -66,6 +66,7 @@ class MSM(KSpace):
 
     style = flag = "msm"
     partner = "lj/cut/coul/msm"
+    usual_order = 10
 
     def check(self, system):
         name = f"kspace_style {self.style}"
@@ -88,9 +89,11 @@ class MSM(KSpace):
             warnings.warn("Using kspace solver on system with no charge", InputWarning, stacklevel=2)
         if abs(self.qsum) > 1e-5:
             raise InputError(f"kspace_style {self.style}: charges must add up to 0, here they add up to {self.qsum:g}")
-        self.order = self.modify["order"] or 10
+        self.order = self.modify["order"]
         if self.order not in BOUNDS:
             raise InputError(f"kspace_style {self.style}: order must be 4, 6, 8 or 10, not {self.order}")
+        if not self.cutoff ** (self.order - 1) > 0.0:
+            raise self.impossible(self.q2)
         # the Taylor polynomial of 1/sqrt(u) around 1 in powers of u
         degree = self.order // 2
         taylor = [math.prod(-0.5 - m for m in range(k)) / math.factorial(k) for k in range(degree + 1)]
@@ -131,6 +134,8 @@ class MSM(KSpace):
             n = 4
             while self.error(length / n, length) > self.accuracy:
                 n *= 2
+                if n > MOST:
+                    raise self.too_large([n])
             out.append(n)
         return out
 

@@ -17,7 +17,7 @@ from asemd.errors import InputError, InputWarning
 from asemd.kernels import pppm, pppm_ad
 from asemd.kernels.callback import Callback
 from asemd.kernels.stencil import WIDE
-from asemd.kspace import KSpace
+from asemd.kspace import MOST, KSpace
 from asemd.kspace.term import KSpaceTerm
 
 # Deserno and Holm 1998, table I: coefficients of the error of order 1 to 7
@@ -64,7 +64,7 @@ class PPPM(KSpace):
     largest_shift = 0.0         # of meshes, in spacings
 
     def choose(self, system):
-        self.order = self.modify["order"] or 5
+        self.order = self.modify["order"]
         if not 2 <= self.order <= 7:
             raise InputError(f"kspace_style {self.style}: order must be 2 to 7, not {self.order}")
         if self.order < self.modify["minorder"]:
@@ -91,10 +91,17 @@ class PPPM(KSpace):
             mesh = self.fine_enough_ad() if self.ad else self.fine_enough()
             if self._tilted(system):
                 mesh = [int(m) + 1 for m in np.abs(self.upright) @ (np.array(mesh) / self.prd)]
+        if self.is_too_large(mesh):
+            raise self.too_large(mesh)
         self.mesh = tuple(map(with_small_factors, mesh))
         self.spacing = self.prd / self.mesh
         if self._tilted(system):
             self.spacing = 1.0 / np.linalg.solve(self.upright, np.array(self.mesh, float))
+
+    @staticmethod
+    def is_too_large(mesh) -> bool:
+        """Whether no memory holds such a mesh."""
+        return max(mesh) >= MOST or math.prod(mesh) > 2**31
 
     def is_too_wide(self, mesh, order: int) -> bool:
         """Whether ``kspace_modify overlap no`` forbids the weights of that order: those of an atom that is as far outside of the box as it
@@ -128,10 +135,12 @@ class PPPM(KSpace):
         """Mesh points along each edge so that the error of that direction is below the accuracy; one more than that, as in LAMMPS."""
         mesh = []
         for length in self.prd:
-            n, spacing = int(length * self.g_ewald) + 1, 1.0 / self.g_ewald
-            while self.error(spacing, length) > self.accuracy:
+            n, spacing = int(min(length * self.g_ewald, MOST)) + 1, 1.0 / self.g_ewald
+            while n < MOST and self.error(spacing, length) > self.accuracy:
                 n += 1
                 spacing = length / n
+            if n >= MOST:
+                raise self.too_large([n])
             mesh.append(n + (spacing != 1.0 / self.g_ewald))
         return mesh
 
@@ -146,6 +155,8 @@ class PPPM(KSpace):
         spacing = 4.0 / self.g_ewald
         for _ in range(501):
             self.mesh = tuple(max(2, int(length / spacing)) for length in self.prd)
+            if self.is_too_large(self.mesh):
+                raise self.too_large(self.mesh)
             if self.mesh_error <= self.accuracy:
                 return list(self.mesh)
             spacing *= 0.95
@@ -154,6 +165,8 @@ class PPPM(KSpace):
     def error(self, spacing: float, length: float) -> float:
         """Estimated error of forces along one direction."""
         h = spacing * self.g_ewald
+        if h > 1e20:
+            return math.inf
         total = sum(c * h ** (2.0 * m) for m, c in enumerate(ERRORS[self.order - 1]))
         return (self.q2 * h**self.order * math.sqrt(self.g_ewald * length * math.sqrt(2.0 * math.pi) * total / self.n) / (length * length))
 
@@ -188,6 +201,8 @@ class PPPM(KSpace):
         for _ in range(10000):
             here = difference(g)
             g -= here / ((difference(g + h) - here) / h)
+            if not math.isfinite(g) or (g <= 0.0 and not self.ad):
+                break
             if abs(difference(g)) < SMALL:
                 return
         raise InputError(f"kspace_style {self.style}: no splitting parameter makes the error of the mesh that of the cutoff; "

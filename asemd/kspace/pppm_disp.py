@@ -52,14 +52,14 @@ class PPPMDisp(PPPM):
     def first_guess(self):
         if not self.coulomb:
             return 0.0
-        g = self.accuracy * math.sqrt(self.n * self.cutoff * self.inner.prod()) / (2.0 * self.q2) if self.q2 else 1.0
+        g = self.share_of_error(self.q2) if self.q2 else 1.0
         if g >= 1.0:
             raise InputError(f"kspace_style {self.style}: the accuracy {self.accuracy_relative:g} is too low for these charges")
         return math.sqrt(-math.log(g)) / self.cutoff
 
     def choose(self, system):
         self.ad = self.modify["diff"] == "ad"
-        self.order, self.order6 = self.modify["order"] or 5, self.modify["order/disp"]
+        self.order, self.order6 = self.modify["order"], self.modify["order/disp"]
         for name, order in (("order", self.order), ("order/disp", self.order6)):
             if not 2 <= order <= 7:
                 raise InputError(f"kspace_style {self.style}: {name} must be 2 to 7, not {order}")
@@ -126,6 +126,8 @@ class PPPMDisp(PPPM):
         spacing = 4.0 / g
         for _ in range(501):
             mesh = [max(2, int(length / spacing)) for length in self.prd]
+            if self.is_too_large(mesh):
+                raise self.too_large(mesh)
             if error(mesh, g) <= accuracy:
                 return mesh
             spacing *= 0.95

@@ -40,7 +40,10 @@ class KSpaceTerm(Term):
 
     def rebuild(self, engine):
         if not self.ready:
-            self.prepare(engine)
+            try:
+                self.prepare(engine)
+            except MemoryError:
+                raise self.solver.too_large(getattr(self.solver, "mesh", ())) from None
             self.ready = True
         self.make_room(engine.state.x.shape[1])
 

@@ -7,12 +7,18 @@ from __future__ import annotations
 
 import math
 
+from asemd.errors import InputError
 from asemd.pairstyle import PairStyle, mix_energy, pair
 
 
 def derived(c, settings):
     """Height of the hill."""
     return {"height": c["hgauss"] / (math.sqrt(2.0 * math.pi) * c["sigmah"])}
+
+
+def check(coeff, settings):
+    if not coeff["sigmah"] > 0.0:
+        raise InputError(f"pair_coeff gauss/cut: sigmah must be > 0, got {coeff['sigmah']:g}")
 
 
 class GaussCutPair(PairStyle):
@@ -29,8 +35,8 @@ def gauss_cut_d2(r, height, rmh, sigmah):
     return height * math.exp(-0.5 * x * x) * (x - 1.0) * (x + 1.0) / (sigmah * sigmah)
 
 
-@pair("gauss/cut", settings="cut", coeff="hgauss rmh sigmah [cut]", rows="height", derived=derived, cls=GaussCutPair, d2=gauss_cut_d2,
-      mix={"rmh": "distance", "sigmah": "distance"}, units={"hgauss": "energy*distance"}, settings_example="3.5",
+@pair("gauss/cut", settings="cut", coeff="hgauss rmh sigmah [cut]", rows="height", derived=derived, check=check, cls=GaussCutPair,
+      d2=gauss_cut_d2, mix={"rmh": "distance", "sigmah": "distance"}, units={"hgauss": "energy*distance"}, settings_example="3.5",
       example="0.2805 1.45 0.5 3.4", see="LAMMPS manual, pair_style gauss/cut")
 def gauss_cut(r, height: "energy", rmh: "distance", sigmah: "distance"):
     x = (r - rmh) / sigmah

@@ -55,7 +55,7 @@ def read(path: str, cut: float) -> list[tuple[int, int, dict[str, float]]]:
         The file cannot be read, or a line makes no sense; file and line are named.
     """
     try:
-        with open(path) as file:
+        with open(path, encoding="utf-8-sig", errors="replace") as file:
             lines = file.read().splitlines()
     except OSError as e:
         raise InputError(f"pair_style list: cannot read {path}: {e.strerror}") from None

@@ -22,6 +22,8 @@ class SoftPair(PairStyle):
         values = super().parse_coeff(words, settings)
         if not 0.0 <= values["lambda"] <= 1.0:
             raise InputError(f"pair_coeff {self.name}: lambda must be between 0 and 1, got {values['lambda']:g}")
+        if not values.get("sigma", 1.0) > 0.0:
+            raise InputError(f"pair_coeff {self.name}: sigma must be > 0, got {values['sigma']:g}")
         return values
 
     def mixed(self, a, b, rule):

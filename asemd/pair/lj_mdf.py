@@ -8,14 +8,21 @@ from __future__ import annotations
 
 import math
 
+from asemd.errors import InputError
 from asemd.pair.lj_gromacs import SwitchedPair
 from asemd.pairstyle import pair
 
 
 class TaperedPair(SwitchedPair):
-    """The inner cutoff may be 0."""
+    """The inner cutoff of single pairs may be 0, as in LAMMPS."""
 
     positive = False
+
+    def parse_settings(self, words):
+        values = super().parse_settings(words)
+        if values["inner"] == 0.0:
+            raise InputError(f"pair_style {self.name}: inner must be greater than 0, got {words[0]}")
+        return values
 
 
 def lj_mdf_d2(r2, epsilon, sigma, inner, outer):

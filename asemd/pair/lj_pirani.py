@@ -8,7 +8,16 @@ from __future__ import annotations
 
 import math
 
+from asemd.errors import InputError
 from asemd.pairstyle import pair
+
+
+def check(coeff, settings):
+    for name in ("gamma", "rm"):
+        if not coeff[name] > 0.0:
+            raise InputError(f"pair_coeff lj/pirani: {name} must be > 0, got {coeff[name]:g}")
+    if coeff["epsilon"] < 0.0:
+        raise InputError(f"pair_coeff lj/pirani: epsilon must not be negative, got {coeff['epsilon']:g}")
 
 
 def lj_pirani_d2(r, alpha, beta, gamma, rm, epsilon):
@@ -25,7 +34,7 @@ def lj_pirani_d2(r, alpha, beta, gamma, rm, epsilon):
 
 
 @pair("lj/pirani", settings="cut", coeff="alpha beta gamma rm epsilon [cut]", settings_example="2.5", example="4.0 8.0 6.0 1.2 1.0 2.4",
-      d2=lj_pirani_d2, splits=True, see="LAMMPS manual, pair_style lj/pirani")
+      d2=lj_pirani_d2, check=check, splits=True, see="LAMMPS manual, pair_style lj/pirani")
 def lj_pirani(r, alpha, beta, gamma, rm: "distance", epsilon: "energy"):
     x = r / rm
     n = alpha * x * x + beta

@@ -152,7 +152,15 @@ class SplineReader:
         x, y = np.array(knots).reshape(-1, 2).T
         if count < 2 or not (x[1:] > x[:-1]).all() or np.abs(np.linspace(x[0], x[-1], count) - x).max() > 1e-8:
             raise InputError(f"{self.file.what}: {name} needs two knots or more, evenly spaced, in rising order", where)
-        return {"x": x, "y": y, "slopes": slopes}
+        spline = {"x": x, "y": y, "slopes": slopes}
+        try:
+            with np.errstate(all="ignore"):
+                fits = all(np.isfinite(part).all() for part in packed(spline, 1.0, 0))
+        except ValueError:      # of scipy
+            fits = False
+        if not fits:
+            raise InputError(f"{self.file.what}: the numbers of {name} are too large for a spline", where)
+        return spline
 
 
 def packed(spline: dict, unit: float, first: int) -> tuple[np.ndarray, np.ndarray]:

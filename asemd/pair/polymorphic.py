@@ -18,6 +18,7 @@ from asemd.manybody import ManyBody, element_of
 from asemd.pairstyle import PairTables
 from asemd.potential_file import Record
 from asemd.style import register
+from asemd.words import real
 
 
 def look(table, x, first, scale):
@@ -141,9 +142,8 @@ class Polymorphic(ManyBody):
                 raise file.error(f"the file ends before the last of {count} numbers of {name}", places[-1] if places else 1)
             at += count
             try:
-                out = [kind(w) for w in words[at - count:at]]
-                if kind is str or np.isfinite(out).all():
-                    return out
+                if kind is str or np.isfinite([real(w) for w in words[at - count:at]]).all():
+                    return [kind(w) for w in words[at - count:at]]
             except ValueError:
                 pass
             for word, place in zip(words[at - count:at], places[at - count:at]):      # raises at the first that is none

@@ -50,6 +50,12 @@ class TersoffZBL(Tersoff):
     names = f"{Tersoff.names} Z_i Z_j ZBLcut ZBLexpscale"
     columns = (*COLUMNS, "coulomb", "screening", "ZBLcut", "ZBLexpscale")
 
+    def check_entry(self, p, error):
+        super().check_entry(p, error)
+        for name, least in (("Z_i", 1.0), ("Z_j", 1.0), ("ZBLcut", 0.0), ("ZBLexpscale", 0.0)):
+            if p[name] < least:
+                raise error(f"{name} must be at least {least:g}, got {p[name]:g}")
+
     def row(self, p, units):
         if units is not None and units.name not in ("metal", "real", "ase"):
             raise InputError(f"pair style {self.name} needs units metal or real, got {units.name}")

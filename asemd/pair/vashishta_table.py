@@ -57,7 +57,7 @@ class VashishtaTable(Vashishta):
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, shift)
-        three, inner2, n = tables.arrays[0], settings["inner"] ** 2, settings["N"]
+        three, inner2, n = tables.arrays[0], settings["inner"] * settings["inner"], settings["N"]
         delta = (tables.rows[0].max() - inner2) / (n - 1)
         if not delta > 0.0:
             raise InputError(f"pair_style {self.name}: the inner distance {settings['inner']:g} is beyond the cutoff")

@@ -58,7 +58,10 @@ def pair_value(terms, i: int, j: int, r2: float, qq: float) -> tuple[float, floa
             values += term.tables.arrays[array:array + len(part.arrays)]
             row, constant, array = row + 2 + len(part.rows), constant + len(part.constants), array + len(part.arrays)
             if r2 < cut2:
-                e, slope = part.function(r2 if part.coordinate == "r2" else r, *[qq] * part.charged, *values)
+                try:
+                    e, slope = part.function(r2 if part.coordinate == "r2" else r, *[qq] * part.charged, *values)
+                except ArithmeticError:
+                    return math.inf, math.inf
                 energy += term.use.factor * (e - offset)
                 force -= term.use.factor * (2.0 * r * slope if part.coordinate == "r2" else slope)
     return energy, force

@@ -23,6 +23,8 @@ KEYWORDS = {"type": 1, "type/fraction": 3, "type/ratio": 3, "type/subset": 3, "m
 def run(session, args):
     scene = session.scene
     system = scene.need_system("set")
+    if not system.n:
+        raise InputError("set: the system has no atoms yet: use set after create_atoms or read_data")
     scene.sync_groups()
     style, name = take(args, 2, "set")[:2]
     mask = _selected(scene, system, style, name)
