@@ -130,6 +130,6 @@ def test_compute_modify():
     temp.modify(["extra/dof", "0", "dynamic/dof", "yes"], None)
     assert temp.extra_dof == 0.0
     for words, message in ((["extra/dof", "x"], "number"), (["extra/dof"], "pairs"), (["thermo", "1"], "does not take"),
-                           (["dynamic", "1"], "yes or no")):
+                           (["dynamic", "2"], "yes or no")):
         with pytest.raises(InputError, match=message):
             temp.modify(words, None)

@@ -143,11 +143,11 @@ print(1024 * int(re.search(r"VmHWM:\\s*(\\d+)", open("/proc/self/status").read()
     if not Path("/proc/self/status").exists():
         pytest.skip("only Linux tells the largest memory of a process apart from its parent's")
     answers = []
-    for cells in (7, 28):
+    for cells in (7, 7, 28):        # the first one may have to compile, which takes memory
         (tmp_path / "in.x").write_text(liquid(cells))
         done = subprocess.run([sys.executable, "-c", code, "in.x"], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=True)
         answers.append([float(line) for line in done.stdout.split()])
-    expected, measured = np.diff(answers, axis=0)[0]
+    expected, measured = np.diff(answers[1:], axis=0)[0]
     assert expected / 1.5 < measured < 1.5 * expected
 
 
