@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from test_pair_coulomb import ours
 from turning_atoms import assert_same, lammps
+from wheel import ask, ran
 
 from asemd.errors import InputError
 from asemd.oriented_term import dipole_kernel
@@ -58,7 +59,6 @@ CASES |= {
     "lj/long/dipole/long": LONG.format("long long 5", "/dipole"),
     "lj/long/dipole/long cut": LONG.format("cut long 4 5", "") + "\npair_modify shift yes\nkspace_modify gewald 0.4",
     "lj/long/dipole/long off": LONG.format("long off 4 5", ""),
-    "lj/long/dipole/long off, far": LONG.format("long off 9", ""),
     "lj/long/dipole/long uncharged": LONG.format("long long 5", "/dipole") + "\npair_modify mix arithmetic\nset group all charge 0",
     "lj/long/dipole/long slab ew2d": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab ew2d gewald 0.35 force 0.3",
     "lj/long/dipole/long slab": LONG.format("cut long 5", "/dipole") + "\nkspace_modify slab 3.0 gewald 0.35 force 0.3",
@@ -159,3 +159,12 @@ def test_atoms_without_dipoles_are_refused():
     text = "atom_style charge\nregion b block 0 9 0 9 0 9\ncreate_box 1 b\ncreate_atoms 1 random 3 12 NULL\nmass 1 1\n"
     with pytest.raises(InputError, match="needs atoms with charges and dipoles"):
         ours(text + "pair_style lj/cut/dipole/cut 3\npair_coeff * * 1 1\nrun 0\n")
+
+
+def test_dispersion_has_no_table():
+    """LAMMPS's default tables of dispersion, which ``-compat lammps`` has too, are not for this style; at this distance they would show."""
+    lines = ["units real", "atom_style hybrid sphere dipole", "region b block 0 24 0 24 0 24", "create_box 1 b",
+             "create_atoms 1 single 1 1 1", "create_atoms 1 single 1 1 4.8", "pair_style lj/long/dipole/long long off 9.0", "pair_coeff 1 1 0.1 3.0",
+             "kspace_style ewald/disp 1e-4", "run 0"]
+    want = ask("answer = ran(given['lines']).get_thermo('evdwl')", lines=lines)
+    assert ran(lines, "-compat", "lammps").get_thermo("evdwl") == pytest.approx(want, rel=1e-10)
