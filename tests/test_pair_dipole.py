@@ -164,7 +164,8 @@ def test_atoms_without_dipoles_are_refused():
 def test_dispersion_has_no_table():
     """LAMMPS's default tables of dispersion, which ``-compat lammps`` has too, are not for this style; at this distance they would show."""
     lines = ["units real", "atom_style hybrid sphere dipole", "region b block 0 24 0 24 0 24", "create_box 1 b",
-             "create_atoms 1 single 1 1 1", "create_atoms 1 single 1 1 4.8", "pair_style lj/long/dipole/long long off 9.0", "pair_coeff 1 1 0.1 3.0",
+             "create_atoms 1 single 1 1 1", "create_atoms 1 single 1 1 4.8",
+             "pair_style lj/long/dipole/long long off 9.0", "pair_coeff 1 1 0.1 3.0",
              "kspace_style ewald/disp 1e-4", "run 0"]
     want = ask("answer = ran(given['lines']).get_thermo('evdwl')", lines=lines)
     assert ran(lines, "-compat", "lammps").get_thermo("evdwl") == pytest.approx(want, rel=1e-10)
