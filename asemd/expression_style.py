@@ -14,6 +14,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.expression import ARGUMENT, VARIABLE, Compiled, compiled_function, condense, differentiate
 from asemd.style import Packed, Parameter, Style, radians
+from asemd.words import real
 
 DOMAIN = "the value of its expression or of the derivative is not finite there"
 
@@ -65,7 +66,7 @@ def present(text: str, text_of: Callable[[str], str]) -> tuple[str, tuple[tuple[
     for name in VARIABLE.findall(text):
         word = condense(text_of(name))
         try:
-            given[f"v_{name}"] = float(word)
+            given[f"v_{name}"] = real(word)
         except ValueError:
             text = re.sub(rf"(?<![A-Za-z0-9_])v_{name}\b", lambda _, word=word: word, text)
     return text, tuple(given.items())

@@ -40,6 +40,9 @@ numbers("Coulomb cutoff 1e-10", f"{LONG.replace('long 5', 'long 5 1e-10')}\nkspa
 for words in ("long 5 1e-10", "long 5"):
     numbers(f"endless sum {words}", f"{LONG.replace('long 5', words)}\nkspace_style ewald 1e-4\nkspace_modify gewald {1e200 if words == 'long 5' else 0}",
             "kspace_style ewald: the sum over waves;too large;use", "run 0")
+DISPERSION = "pair_style lj/long/coul/long long long 5\npair_coeff * * 0.1 3\nkspace_style ewald/disp"
+for words, more in {"1e-300": "", "1e-4": "kspace_modify gewald 1e30", "1e-5": "kspace_modify force 1e-300"}.items():
+    numbers(f"endless sum with dispersion {words}", f"{DISPERSION} {words}\n{more}", "kspace_style ewald/disp: the sum over waves;too large;use", "run 0")
 numbers("mesh beyond memory", f"{LONG}\nkspace_style pppm 1e-4\nkspace_modify mesh 16000 16000 16000", "mesh 16000 16000 16000;too large;use", "run 0")
 numbers("msm cutoff 1e-320", "pair_style coul/msm 1e-320\npair_coeff * *\nkspace_style msm 1e-3", "kspace_style msm;cutoff 9.99989e-321", "run 0")
 

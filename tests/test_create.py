@@ -81,6 +81,8 @@ def test_mesh_is_that_of_lammps(tmp_path, style):
 @pytest.mark.parametrize("text, words", [("nothing", "no STL file"), ("solid a\nfacet normal 0 0\n", "line 2"),
                                          ("solid a\n\nfacet\n", "line 3"),
                                          ("solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 x\n", "'vertex' and 3 numbers in line 4"),
+                                         ("solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 1_0\n", "'vertex' and 3 numbers in line 4"),
+                                         ("solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 nan\n", "'vertex' and 3 numbers in line 4"),
                                          ("solid a\nfacet normal 0 0 1\n", "the end of the file")])
 def test_faulty_meshes(tmp_path, text, words):
     path = tmp_path / "a.stl"

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import gzip
 import os
+import warnings
 from pathlib import Path
 
 import pytest
 from wheel import ask, ran
 
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +54,29 @@ def test_no_text_files(style, words, content, says, tmp_path, monkeypatch):
     lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", f"pair_style {style}"])
     with pytest.raises(InputError, match=says):
         lmp.command(f"pair_coeff * * {words}")
+
+
+@pytest.mark.parametrize(("first", "last", "words", "other"), [(3, 3, "element: Na", ""), (53, 56, "pair: Na Cl", ""),
+                                                                (53, 56, "pair: Cl Na", "Cl  Na")])
+def test_ions_twice(first, last, words, other, potentials, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (Path(potentials) / "ffield.eim").read_text()
+    again = "\n".join(text.splitlines()[first - 1:last])
+    Path("X.eim").write_text(text + (again.replace("Na  Cl", other) if other else again) + "\n")
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 1 box", "pair_style eim"])
+    with pytest.raises(InputError, match=rf"{words} is there twice, first at X.eim:{first} \(X.eim:{len(text.splitlines()) + 1}: "):
+        lmp.command("pair_coeff * * Na X.eim Na")
+
+
+def test_number_too_many(potentials, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (Path(potentials) / "GaN_sw.poly").read_text()
+    lmp = ran(["units metal", "region box block 0 9 0 9 0 9", "create_box 2 box", "pair_style polymorphic"])
+    for extra, more in ((" 0.5", "has 1 words more"), ("", None)):
+        Path("X.poly").write_text(text.rstrip() + extra + "\n")
+        with pytest.warns(InputWarning, match=more) if more else warnings.catch_warnings():
+            warnings.simplefilter("always" if more else "error")
+            lmp.command("pair_coeff * * X.poly Ga N")
 
 
 EXTEP = "B B B 3 1 0 26617.3 141.2 -0.13 1.1422470 0.01498959 2.5211820 2768.7 2.0 0.2 2.6857244 3376.3\n"

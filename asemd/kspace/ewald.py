@@ -46,11 +46,15 @@ class Ewald(KSpace):
         most = []
         for length in self.prd:
             n = 1
-            while n <= MOST and self.error(n, length, self.g_ewald, self.strength, self.n) > self.accuracy:
+            while n <= MOST and self.wave_error(n, length) > self.accuracy:
                 n *= 2
             most.append(n)
         if max(most) > MOST or math.prod(most) > 2**33:
             raise self.too_large()
+
+    def wave_error(self, waves: int, length: float) -> float:
+        """Estimated error of forces of a sum of so many waves along an edge."""
+        return self.error(waves, length, self.g_ewald, self.strength, self.n)
 
     @property
     def strength(self) -> float:

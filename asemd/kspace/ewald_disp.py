@@ -90,7 +90,11 @@ class EwaldDisp(Ewald):
             raise InputError(f"kspace_style {self.style} has one splitting parameter: use kspace_modify gewald, not gewald/disp")
         vectors = system.box.cell * self.stretch[:, None]
         self.choice = np.array([self.q2, self.b2, self.m2, self.n, self.accuracy])
+        self.check_size()
         self.waves, self.top = ewald_disp.chooser()(vectors, self.g_ewald, *self.choice, np.zeros((0, 3), np.int64))
+
+    def wave_error(self, waves, length):
+        return ewald_disp.error(waves, length, self.g_ewald, self.q2, self.b2, self.m2 / self.volume, self.n)
 
     def follow(self, waves, most):
         self.waves, self.top = waves, int(most.max())

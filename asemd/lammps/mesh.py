@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.words import number
 
 # multiples of these numbers modulo 1 cover the unit square evenly; with as many digits as LAMMPS has
 STEPS = (0.5698403, 0.7548777)
@@ -43,16 +44,16 @@ def _text(path: str, text: str) -> tuple[str, str, np.ndarray]:
     while at < len(lines) and lines[at][1][0] != "endsolid":
         corners = []
         for k, expected in enumerate(FACET):
-            number, words = lines[at + k] if at + k < len(lines) else (len(text.split("\n")), [])
+            line, words = lines[at + k] if at + k < len(lines) else (len(text.split("\n")), [])
             count = 3 if expected in ("facet normal", "vertex") else 0
             form = expected.split()
             try:
-                values = [float(w) for w in words[len(form):]]
-            except ValueError:
+                values = [number(w, "") for w in words[len(form):]]
+            except InputError:
                 values = []
             if words[:len(form)] != form or len(values) != count:
                 wanted = f"{expected!r}{f' and {count} numbers' * (count > 0)}"
-                raise InputError(f"create_atoms mesh: expected {wanted} in line {number} of {path}, "
+                raise InputError(f"create_atoms mesh: expected {wanted} in line {line} of {path}, "
                                  f"got {' '.join(words) or 'the end of the file'!r}")
             if expected == "vertex":
                 corners.append(values)

@@ -86,14 +86,14 @@ class EmbeddedIon(ManyBody):
             kind = record.word()
             if kind == "global:":
                 found[kind] = record.numbers("division low high"), record.where
-            elif kind == "element:":
-                found.setdefault((record.word("an element"),), (record.numbers("number mass negativity ra ri cohesion q0"), record.where))
-            elif kind == "pair:":
-                key = record.word("an element"), record.word("an element")
-                found.setdefault(key, (record.numbers(NUMBERS), record.where))
-                found.setdefault(key[::-1], found[key])
-            else:
+                continue
+            if kind not in ("element:", "pair:"):
                 raise InputError(f"{file.what}: a line must begin with global:, element: or pair:, got {kind!r}", record.where)
+            key = tuple(record.word("an element") for _ in range(1 + (kind == "pair:")))
+            if key in found:
+                raise InputError(f"{file.what}: {kind} {' '.join(key)} is there twice, first at {found[key][1].file}:{found[key][1].line}", record.where)
+            names = NUMBERS if kind == "pair:" else "number mass negativity ra ri cohesion q0"
+            found[key] = found[key[::-1]] = record.numbers(names), record.where
         needed = ["global:", *((a,) for a in elements), *((a, b) for k, a in enumerate(elements) for b in elements[:k + 1])]
         for key in needed:
             if key not in found:

@@ -10,9 +10,11 @@ in LAMMPS, where they have steps of a few units in the ninth digit.
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 
+from asemd.errors import InputWarning
 from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
 from asemd.manybody import ManyBody, element_of
 from asemd.pairstyle import PairTables
@@ -168,6 +170,9 @@ class Polymorphic(ManyBody):
         spaced = np.array(take(float, (n**3 if eta == 3 else pairs) * nr, "the tables P")).reshape(-1, nr)
         bent = np.array(take(float, n**3 * ng, "the tables G")).reshape(n**3, ng)
         outer = np.array(take(float, pairs * nx, "the tables F")).reshape(pairs, nx)
+        if at < len(words):
+            warnings.warn(f"{file.what}: {file.name} has {len(words) - at} words more than its tables need; if one of them has a number too "
+                          "many, all after it are shifted", InputWarning, stacklevel=2)
         if not (ends[:, 0] > 0.0).all():
             raise file.error("cutoffs must be positive", places[7 + 3 * n])
         return {"names": names, "eta": eta, "ends": ends, "radial": radial, "spaced": spaced, "bent": bent,
