@@ -91,7 +91,8 @@ class EmbeddedIon(ManyBody):
                 raise InputError(f"{file.what}: a line must begin with global:, element: or pair:, got {kind!r}", record.where)
             key = tuple(record.word("an element") for _ in range(1 + (kind == "pair:")))
             if key in found:
-                raise InputError(f"{file.what}: {kind} {' '.join(key)} is there twice, first at {found[key][1].file}:{found[key][1].line}", record.where)
+                first = found[key][1]
+                raise InputError(f"{file.what}: {kind} {' '.join(key)} is there twice, first at {first.file}:{first.line}", record.where)
             names = NUMBERS if kind == "pair:" else "number mass negativity ra ri cohesion q0"
             found[key] = found[key[::-1]] = record.numbers(names), record.where
         needed = ["global:", *((a,) for a in elements), *((a, b) for k, a in enumerate(elements) for b in elements[:k + 1])]

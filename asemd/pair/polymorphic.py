@@ -171,8 +171,8 @@ class Polymorphic(ManyBody):
         bent = np.array(take(float, n**3 * ng, "the tables G")).reshape(n**3, ng)
         outer = np.array(take(float, pairs * nx, "the tables F")).reshape(pairs, nx)
         if at < len(words):
-            warnings.warn(f"{file.what}: {file.name} has {len(words) - at} words more than its tables need; if one of them has a number too "
-                          "many, all after it are shifted", InputWarning, stacklevel=2)
+            warnings.warn(f"{file.what}: {file.name} has {len(words) - at} words more than its tables need; if one of them has a number "
+                          "too many, all after it are shifted", InputWarning, stacklevel=2)
         if not (ends[:, 0] > 0.0).all():
             raise file.error("cutoffs must be positive", places[7 + 3 * n])
         return {"names": names, "eta": eta, "ends": ends, "radial": radial, "spaced": spaced, "bent": bent,
