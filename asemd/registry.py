@@ -1,10 +1,14 @@
 """The registry of styles: each is found by its LAMMPS name, in the file of that name."""
 from __future__ import annotations
 
+import csv
 import importlib
 import importlib.util
 import pkgutil
 import re
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from asemd.errors import InputError, nearest
@@ -18,8 +22,7 @@ _FINITE = "acts on particles of finite size with an orientation and torques, whi
 REFUSED = dict.fromkeys([("bond", n) for n in ("bpm/rotational", "oxdna/fene", "oxdna2/fene", "oxrna2/fene")], _FINITE) | {
     ("bond", "rheo/shell"): "acts on fluid particles of package RHEO and ages of bonds, which asemd does not have yet: run this script "
                             "with LAMMPS"}
-# styles of LAMMPS that its manual, from which the inventory is, does not have
-NEWER = [("bond", "bpm/spring/plastic"), ("angle", "amoeba"), ("angle", "cosine/buck6d"), ("angle", "mwlc"), ("improper", "amoeba")]
+RENAMED = {("pair", "meam/c"): "meam"}      # former names that LAMMPS refuses, too
 known: dict[tuple[str, str], Style] = {}      # by category and name
 own: dict[tuple[str, str], type] = {}         # fixes and computes of the user
 
@@ -54,6 +57,16 @@ def file_of(name: str) -> str:
 def module_of(category: str, name: str) -> str:
     """The module of a style or command follows from its LAMMPS name."""
     return f"asemd.{category}.{file_of(name)}"
+
+
+@cache
+def of_lammps() -> frozenset[tuple[str, str]]:
+    """Category and name of the styles that LAMMPS has, by its manual or newer."""
+    found: set[tuple[str, str]] = set()
+    for name in ("inventory.csv", "newer.csv"):
+        with open(Path(__file__).parent / name, newline="", encoding="utf-8") as f:
+            found.update((row["category"], row["style"]) for row in csv.DictReader(f))
+    return frozenset(found)
 
 
 def names(category: str) -> list[str]:
@@ -102,13 +115,18 @@ def find(category: str, name: str) -> Style:
     return known[category, name]
 
 
-def unknown(category: str, name: str) -> InputError:
-    """The error for a style that is not there: why it is refused, or the nearest match."""
-    if (category, plain_name(name)) in REFUSED:
-        return InputError(f"{category}_style {name} {REFUSED[category, plain_name(name)]}")
-    if (category, plain_name(name)) in NEWER:
-        return InputError(f"{category}_style {name} is a style of LAMMPS that asemd does not have yet: run this script with LAMMPS")
-    near = nearest(name, names(category)) or "; asemd styles lists them, one of your own comes with --import FILE"
+def unknown(category: str, name: str, others: Iterable[str] | None = None) -> InputError:
+    """The error for a style that is not there: why it is refused, or the nearest match among `others`, or styles of that category."""
+    key = category, plain_name(name)
+    if key in REFUSED:
+        return InputError(f"{category}_style {name} {REFUSED[key]}")
+    if key in RENAMED:
+        return InputError(f"{category} style {name} has another name in LAMMPS now: use {RENAMED[key]}")
+    if key in of_lammps():
+        return InputError(f"{category} style {name} of LAMMPS is not supported yet: run this script with LAMMPS")
+    near = nearest(name, names(category) if others is None else others)
+    if others is None and not near:
+        near = "; asemd styles lists them, one of your own comes with --import FILE"
     return InputError(f"unknown {category} style {name!r}{near}")
 
 
@@ -131,7 +149,7 @@ def class_of(category: str, name: str, base: type) -> type:
             raise
         found = None
     if found is None or found.style != name:
-        raise InputError(f"unknown {category} style {name!r}{nearest(name, class_names(category, base))}")
+        raise unknown(category, name, class_names(category, base))
     return found
 
 

@@ -226,7 +226,7 @@ def test_styles_of_other_particles_say_why(words):
                                                 ("improper", "amoeba")])
 def test_styles_of_lammps_alone_are_known(category, name):
     from asemd.forcefield import Interactions
-    with pytest.raises(InputError, match=f"{name} is a style of LAMMPS that asemd does not have yet"):
+    with pytest.raises(InputError, match=f"{category} style {name} of LAMMPS is not supported yet: run"):
         Interactions().set_style(category, [name])
 
 

@@ -48,8 +48,11 @@ def test_accelerated_names_are_those_of_the_style(suffix):
 @pytest.mark.parametrize("search, message", [
     (lambda: registry.find("bond", "harmonc"), "unknown bond style 'harmonc'.*did you mean harmonic"),
     (lambda: registry.find("pair", "../cli"), "unknown pair style"), (lambda: registry.find("pair", ""), "unknown pair style"),
-    (lambda: registry.find("bond", "oxdna/fene"), "finite size"), (lambda: registry.find("angle", "mwlc"), "does not have yet"),
+    (lambda: registry.find("bond", "oxdna/fene"), "finite size"), (lambda: registry.find("angle", "mwlc"), "not supported yet: run"),
     (lambda: asemd.fix.find("efeld"), "unknown fix style 'efeld'.*did you mean efield"), (lambda: asemd.fix.find("forcing"), "unknown fix"),
+    (lambda: registry.find("pair", "agni"), "pair style agni of LAMMPS is not supported yet: run"),
+    (lambda: registry.find("pair", "meam/c"), "pair style meam/c has another name in LAMMPS now: use meam"),
+    (lambda: asemd.fix.find("ttm/mod"), "fix style ttm/mod of LAMMPS is not supported yet: run"),
 ])
 def test_what_is_not_there(search, message):
     with pytest.raises(InputError, match=message) as error:

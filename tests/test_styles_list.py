@@ -2,10 +2,11 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
-from asemd import cli, style
+from asemd import cli, registry, style
 from asemd.errors import InputError
 from asemd.lammps import catalog
 from asemd.lammps.catalog import inventory
@@ -41,6 +42,14 @@ def test_reasons_belong_to_names_that_exist():
     for category, name in REFUSED:
         assert (category, name) in known and name not in present(category)
     assert all(n.note for n in coverage(state="partial"))
+
+
+@pytest.mark.parametrize("category", [*catalog.FORCE_FIELD, "kspace"])
+def test_styles_are_of_lammps(category):
+    """A name of our own could be one that LAMMPS gives to something else later."""
+    assert {(category, name) for name in catalog.names(category)} <= registry.of_lammps()
+    newer = [line.split(",") for line in (Path(registry.__file__).parent / "newer.csv").read_text().split()[1:]]
+    assert not {tuple(row) for row in newer} & {(r["category"], r["style"]) for r in inventory()}
 
 
 def test_counts_add_up():

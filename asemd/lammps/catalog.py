@@ -104,7 +104,7 @@ def load(category: str, name: str) -> type:
 def is_of_lammps(category: str, name: str) -> bool:
     """Whether LAMMPS has a style of that name."""
     listed = {"minimize": "min_style", "integrate": "run_style"}.get(category, category)
-    return any((row["category"], row["style"]) == (listed, plain_name(name)) for row in inventory())
+    return (listed, plain_name(name)) in registry.of_lammps()
 
 
 def unknown(category: str, name: str) -> InputError:
