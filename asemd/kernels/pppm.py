@@ -1,8 +1,8 @@
 """Charges to a mesh, the field of the mesh back to the charges; what happens in between on the mesh of waves.
 
-The Fourier transforms themselves are a library's, which thread 0 calls back between two meetings. Every thread spreads its charges on a
-mesh of its own. Rows along the third direction are longer than the mesh, so that the weights of a charge fall on neighbouring
-places; what is beyond the end is folded back when the meshes of the threads are added.
+The Fourier transforms themselves are a library's; each thread calls back its part of them between two meetings
+(`asemd.kspace.transforms`). Every thread spreads its charges on a mesh of its own. Rows along the third direction are longer than the mesh,
+so that the weights of a charge fall on neighbouring places; what is beyond the end is folded back when the meshes of the threads are added.
 
 `numbers (3,)`: mesh points; `green (nx, ny, nz/2 + 1, 4)`: the influence function and its products with the wave vector; `packed (nx, ny,
 (nz + ORDER) * m)`: m meshes side by side; `base (cap, 3)`, `weight (cap, 3 * WIDE)`: first place and weights of each slot.
@@ -19,7 +19,7 @@ from asemd.kernels.callback import call_back
 from asemd.kernels.ewald import is_same, slab, stretched, wire
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import FOUR_PI, denominator, folded, influence, make_green, opposite, sinc_power
-from asemd.kernels.stencil import WIDE, collect, deposit
+from asemd.kernels.stencil import SUMS, WIDE, collect, deposit, weigh
 from asemd.kernels.threads import barrier
 
 ORDER = 5
@@ -27,19 +27,11 @@ ENERGY = PER_ATOM = AD = STAGGERED = False
 make_green_ad = own_force = gather_ad = None
 
 
-def find_rows(i, base, wrap, ny, length, step, rows):
-    """Where the rows around slot i begin in a flat mesh; `step`: numbers per point."""
-    at0, at1, at2 = base[i, 0], base[i, 1], step * base[i, 2]
-    for p in range(ORDER):
-        front = wrap[0, at0 + p] * ny
-        for m in range(ORDER):
-            rows[p * ORDER + m] = (front + wrap[1, at1 + m]) * length + at2
-
-
 def spread(x, q, least, lo, hi, origin, inverse, numbers, density_of, pieces, wrap, base, weight, brick):
     """Charges of slots lo..hi-1 on the mesh, those above `least`; where they are and their weights stay for `gather`."""
     brick[:] = 0.0
-    mesh, rows = brick.reshape(-1), np.empty(ORDER * ORDER, np.int64)
+    mesh, lines = brick.reshape(-1), wrap[1] * brick.shape[2]
+    planes = wrap[0] * (brick.shape[1] * brick.shape[2])
     half = (ORDER - 1) // 2
     for i in range(lo, hi):
         if abs(q[i]) <= least:
@@ -55,19 +47,14 @@ def spread(x, q, least, lo, hi, origin, inverse, numbers, density_of, pieces, wr
                 k = int(u)
                 t = k + 0.5 - u
             base[i, d] = wrap[d, k + 3 * numbers[d] - half]      # not negative on a mesh of one point either
-            for m in range(ORDER):
-                p = pieces[ORDER - 1, m]
-                for c in range(ORDER - 2, -1, -1):
-                    p = p * t + pieces[c, m]
-                weight[i, d * WIDE + m] = p
+            weigh(weight, i, d * WIDE, pieces, t, ORDER)
             if AD:
                 for m in range(ORDER):
                     p = (ORDER - 1) * pieces[ORDER - 1, m]
                     for c in range(ORDER - 2, 0, -1):
                         p = p * t + c * pieces[c, m]
                     weight[i, (3 + d) * WIDE + m] = p
-        find_rows(i, base, wrap, brick.shape[1], brick.shape[2], 1, rows)
-        deposit(mesh, rows, weight, i, q[i] * density_of, ORDER)
+        deposit(mesh, planes, lines, base, weight, i, q[i] * density_of, 1, ORDER)
 
 
 def add_bricks(first, last, brick, density):
@@ -185,12 +172,12 @@ def interleave(first, last, field, packed):
 
 def gather(f, q, least, lo, hi, scale, wrap, base, weight, packed, flat):
     """Forces on slots lo..hi-1 from the gradient of the potential; `flat` leaves out the third component."""
-    mesh, rows, sums = packed.reshape(-1), np.empty(ORDER * ORDER, np.int64), np.empty(3 * ORDER + WIDE)
+    mesh, lines, sums = packed.reshape(-1), wrap[1] * packed.shape[2], np.empty(3 * ORDER + SUMS, packed.dtype)
+    planes = wrap[0] * (packed.shape[1] * packed.shape[2])
     for i in range(lo, hi):
         if abs(q[i]) <= least:
             continue
-        find_rows(i, base, wrap, packed.shape[1], packed.shape[2], 3, rows)
-        collect(mesh, rows, weight, i, sums, ORDER)
+        collect(mesh, planes, lines, base, weight, i, sums, 3, ORDER)
         fx, fy, fz = 0.0, 0.0, 0.0
         for n in range(ORDER):
             fx += weight[i, 2 * WIDE + n] * sums[3 * n]
@@ -224,13 +211,14 @@ def gather_shares(q, least, lo, hi, scale, wrap, base, weight, field, energy, vi
 
 
 def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap, images, held, lengths, own, inverse, green, brick, density,
-         wave, waves, field, packed, shares, share_field, base, weight, sums, constants, forward, backward, backward_shares, acc, energy,
-         virial):
+         wave, waves, field, packed, shares, share_field, base, weight, sums, constants, forward, forward_across, backward_across, backward,
+         backward_shares, acc, energy, virial):
     """All of it for one thread: forces, if ENERGY also energies and virial, if PER_ATOM also the shares of the atoms.
 
     `constants` as in `asemd.kernels.ewald.ewald`, but 4 for a slab's correction that is left out of the energy; if STAGGERED then by how
-    many spacings the mesh is shifted; `held (4, 3)`: the box that `green` is for, and its volume; `forward`, `backward`,
-    `backward_shares`: addresses of the transforms.
+    many spacings the mesh is shifted; `held (4, 3)`: the box that `green` is for, and its volume; `forward`, `forward_across`,
+    `backward_across`, `backward`, `backward_shares`: addresses of this thread's parts of the transforms, 0 for none; after those
+    across no part needs those of other threads.
     """
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
     least = constants[6]
@@ -266,8 +254,11 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
     barrier(meeting)
     add_bricks(first, last, brick, density)
     barrier(meeting)
-    if tid == 0:
+    if forward:
         call_back(forward)
+    barrier(meeting)
+    if forward_across:
+        call_back(forward_across)
     barrier(meeting)
     if ENERGY:
         turn = 2.0 * math.pi * inverse
@@ -277,10 +268,13 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
         multiply_shares(first, last, numbers, 2.0 * math.pi * inverse, g, images, gfb, green, 1.0, wave, shares)
     multiply(first, last, numbers[2], green, 1.0, wave, waves)
     barrier(meeting)
-    if tid == 0:
+    if backward_across:
+        call_back(backward_across)
+    barrier(meeting)
+    if backward:
         call_back(backward)
-        if PER_ATOM:
-            call_back(backward_shares)
+    if PER_ATOM and backward_shares:
+        call_back(backward_shares)
     barrier(meeting)
     interleave(first, last, field, packed)
     barrier(meeting)
@@ -324,8 +318,7 @@ def kernel(level: int, order: int, ad: bool, staggered: bool = False):
     b.constant("AD", ad)
     b.constant("STAGGERED", staggered)
     b.constant("FOUR_PI", 4.0 * math.pi if staggered else FOUR_PI)
-    b.line("from asemd.kernels.stencil import WIDE, collect, deposit")
-    b.function(find_rows, fast=True, inline=True)
+    b.line("from asemd.kernels.stencil import SUMS, WIDE, collect, deposit, weigh")
     b.function(pppm_stagger.denominator if staggered else denominator, fast=True)
     for f in (sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
               multiply_shares, interleave, gather, gather_shares, is_same, slab, wire, *(pppm_ad.FUNCTIONS if ad else ())):

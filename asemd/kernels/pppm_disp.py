@@ -14,7 +14,7 @@ from asemd.kernels.callback import call_back
 from asemd.kernels.ewald import is_same, slab, stretched
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import denominator, folded, opposite
-from asemd.kernels.pppm import add_bricks, find_rows, gather, gather_shares, interleave, multiply, spread
+from asemd.kernels.pppm import add_bricks, gather, gather_shares, interleave, multiply, spread
 from asemd.kernels.pppm_ad import gather_ad, own_force, power
 from asemd.kernels.threads import barrier
 
@@ -113,7 +113,7 @@ def multiply_shares_disp(first, last, numbers, lengths, g, attractive, green, wa
 
 def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, signs, numbers, pieces, gfb, wrap, held, lengths, own, inverse,
                 green, brick, density, wave, waves, field, packed, shares, share_field, base, weight, values, sums, constants, forward,
-                backward, backward_shares, acc, energy, virial):
+                forward_across, backward_across, backward, backward_shares, acc, energy, virial):
     """All of it for one thread; arguments as in `asemd.kernels.pppm.pppm` and `asemd.kernels.ewald_disp.sums_over_waves`; without force
     along z and with a slab's correction it is 5."""
     g, scale, qsum, qsqsum, stretch, slabs = constants[0], constants[1], constants[2], constants[3], constants[4], constants[5]
@@ -145,8 +145,11 @@ def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, sign
         barrier(meeting)
         add_bricks(first, last, brick, density[c])
         barrier(meeting)
-    if tid == 0:
+    if forward:
         call_back(forward)
+    barrier(meeting)
+    if forward_across:
+        call_back(forward_across)
     sums[tid, :7] = 0.0
     barrier(meeting)
     for c in range(n):
@@ -156,10 +159,13 @@ def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, sign
             multiply_shares_disp(first, last, numbers, lengths, g, attractive, green, wave[c], shares)
         multiply(first, last, numbers[2], green, 1.0, wave[c], waves)
         barrier(meeting)
-        if tid == 0:
+        if backward_across:
+            call_back(backward_across)
+        barrier(meeting)
+        if backward:
             call_back(backward)
-            if PER_ATOM:
-                call_back(backward_shares)
+        if PER_ATOM and backward_shares:
+            call_back(backward_shares)
         barrier(meeting)
         interleave(first, last, field, packed)
         barrier(meeting)
@@ -257,8 +263,7 @@ def kernel(level: int, order: int, ad: bool):
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
     b.constant("AD", ad)
-    b.line("from asemd.kernels.stencil import WIDE, collect, deposit")
-    b.function(find_rows, fast=True, inline=True)
+    b.line("from asemd.kernels.stencil import SUMS, WIDE, collect, deposit, weigh")
     for f in (denominator, folded, opposite, power, attraction, shape, mean_shape, make_green_disp, energies_disp, multiply_shares_disp,
               spread, add_bricks, multiply, interleave, gather, gather_shares, is_same, slab,
               *((pppm_ad.overlaps, own_force, gather_ad) if ad else ())):

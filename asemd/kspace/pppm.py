@@ -15,10 +15,10 @@ from numpy.polynomial import Polynomial
 
 from asemd.errors import InputError, InputWarning
 from asemd.kernels import pppm, pppm_ad
-from asemd.kernels.callback import Callback
 from asemd.kernels.stencil import WIDE
 from asemd.kspace import MOST, KSpace
 from asemd.kspace.term import KSpaceTerm
+from asemd.kspace.transforms import Transforms
 
 # Deserno and Holm 1998, table I: coefficients of the error of order 1 to 7
 ERRORS = ((2 / 3,), (1 / 50, 5 / 294), (1 / 588, 7 / 1440, 21 / 3872), (1 / 4320, 3 / 1936, 7601 / 2271360, 143 / 28800),
@@ -235,7 +235,8 @@ SINGLE = 1e-5
 
 
 class PPPMTerm(KSpaceTerm):
-    """Mesh, weights and transforms; these in single precision where forces are, unless the accuracy asked for is better than SINGLE."""
+    """Mesh, weights and transforms; in single precision where forces are, unless the accuracy asked for is better than SINGLE. Weights that
+    are differentiated stay in double precision."""
 
     def __init__(self, solver):
         super().__init__(solver)
@@ -250,47 +251,34 @@ class PPPMTerm(KSpaceTerm):
         s, nth = self.solver, engine.threads
         nx, ny, nz = self.mesh
         nh = nz // 2 + 1
-        self.numbers, self.pieces, self.aliases = np.array(self.mesh, np.int64), np.zeros((self.order, WIDE)), aliases(self.order)
+        single = engine.settings.precision == "mixed" and s.accuracy_relative >= SINGLE
+        real, waves = (np.float32, np.complex64) if single else (np.float64, np.complex128)
+        weights = np.float64 if s.ad else real
+        self.numbers, self.pieces, self.aliases = np.array(self.mesh, np.int64), np.zeros((self.order, WIDE), weights), aliases(self.order)
         self.pieces[:, :self.order] = pieces(self.order).T
         # a sum over images that LAMMPS's estimate finds large enough
         self.images = (np.abs(s.upright) @ (s.g_ewald / (math.pi * self.numbers)) * (-math.log(1e-7)) ** 0.25).astype(np.int64)
         self.wrap = np.arange(4 * max(self.mesh) + 8)[None] % self.numbers[:, None]
         self.held, self.inverse, self.green = np.zeros((4, 3)), np.zeros((3, 3)), np.zeros((nx, ny, nh, 4))
         self.lengths, self.own = np.zeros(3), np.zeros((3, 2))
-        single = engine.settings.precision == "mixed" and s.accuracy_relative >= SINGLE
-        real, waves = (np.float32, np.complex64) if single else (np.float64, np.complex128)
-        self.brick, self.density = np.zeros((nth, nx, ny, nz + self.order + 8)), np.zeros((nx, ny, nz), real)
+        self.brick, self.density = np.zeros((nth, nx, ny, nz + self.order + 8), weights), np.zeros((nx, ny, nz), real)
         m = 1 if s.ad else 3
         self.wave, self.waves = np.zeros((nx, ny, nh), waves), np.zeros((m, nx, ny, nh), waves)
-        self.field, self.packed = np.zeros((m, nx, ny, nz), real), np.zeros((nx, ny, (nz + self.order) * m + 16))
+        self.field, self.packed = np.zeros((m, nx, ny, nz), real), np.zeros((nx, ny, (nz + self.order) * m + 16), weights)
         self.shares, self.share_field = np.zeros((0, nx, ny, nh), complex), np.zeros((0, nx, ny, nz))
         self.sums = np.zeros((nth, 8))
-        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * WIDE))
-        self.forward, self.backward, self.backward_shares = map(Callback, self._transforms(nth))
+        self.base, self.weight = np.zeros((0, 3), np.int64), np.zeros((0, (6 if s.ad else 3) * WIDE), weights)
+        self.transforms = Transforms(self, nth)
 
     def _make_shares(self) -> None:
         nx, ny, nh = self.wave.shape[-3:]
         self.shares, self.share_field = np.zeros((7, nx, ny, nh), complex), np.zeros((7, *self.mesh))
 
-    def _transforms(self, threads: int):
-        from scipy import fft
-
-        def forward():
-            self.wave[:] = fft.rfftn(self.density, axes=(-3, -2, -1), workers=threads)
-
-        def backward():
-            self.field[:] = fft.irfftn(self.waves, s=self.mesh, axes=(1, 2, 3), workers=threads)
-
-        def backward_shares():
-            self.share_field[:] = fft.irfftn(self.shares, s=self.mesh, axes=(1, 2, 3), workers=threads)
-        return forward, backward, backward_shares
-
     def make_room(self, slots):
         if len(self.base) < slots:
-            self.base, self.weight = np.zeros((slots, 3), np.int64), np.zeros((slots, self.weight.shape[1]))
+            self.base, self.weight = np.zeros((slots, 3), np.int64), np.zeros((slots, self.weight.shape[1]), self.weight.dtype)
 
     def of_solver(self, engine, tid):
         return (self.numbers, self.pieces, self.aliases, self.wrap, self.images, self.held, self.lengths, self.own, self.inverse,
                 self.green, self.brick, self.density, self.wave, self.waves, self.field, self.packed, self.shares, self.share_field,
-                self.base, self.weight, self.sums, self.constants, self.forward.address, self.backward.address,
-                self.backward_shares.address)
+                self.base, self.weight, self.sums, self.constants, *self.transforms.addresses(tid))

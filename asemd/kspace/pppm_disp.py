@@ -240,5 +240,5 @@ class MeshTerm(PPPMTerm):
     def of_solver(self, engine, tid):
         return (engine.state.type, self.factors, self.signs, self.numbers, self.pieces, self.aliases, self.wrap, self.held, self.lengths,
                 self.own, self.inverse, self.green, self.brick, self.density, self.wave, self.waves, self.field, self.packed, self.shares,
-                self.share_field, self.base, self.weight, self.values, self.sums, self.constants, self.forward.address,
-                self.backward.address, self.backward_shares.address)
+                self.share_field, self.base, self.weight, self.values, self.sums, self.constants,
+                *self.transforms.addresses(tid))
