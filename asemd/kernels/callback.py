@@ -18,12 +18,13 @@ class Callback:
 
     Attributes
     ----------
+    function : callable
     address : int
         What `call_back` takes; where nothing is compiled, the function itself.
     """
 
     def __init__(self, function: Callable[[], None]):
-        self._keep = _KIND(function)
+        self.function, self._keep = function, _KIND(function)
         self.address = function if packed.WITHOUT_COMPILER else ctypes.cast(self._keep, ctypes.c_void_p).value
 
 
