@@ -12,8 +12,8 @@ from asemd.kspace.transforms import POINTS, Transforms
 
 
 @pytest.mark.parametrize("lead", [(), (2,)])
-@pytest.mark.parametrize(("mesh", "threads", "parts"), [((20, 24, 25), 1, 1), ((20, 24, 25), 2, 2), ((9, 30, 45), 3, 3), ((45, 9, 30), 5, 3),
-                                                        ((2, 100, 100), 4, 2), ((8, 9, 10), 2, 1)])
+@pytest.mark.parametrize(("mesh", "threads", "parts"), [((20, 24, 25), 1, 1), ((20, 24, 25), 2, 2), ((9, 30, 45), 3, 3),
+                                                        ((45, 9, 30), 5, 3), ((2, 100, 100), 4, 2), ((8, 9, 10), 2, 1)])
 def test_parts_make_the_whole(mesh, threads, parts, lead):
     from scipy import fft
     random = np.random.default_rng(1)
