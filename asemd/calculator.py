@@ -334,6 +334,8 @@ class ForceField(Calculator):
     def adopt(self, atoms, results: dict[str, Any]) -> None:
         """Take over results that the time loop has found for the atoms as they are now."""
         changes = self.check_state(atoms)
+        if set(changes) - {"positions", "image"}:
+            self._engine = None
         self.results = results
         self._remember(atoms, changes)
 
@@ -392,7 +394,6 @@ class ForceField(Calculator):
             parts = [f"{k}: {', '.join(use.style.name for use in uses)}" for k, uses in self.interactions.uses.items() if uses]
         parts += [str(load) for load in self.loads] + [f"without {text}" for text in self.left_out]
         return f"ForceField({'; '.join(parts) or 'no styles'}; units {self.units})"
-
 
 
 if "asemd" not in external_calculators:       # ase.calculators.calculator.get_calculator_class("asemd")

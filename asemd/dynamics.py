@@ -1,6 +1,7 @@
 """The compiled time loop as an ASE dynamics: observers, trajectories and log files as everywhere in ASE, compiled steps in between."""
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator, Sequence
 
@@ -15,6 +16,8 @@ from asemd.errors import InputError
 from asemd.fix import Fix
 from asemd.fix.setforce import SetForce
 from asemd.loop import Loop
+from asemd.seen import same
+from asemd.topology import Topology
 
 ROUND_OFF = 1e-13       # positions that change by less, relative to the largest, have only been wrapped
 
@@ -107,6 +110,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         system = calc._system(atoms)
         calc.interactions.check_complete(system)
         fixes, groups, held = self._all_fixes()
+        self.masses = atoms.get_masses()[:, None]
         system.v = np.where(held, 0.0, atoms.get_velocities() / u["velocity"])
         self._given = (calc, self.dt, list(self.fixes), dict(self.groups), held)
         self._loop = Loop(system, calc.interactions, calc.neighbor_settings(atoms), fixes, groups, self.dt / u["time"], self.nsteps)
@@ -164,11 +168,20 @@ class MolecularDynamics(ASEMolecularDynamics):
     def _changed(self) -> bool:
         """Whether the loop cannot go on: the atoms, the fixes or the timestep are not those it has left."""
         atoms = self.atoms
-        if self._loop is None or self._loop.step != self.nsteps or not np.array_equal(atoms.arrays["momenta"], self._momenta):
+        if self._loop is None or self._loop.step != self.nsteps:
             return True
         calc, dt, fixes, groups, held = self._given
-        same = calc is atoms.calc and dt == self.dt and fixes == self.fixes and all(groups.get(k) is m for k, m in self.groups.items())
-        return not same or bool(calc.check_state(atoms)) or not np.array_equal(held, self._held(atoms))
+        if calc is not atoms.calc or dt != self.dt or fixes != self.fixes or any(groups.get(k) is not m for k, m in self.groups.items()):
+            return True
+        arrays, topology = self._state()
+        return (any(not same(array, self._left[0].get(name)) for name, array in arrays.items()) or topology != self._left[1]
+                or not np.array_equal(held, self._held(atoms)))
+
+    def _state(self) -> tuple[dict[str, np.ndarray | None], Topology | None]:
+        """What the loop goes on from: other evaluations with the same calculator do not matter."""
+        atoms = self.atoms
+        arrays = self.atoms.calc._view(atoms) | {"momenta": atoms.arrays.get("momenta"), "masses": atoms.get_masses()}
+        return arrays, getattr(atoms, "topology", None)
 
     def _advance(self, steps: int, begin: int, end: int) -> None:
         """That many compiled steps."""
@@ -187,7 +200,8 @@ class MolecularDynamics(ASEMolecularDynamics):
         except Exception:
             self._loop = None
             raise
-        self._momenta = self.atoms.arrays["momenta"].copy()
+        arrays, topology = self._state()
+        self._left = {k: None if a is None else a.copy() for k, a in arrays.items()}, None if topology is None else topology.copy()
 
     def step(self):
         """One step (for code that drives the dynamics by hand)."""
@@ -195,7 +209,7 @@ class MolecularDynamics(ASEMolecularDynamics):
         self._loop.finish()
 
     def _stretches(self, steps: int, longest: int) -> Iterator[bool]:
-        begin = self.nsteps
+        begin, steps = self.nsteps, math.ceil(steps)      # as many as ASE makes of 2.5
         self.max_steps = end = begin + steps
         if self.nsteps == 0:
             self._refresh_properties()

@@ -9,7 +9,7 @@ from asemd.errors import InputError, InputWarning
 from asemd.topology import Topology
 
 GROUPS = "groups"               # array of atoms: group bits, for interactions that differ by group
-FURTHER = ("mu", "shape", "quaternions", "epsilon", GROUPS)
+FURTHER = ("mu", "shape", "quaternions", "epsilon", "radius", "mol-id", GROUPS)
 
 
 def view(atoms, charges: bool) -> dict[str, np.ndarray | None]:

@@ -272,6 +272,25 @@ def test_changes_are_noticed(change):
     assert atoms.get_potential_energy() != pytest.approx(before, rel=1e-9)
 
 
+@pytest.mark.parametrize(("lines", "array", "before", "after"), [
+    (["pair_style lj/cut/sphere 8.0", "pair_coeff * * 0.01"], "radius", [1.7, 1.7, 1.7], [1.5, 1.6, 1.7]),
+    (["pair_style hybrid/molecular lj/cut 6.0 morse 6.0", "pair_coeff * * lj/cut 0.01 3.4", "pair_coeff * * morse 0.1 1.5 3.0"],
+     "mol-id", [1, 1, 2], [1, 2, 3])])
+def test_changes_of_arrays_of_lammps_are_noticed(lines, array, before, after):
+    def fresh(values):
+        a = PlainAtoms("Ar3", [[0, 0, 0], [3.5, 0, 0], [0, 3.6, 0]], cell=[20] * 3, pbc=True)
+        a.set_array(array, np.array(values))
+        a.calc = ForceField(commands=lines, units="metal", types=["Ar"])
+        return a
+    atoms, other = fresh(before), fresh(after)
+    atoms.get_potential_energy()
+    atoms.arrays[array][:] = after
+    for shift in (0.0, 0.1):
+        for a in (atoms, other):
+            a.positions[0, 1] += shift
+        assert atoms.get_potential_energy() == pytest.approx(other.get_potential_energy(), rel=1e-12)
+
+
 def test_changes_that_do_not_matter_cost_nothing():
     atoms = waters(2)
     atoms.get_potential_energy()

@@ -18,6 +18,7 @@ from test_calculator import argon, read, script, waters
 from asemd.dynamics import MolecularDynamics
 from asemd.errors import InputError, SimulationError
 from asemd.fix.langevin import Langevin
+from asemd.fix.npt import NPT
 from asemd.fix.nve import NVE
 from asemd.fix.nvt import NVT
 
@@ -282,8 +283,11 @@ def test_an_explosion_leaves_the_last_good_atoms():
     assert dynamics.nsteps == 20
 
 
-def test_changes_between_runs_count():
-    for change in (lambda a, d: a.set_momenta(0.5 * a.get_momenta()), lambda a, d: a.rattle(0.02, seed=1),
+@pytest.mark.parametrize("looked", [False, True])
+def test_changes_between_runs_count(looked):
+    """Also after an evaluation that has made the calculator's results those of the changed atoms."""
+    for change in (lambda a, d: a.set_masses(3.0 * a.get_masses()), lambda a, d: a.set_pbc((True, True, False)),
+                   lambda a, d: a.set_momenta(0.5 * a.get_momenta()), lambda a, d: a.rattle(0.02, seed=1),
                    lambda a, d: a.set_cell(a.cell.array * 1.01, scale_atoms=True), lambda a, d: setattr(d, "dt", 0.5 * DT),
                    lambda a, d: a.set_constraint(FixAtoms([3, 4]))):
         results = []
@@ -293,9 +297,34 @@ def test_changes_between_runs_count():
             dynamics.run(10)
             change(atoms, dynamics)
             atoms.set_momenta(atoms.get_momenta())
+            if looked:
+                atoms.get_potential_energy()
             dynamics.run(10)
-            results.append(atoms.positions.copy())
+            results.append(np.concatenate([atoms.positions, atoms.get_momenta()]))
         assert np.abs(results[0] - results[1]).max() < 1e-10
+
+
+def test_results_after_a_run_that_changed_the_cell():
+    """Atoms are moved afterwards: the engine must have their cell."""
+    atoms = hot_argon()
+    atoms.get_potential_energy()
+    MolecularDynamics(atoms, DT, fixes=[NPT(temperature=80.0, damping=100.0, pressure=0.01, pressure_damping=500.0)]).run(100)
+    other = atoms.copy()
+    other.calc = argon().calc
+    for shift in (0.0, 0.1):
+        for a in (atoms, other):
+            a.positions[0, 0] += shift
+        assert atoms.get_potential_energies().sum() == pytest.approx(other.get_potential_energy(), rel=1e-11)
+        assert np.allclose(atoms.get_stress(), other.get_stress(), rtol=1e-9, atol=1e-14)
+
+
+def test_steps_that_are_no_whole_number():
+    steps = []
+    for kind in (MolecularDynamics, VelocityVerlet):
+        dynamics = kind(hot_argon(), DT)
+        dynamics.run(2.5)
+        steps.append(dynamics.nsteps)
+    assert steps[0] == steps[1] == 3
 
 
 def test_fixes_may_be_exchanged():
