@@ -20,13 +20,13 @@ from asemd import recipe
 from asemd import units as unit_styles
 from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
-from asemd.errors import InputError, InputWarning, SimulationError
+from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
 from asemd.kspace import hold
 from asemd.loads import Field, Load, Maps, Potential, constraints_of, loads_of, together
-from asemd.native import coefficients, with_keys
+from asemd.native import types_by_element, with_keys
 from asemd.result import with_masks
-from asemd.seen import GROUPS, same, topology_of, typed, uses_charges, view
+from asemd.seen import GROUPS, check_finite, same, topology_of, typed, uses_charges, view
 from asemd.system import System
 from asemd.topology import Topology
 
@@ -195,19 +195,12 @@ class ForceField(Calculator):
         if getattr(atoms, "topology", None) is None and self.topology is None and holds(atoms.info):     # read from a file
             atoms = Atoms(atoms)
         atoms, types = typed(atoms, self.type_of), None
-        strange = np.flatnonzero(~np.isfinite(atoms.positions).all(axis=1))
-        if strange.size:
-            k = int(strange[0])
-            raise SimulationError(f"position of atom {atoms.arrays['id'][k] if 'id' in atoms.arrays else k + 1} is not finite")
+        check_finite(atoms)
         if "type" not in atoms.arrays:
             if self.like is not None:
                 raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements; "
                                  "use atoms that asemd.read gave, atoms.set_array('type', ...), or calc.with_types({'C': 1, ...})")
-            named = {k for style in self.arguments["pair"].values() for key in coefficients(style)
-                     for k in (key if isinstance(key, tuple) else (key,)) if isinstance(k, str)}
-            symbols = set(atoms.get_chemical_symbols())
-            self.types += sorted((symbols | (named if not self.types else set())) - set(self.types))
-            types = self.types
+            types = types_by_element(self.arguments["pair"], self.types, atoms)
         system = System.from_ase(atoms, types=types, units=self.units, like=self.like)
         system.topology = self._topology_of(atoms)
         if self.type_of and self.like is None:
@@ -224,6 +217,7 @@ class ForceField(Calculator):
         missing = system.counts["ntypes"] + 1 - len(system.mass)
         if missing > 0:
             system.mass = np.concatenate([system.mass, np.full(missing, np.nan)])
+        self.types = types or self.types
         return system
 
     def _type_counts(self, topology: Topology) -> dict[str, int]:
@@ -289,8 +283,13 @@ class ForceField(Calculator):
         if self._engine is not None and not set(changes) - {"positions", "image"}:
             return
         self._seen = {}
+        known = list(self.types)
         system = self._system(atoms)
-        self.interactions.check_complete(system)
+        try:
+            self.interactions.check_complete(system)
+        except InputError:
+            self.types = known
+            raise
         settings = self.neighbor_settings(atoms) if self.settings.exclude else self.settings
         if self._engine is None:
             self._engine = Engine(system, self.interactions, settings)
@@ -301,6 +300,8 @@ class ForceField(Calculator):
     # ---- ASE ----------------------------------------------------------------------------------------------------------------------------
     def calculate(self, atoms=None, properties=None, system_changes=all_changes):
         atoms = self.atoms if atoms is None else atoms
+        if atoms is None:
+            raise InputError("this calculator has no atoms yet: give them, as in calc.get_potential_energy(atoms), or set atoms.calc")
         self.results = {}
         if not self._seen:
             system_changes = all_changes

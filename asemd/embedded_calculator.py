@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ase.calculators.calculator import external_calculators, register_calculator_class
@@ -12,7 +12,7 @@ from asemd.calculator import ForceField
 from asemd.embedded_file import elements_of
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
-from asemd.potential_file import PotentialFile
+from asemd.potential_file import PotentialFile, located, named_elements
 from asemd.registry import find
 
 STYLES = ("eam", "eam/alloy", "eam/fs", "eam/he", "eam/cd", "eam/cd/old", "adp")
@@ -30,11 +30,11 @@ class EAM(ForceField):
     style : str, optional
         ``eam``, ``eam/alloy``, ``eam/fs``, ``eam/he``, ``eam/cd``, ``eam/cd/old`` or ``adp``; by default what the file's name ends with.
     elements : mapping, optional
-        Chemical symbol -> name of the element in the file, where the two differ.
+        Chemical symbol -> name of the element in the file, where the two differ; of funcfl files also the name of the file.
     skin : float, optional
         Extra distance of the neighbour list, Angstrom.
     threads : int
-    compat : str
+    precision, compat : str
         As in `ForceField`.
 
     Raises
@@ -53,10 +53,11 @@ class EAM(ForceField):
 
     name = "asemd-eam"
 
-    def __init__(self, *file, files: Sequence[str] = (), style: str = "", elements: dict[str, str] | None = None, skin: float = 1.0,
-                 threads: int = 1, compat: str = ""):
-        super().__init__(skin=skin, threads=threads, compat=compat)
-        self.files = [os.fspath(name) for name in (*file, *files)]
+    def __init__(self, *file, files: Sequence[str] = (), style: str = "", elements: Mapping[str, str] | None = None, skin: float = 1.0,
+                 threads: int = 1, precision: str = "double", compat: str = ""):
+        super().__init__(skin=skin, threads=threads, precision=precision, compat=compat)
+        several = len(file) == 1 and not isinstance(file[0], (str, os.PathLike)) and isinstance(file[0], Sequence)
+        self.files = [located(name, "EAM") for name in (*(file[0] if several else file), *files)]
         if not self.files:
             raise InputError("EAM needs a potential file, as EAM.from_file('Cu_u3.eam')")
         self.style_name = style or _style_of(self.files[0])
@@ -64,7 +65,7 @@ class EAM(ForceField):
             raise InputError(f"EAM: unknown style {self.style_name!r}{nearest(self.style_name, STYLES)}")
         if len(self.files) > 1 and self.style_name != "eam":
             raise InputError(f"EAM: style {self.style_name} takes one file for all elements, got {len(self.files)}")
-        self.given, self.compat = dict(elements or {}), compat
+        self.given, self.compat = named_elements(elements, "EAM"), compat
         self.coefficients = self._read()
 
     @classmethod
@@ -77,15 +78,7 @@ class EAM(ForceField):
         style, what = find("pair", self.style_name), f"pair_coeff {self.style_name}"
         out = {}
         if self.style_name == "eam":
-            for file in self.files:
-                values = style.parse_coeff([file], {})
-                number = values["data"].number
-                names = [s for s, name in self.given.items() if name == file] or ([chemical_symbols[number]]
-                                                                                 if 0 < number < len(chemical_symbols) else [])
-                if not names:
-                    raise InputError(f"EAM: {file} is for atomic number {number}: say with elements={{symbol: file}} what it is for")
-                out.update(dict.fromkeys(names, values))
-            return out
+            return self._read_single(style)
         names = elements_of(PotentialFile(self.files[0], what))
         values = style.parse_coeff([self.files[0], *names], {})
         known = {name: name for name in names} | self.given
@@ -93,6 +86,26 @@ class EAM(ForceField):
             if name not in names:
                 raise InputError(f"EAM: {self.files[0]} has no element {name!r}, it has {' '.join(names)}")
             out[symbol] = {**values, "element": (name,)}
+        return out
+
+    def _read_single(self, style) -> dict[str, dict[str, Any]]:
+        """The same of files that have one element each."""
+        out, used = {}, set()
+        for file in self.files:
+            values = style.parse_coeff([file], {})
+            number = values["data"].number
+            own = chemical_symbols[number] if 0 < number < len(chemical_symbols) else ""
+            called = {own, file, os.path.basename(file)} - {""}
+            names = [symbol for symbol, name in self.given.items() if name in called or os.path.abspath(name) == file]
+            used |= set(names)
+            names += [own] if own and own not in self.given else []
+            if not names:
+                raise InputError(f"EAM: {file} is for atomic number {number}: say with elements={{symbol: file}} what it is for")
+            if twice := sorted(set(names) & set(out)):
+                raise InputError(f"EAM: two files are for {twice[0]}: {out[twice[0]]['file']} and {file}")
+            out.update(dict.fromkeys(names, values))
+        for symbol in sorted(set(self.given) - used):
+            raise InputError(f"EAM: elements: no file is for {self.given[symbol]!r} or has that name, there are {', '.join(self.files)}")
         return out
 
     def _system(self, atoms):
@@ -103,7 +116,7 @@ class EAM(ForceField):
                              f"{' '.join(self.coefficients)}")
         if new or self.interactions is None:
             self.types += new
-            self.interactions, self._engine = self._made(), None
+            self.interactions, self._engine = self._made() if self.types else Interactions(compat=self.compat), None
         if "type" in atoms.arrays:      # numbers of a script: symbols say more
             atoms = atoms.copy()
             del atoms.arrays["type"]
@@ -127,6 +140,7 @@ class EAM(ForceField):
     def todict(self, skip_default: bool = True) -> dict:
         """The arguments, JSON-able."""
         out = {"files": self.files, "style": self.style_name, "skin": self.settings.skin}
+        out |= {} if self.settings.precision == "double" else {"precision": self.settings.precision}
         return out | {k: v for k, v in (("elements", self.given), ("compat", self.compat)) if v}
 
     def __repr__(self) -> str:

@@ -102,6 +102,23 @@ def with_keys(styles: Mapping) -> dict:
     return out
 
 
+def types_by_element(pair: Mapping, known: list[str], atoms) -> list[str]:
+    """Elements in the order of their types: those `known` by now, then the new ones of these atoms.
+
+    Raises
+    ------
+    InputError
+        Coefficients go by number and there are new elements that do not come last, so that numbers would change their meaning.
+    """
+    keys = {k for style in pair.values() for key in coefficients(style) for k in (key if isinstance(key, tuple) else (key,))}
+    named = {k for k in keys if isinstance(k, str)} if not known else set()
+    types = [*known, *sorted((set(atoms.get_chemical_symbols()) | named) - set(known))]
+    if types != sorted(types) and any(not isinstance(k, str) for k in keys):
+        raise InputError(f"coefficients are given by number, and these atoms have other elements than those before ({' '.join(known)}): "
+                         f"say which type is which element, as types={sorted(types)}")
+    return types
+
+
 def as_json(value):
     """Values that JSON can write; pairs of types become words."""
     if isinstance(value, Mapping):

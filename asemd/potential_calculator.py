@@ -1,13 +1,15 @@
 """Many-body potentials of LAMMPS's files as ASE calculators: Stillinger-Weber, Tersoff and others."""
 from __future__ import annotations
 
-import os
+from collections.abc import Mapping
 
 from ase.calculators.calculator import external_calculators, register_calculator_class
+from ase.data import chemical_symbols
 
 from asemd.calculator import ForceField
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
+from asemd.potential_file import located, named_elements
 from asemd.registry import find
 
 SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.mod": "tersoff/mod", ".tersoff.modc": "tersoff/mod/c",
@@ -35,7 +37,7 @@ class Potential(ForceField):
     skin : float, optional
         Extra distance of the neighbour list, Angstrom.
     threads : int
-    compat : str
+    precision, compat : str
         As in `ForceField`.
 
     Raises
@@ -55,18 +57,20 @@ class Potential(ForceField):
 
     name = "asemd-potential"
 
-    def __init__(self, file, *, style: str = "", elements: dict[str, str] | None = None, settings: str = "", skin: float = 1.0,
-                 threads: int = 1, compat: str = ""):
-        super().__init__(skin=skin, threads=threads, compat=compat)
-        self.files = [os.fspath(file)] if isinstance(file, (str, os.PathLike)) else [os.fspath(f) for f in file]
-        self.given, self.words, self.compat = dict(elements or {}), settings, compat
-        self.style_name = style or _style_of(self.files)
+    def __init__(self, file, *, style: str = "", elements: Mapping[str, str] | None = None, settings: str = "", skin: float = 1.0,
+                 threads: int = 1, precision: str = "double", compat: str = ""):
+        super().__init__(skin=skin, threads=threads, precision=precision, compat=compat)
+        words = list(file) if isinstance(file, (list, tuple)) else [file]
+        self.given, self.words, self.compat = named_elements(elements, "Potential"), settings, compat
+        self.style_name = style or _style_of([str(word) for word in words])
         found = find("pair", self.style_name)
         if not (found.many and found.elements):
             known = nearest(style, SUFFIXES.values())
             raise InputError(f"Potential: {self.style_name} is not a many-body style whose file names elements{known}")
         self.words = settings or found.usual
         found.parse_settings(self.words.split())
+        self.files = [word if word == "NULL" or (len(words) > 1 and word in chemical_symbols) else located(word, "Potential")
+                      for word in words]
 
     @classmethod
     def from_file(cls, file, **options) -> Potential:
@@ -76,7 +80,7 @@ class Potential(ForceField):
     def _system(self, atoms):
         new = sorted(set(atoms.get_chemical_symbols()) - set(self.types))
         if new or self.interactions is None:
-            made = self._made([*self.types, *new])
+            made = self._made([*self.types, *new]) if new or self.types else Interactions(compat=self.compat)
             self.types += new
             self.interactions, self._engine = made, None
         if "type" in atoms.arrays:      # numbers of a script: symbols say more
@@ -100,6 +104,7 @@ class Potential(ForceField):
     def todict(self, skip_default: bool = True) -> dict:
         """The arguments, JSON-able."""
         out = {"file": self._shown, "style": self.style_name, "skin": self.settings.skin}
+        out |= {} if self.settings.precision == "double" else {"precision": self.settings.precision}
         return out | {k: v for k, v in (("elements", self.given), ("settings", self.words), ("compat", self.compat)) if v}
 
     def __repr__(self) -> str:

@@ -6,7 +6,8 @@ error names the file and the line.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,41 @@ class Record:
             return value
         except ValueError:
             raise InputError(f"{self.what}: {name} must be {expected}, got {word!r}", self.where) from None
+
+
+def located(name: Any, what: str) -> str:
+    """The name of a file that means the same in every folder: its path if it is here, as given if it is in a folder of potentials.
+
+    Raises
+    ------
+    InputError
+        It is neither; no name.
+    """
+    if not isinstance(name, (str, os.PathLike)):
+        raise InputError(f"{what}: a file is a name or a path, got {name!r}")
+    text = os.fspath(name)
+    path = Path(text).expanduser()
+    if path.is_file():
+        return str(path.absolute())
+    if path.name != text and not path.is_dir():     # scripts look for such a file in the folders of potentials, too
+        raise InputError(f"{what}: cannot open file {text}: no such file")
+    find_file(text, what)
+    return text
+
+
+def named_elements(elements: Mapping[str, str] | None, what: str) -> dict[str, str]:
+    """Chemical symbol -> name in a file.
+
+    Raises
+    ------
+    InputError
+        No mapping, or not of words.
+    """
+    if elements is None:
+        return {}
+    if not isinstance(elements, Mapping) or not all(isinstance(word, str) for pair in elements.items() for word in pair):
+        raise InputError(f"{what}: elements are chemical symbols with names in the file, as {{'C': 'CH'}}, got {elements!r}")
+    return dict(elements)
 
 
 class PotentialFile:

@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from asemd.errors import InputError, InputWarning
+from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.topology import Topology
 
 GROUPS = "groups"               # array of atoms: group bits, for interactions that differ by group
@@ -21,6 +21,20 @@ def view(atoms, charges: bool) -> dict[str, np.ndarray | None]:
     return {"positions": a["positions"], "numbers": a["numbers"], "cell": atoms.cell.array, "pbc": atoms.pbc,
             "initial_charges": a.get("initial_charges") if charges else None, "type": a.get("type"), "origin": atoms.get_celldisp(),
             "image": a.get("image"), **{name: a.get(name) for name in FURTHER}}
+
+
+def check_finite(atoms) -> None:
+    """Refuse positions that are no numbers.
+
+    Raises
+    ------
+    SimulationError
+        Names the first such atom.
+    """
+    strange = np.flatnonzero(~np.isfinite(atoms.positions).all(axis=1))
+    if strange.size:
+        k = int(strange[0])
+        raise SimulationError(f"position of atom {atoms.arrays['id'][k] if 'id' in atoms.arrays else k + 1} is not finite")
 
 
 def same(a, b) -> bool:

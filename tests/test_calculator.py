@@ -240,6 +240,25 @@ def test_types_stay_when_an_element_vanishes():
         atoms.get_potential_energy()
 
 
+def test_energies_do_not_depend_on_what_was_asked_before():
+    calc = ForceField(pair={"lj/cut 6.0": {("Ar", "Ar"): (0.01, 3.4)}})
+    argon, krypton = bulk("Ar", a=5.3), bulk("Kr", a=5.3)
+    energy = calc.get_potential_energy(argon)
+    with pytest.raises(InputError, match="not set"):
+        calc.get_potential_energy(krypton)
+    assert calc.get_potential_energy(argon) == energy
+    numbered = {"lj/cut 6.0": {(1, 1): (0.01, 3.4), (2, 2): (0.02, 3.6)}}
+    one, both_ = PlainAtoms("Kr2", [[0, 0, 0], [3.7, 0, 0]]), PlainAtoms("KrAr2", [[0, 0, 0], [3.7, 0, 0], [0, 3.7, 0]])
+    calc = ForceField(pair=numbered)
+    calc.get_potential_energy(one)
+    with pytest.raises(InputError, match=r"other elements than those before \(Kr\): say .* types=\['Ar', 'Kr'\]"):
+        calc.get_potential_energy(both_)
+    orders = [[one, both_], [both_, one]]
+    calcs = [ForceField(pair=numbered, types=["Ar", "Kr"]) for _ in orders]
+    energies = [{id(a): c.get_potential_energy(a) for a in order} for c, order in zip(calcs, orders)]
+    assert energies[0] == energies[1]
+
+
 # ------------------------------------------------------------------------------------------------------------------------ changes ---
 
 CHANGES = {

@@ -1,8 +1,11 @@
 """asemd.EAM: the ASE calculator of an embedded-atom potential file."""
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from ase import Atoms
 from ase.build import bulk
 from ase.filters import UnitCellFilter
 from ase.io.jsonio import decode, encode
@@ -106,6 +109,53 @@ def test_copies_and_arguments(tmp_path):
         twin.calc = other
         assert twin.get_potential_energy() == energy
     assert repr(calc).startswith("EAM('") and "eam/alloy" in repr(calc)
+
+
+def test_elements_of_single_files(potentials, tmp_path, monkeypatch):  # noqa: F811
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    copper, other = rattled("Cu", 3.6, 2), rattled("Cu", 3.6, 2)
+    copper.calc = asemd.EAM.from_file(["Cu_u3.eam", "Ni_u3.eam"])
+    for name in ("Cu", "Cu_u3.eam"):
+        other.symbols[:] = "X"
+        other.calc = asemd.EAM.from_file("Cu_u3.eam", elements={"X": name})
+        assert other.get_potential_energy() == pytest.approx(copper.get_potential_energy(), rel=1e-14)
+        other.symbols[:] = "Cu"
+        assert other.get_potential_energy() == pytest.approx(copper.get_potential_energy(), rel=1e-14)
+    for files, elements, message in ((["Cu_u3.eam"], {"X": "Ag"}, "no file is for 'Ag'"),
+                                     (["Cu_u3.eam"], ["X"], "elements are chemical symbols"),
+                                     (["Cu_u3.eam", "Cu_u6.eam"], None, "two files are for Cu: Cu_u3.eam and Cu_u6.eam")):
+        with pytest.raises(InputError, match=message):
+            asemd.EAM.from_file(*files, elements=elements)
+
+
+@pytest.mark.parametrize("make", [lambda: asemd.EAM.from_file("Cu_u3.eam"), lambda: asemd.Potential("Si.sw"),
+                                  lambda: asemd.Potential("library.meam")])
+def test_no_atoms(make, potentials, monkeypatch):  # noqa: F811
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    calc, none = make(), Atoms()
+    with pytest.raises(InputError, match="has no atoms yet"):
+        calc.get_potential_energy()
+    some = bulk("Cu" if isinstance(calc, asemd.EAM) else "Si")
+    none.calc = calc
+    assert none.get_potential_energy() == 0.0 and none.get_forces().shape == (0, 3)
+    assert calc.get_potential_energy(some) < -3.0 and calc.get_potential_energy(none) == 0.0
+
+
+def test_files_stay_the_same_in_other_folders(potentials, tmp_path, monkeypatch):  # noqa: F811
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    for folder in ("mine", "run"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "mine" / "Si.sw").write_text((Path(potentials) / "Si.sw").read_text().replace("2.1683", "3.0000"))
+    monkeypatch.chdir(tmp_path)
+    silicon = bulk("Si")
+    calcs = [asemd.Potential.from_file("mine/Si.sw"), asemd.Potential.from_file("Si.sw")]
+    monkeypatch.chdir(tmp_path / "run")
+    mine, theirs = (c.get_potential_energy(silicon) for c in calcs)
+    assert mine == pytest.approx(theirs * 3.0 / 2.1683, rel=1e-12)
+    assert calcs[1].todict()["file"] == "Si.sw"
+    for make in (asemd.Potential.from_file, asemd.EAM.from_file):
+        with pytest.raises(InputError, match="cannot open file mine/Si.sw: no such file"):
+            make("mine/Si.sw", style="sw" if make == asemd.Potential.from_file else "eam")
 
 
 def test_what_is_wrong(tmp_path):
