@@ -177,7 +177,7 @@ class ForceField(Calculator):
 
     def commands(self) -> list[str]:
         """The force field as LAMMPS commands, in its own units."""
-        return recipe.commands(self.interactions)
+        return recipe.commands_of(self)
 
     def with_types(self, types: Mapping[str, int] | Sequence[str]) -> ForceField:
         """A copy that also takes atoms without the array ``type``: their types go by elements, `types` as in `ForceField`."""

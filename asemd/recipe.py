@@ -25,6 +25,11 @@ def commands(interactions) -> list[str]:
     return [*lines, " ".join(["special_bonds", *interactions.special_line()]), *interactions.kspace_lines()]
 
 
+def commands_of(calc) -> list[str]:
+    """The commands of a calculator's interactions, after the one for two dimensions where there are two."""
+    return ["dimension 2"] * (calc.like is not None and calc.like.dimension == 2) + commands(calc.interactions)
+
+
 def as_dict(calc) -> dict[str, Any]:
     """The arguments of a `asemd.ForceField`; of a script's force field the commands that make it.
 
@@ -34,7 +39,7 @@ def as_dict(calc) -> dict[str, Any]:
     rules = calc.settings.exclude
     if calc.interactions is not None and not calc.arguments:
         lines = [f"neigh_modify exclude type {i} {j}" for kind, i, *j in rules if kind == "type" for j in j]
-        out |= {"units": calc.units, "commands": [*commands(calc.interactions), *lines], "compat": calc.interactions.compat,
+        out |= {"units": calc.units, "commands": [*commands_of(calc), *lines], "compat": calc.interactions.compat,
                 "types": calc.like.counts["ntypes"]}
     if calc.type_of:
         out["types"] = dict(calc.type_of)

@@ -316,3 +316,15 @@ def test_calculator(potentials, monkeypatch):
                                 ("Si.sw", {"settings": "shift 1"}, "unknown keyword 'shift'")):
         with pytest.raises(InputError, match=says):
             asemd.Potential(file, **options)
+
+
+@pytest.mark.parametrize("along", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (3, -1, 2)])
+def test_straight_chains_of_carbon(along, potentials, monkeypatch):
+    """Dihedrals around straight angles have no sine, also where rounding leaves some of it."""
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    u = np.array(along) / np.linalg.norm(along)
+    chain = Atoms("HC4H", positions=[10.0 + u * t for t in (-1.06, 0.0, 1.2, 2.55, 3.75, 4.81)], cell=[30.0] * 3, pbc=True)
+    chain.calc = asemd.Potential.from_file("CH.airebo")
+    assert chain.get_potential_energy() == pytest.approx(-26.4850622705695, rel=1e-12)      # LAMMPS
+    forces = chain.get_forces()
+    assert np.abs(forces - np.outer(forces @ u, u)).max() < 1e-10 and np.abs(forces).max() > 0.1

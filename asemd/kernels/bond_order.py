@@ -44,7 +44,7 @@ from asemd.kernels.bond_order_terms import (
 from asemd.kernels.manybody import gather_near
 from asemd.kernels.threads import barrier
 
-NAMED = {name: getattr(terms, name) for name in ("BONDS", "FIRST", "WIDTH", "RHO", "SUMS")}
+NAMED = {name: getattr(terms, name) for name in ("BONDS", "FIRST", "WIDTH", "RHO", "SUMS", "STRAIGHT")}
 ROWS = SUMS + 3
 
 

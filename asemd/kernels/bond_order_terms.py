@@ -11,6 +11,7 @@ ENERGY = PER_ATOM = False
 BONDS = 24             # places for bonds of an atom
 FIRST, WIDTH = 5, 8    # rows of a bond in `shared`: see `asemd.kernels.bond_order`
 RHO = 12
+STRAIGHT = 1e-13       # of the cosine from that of a straight angle: dihedrals have faded there, to less than forces are rounded to
 SUMS = FIRST + WIDTH * BONDS
 
 
@@ -300,7 +301,7 @@ def turns(shared, pair, out, i, j, v, r, stage, weight):
     for b in range(int(shared[2, i])):
         k, d, rk = bond_of(shared, i, b)
         x = min(max(dot(u, d) / rk, -1.0), 1.0)
-        if 1.0 - x * x <= 1e-18 or is_atom(shared, i, b, j, v[0], v[1], v[2]):
+        if 1.0 + x < STRAIGHT or 1.0 - x * x <= 1e-18 or is_atom(shared, i, b, j, v[0], v[1], v[2]):
             continue
         ek = int(shared[4, k])
         w21, dw21 = fade(rk, pair[ei, ek, 0], pair[ei, ek, end])
@@ -309,7 +310,7 @@ def turns(shared, pair, out, i, j, v, r, stage, weight):
             m, e, rm = bond_of(shared, j, c)
             y = min(max(dot(u, e) / rm, -1.0), 1.0)
             back = is_atom(shared, j, c, i, -v[0], -v[1], -v[2]) or is_atom(shared, j, c, k, d[0] - v[0], d[1] - v[1], d[2] - v[2])
-            if 1.0 - y * y <= 1e-18 or back:
+            if 1.0 - y < STRAIGHT or 1.0 - y * y <= 1e-18 or back:
                 continue
             em = int(shared[4, m])
             w34, dw34 = fade(rm, pair[ej, em, 0], pair[ej, em, end])

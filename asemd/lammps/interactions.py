@@ -14,9 +14,10 @@ from asemd.lammps.session import Session
 from asemd.scene import Scene
 from asemd.system import System
 from asemd.topology import ATOMS
+from asemd.words import choice, take
 
 KNOWN = (*(f"{category}_{word}" for category in (*ATOMS, "pair") for word in ("style", "coeff")), "pair_modify", "kspace_style",
-         "kspace_modify", "special_bonds", "dielectric", "neigh_modify", "mass", "variable")
+         "kspace_modify", "special_bonds", "dielectric", "neigh_modify", "mass", "variable", "dimension")
 NUMBERS = re.compile(r"^\s*(pair|bond|angle|dihedral|improper)_coeff\s+(\S+)(?:\s+(\S+))?", re.M)
 
 
@@ -38,7 +39,10 @@ def scene_of(text: str, units: str, types: int, compat: str = "") -> Scene:
     InputError
         A command that is no part of a force field, errors in commands, with their lines.
     """
+    dimension = 3
     for command in script.parse(text):
+        if command.name == "dimension":
+            dimension = 2 if choice(take(command.text.split()[1:], 1, "dimension")[0], ("2", "3"), "dimension") == "2" else 3
         if command.name and command.name not in KNOWN:       # comments have no name
             raise InputError(f"{command.name} is not a command of a force field{nearest(command.name, KNOWN)}: for a whole script there "
                              "is asemd.read").at(command.where)
@@ -53,8 +57,8 @@ def scene_of(text: str, units: str, types: int, compat: str = "") -> Scene:
     scene.set_units(units)
     scene.interactions.compat = compat
     scene.system = System(box=Box.from_lammps(np.zeros(3), np.ones(3)), x=np.zeros((0, 3)), type=np.zeros(0), counts=counts, units=units,
-                          **fresh("full", 0))
-    Session(scene, passive=True).commands(text)
+                          dimension=dimension, **fresh("full", 0))
+    Session(scene, passive=True).commands(re.sub(r"^\s*dimension\s.*$", "", text, flags=re.M))     # a box is there already
     return scene
 
 
