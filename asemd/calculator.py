@@ -22,11 +22,11 @@ from asemd.atoms import Atoms, holds
 from asemd.engine import Engine, Result, Settings
 from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
-from asemd.kspace import hold
+from asemd.kspace import hold, tell_charge
 from asemd.loads import Field, Load, Maps, Potential, constraints_of, loads_of, together
 from asemd.native import types_by_element, with_keys
 from asemd.result import with_masks
-from asemd.seen import GROUPS, check_finite, same, topology_of, typed, uses_charges, view
+from asemd.seen import GROUPS, check_finite, same, topology_of, turns_as_virials, typed, uses_charges, view
 from asemd.system import System
 from asemd.topology import Topology
 
@@ -212,20 +212,13 @@ class ForceField(Calculator):
         for use in self.interactions.uses["pair"]:
             if use.style.charged and system.q is None:
                 raise InputError(f"pair style {use.style.name} needs charges: atoms.set_initial_charges(...)")
-        for kind, n in self._type_counts(system.topology).items():
+        for kind, n in recipe.type_counts(self.interactions, system.topology).items():
             system.counts[kind] = max(system.counts.get(kind, 0), n)
         missing = system.counts["ntypes"] + 1 - len(system.mass)
         if missing > 0:
             system.mass = np.concatenate([system.mass, np.full(missing, np.nan)])
         self.types = types or self.types
         return system
-
-    def _type_counts(self, topology: Topology) -> dict[str, int]:
-        out = {f"n{kind}types": int(types.max(initial=0)) for kind, _, types in topology}
-        for category, uses in self.interactions.uses.items():
-            name = "ntypes" if category == "pair" else f"n{category}types"
-            out[name] = max([out.get(name, 0), *(k if isinstance(k, int) else max(k) for use in uses for k in use.coeff)])
-        return out
 
     def mask(self, atoms, group: str) -> np.ndarray:
         """(n,) bool: the atoms of a group that the force field knows.
@@ -296,6 +289,7 @@ class ForceField(Calculator):
         else:
             self._engine.settings = settings
             self._engine.update(system)
+        tell_charge(self._engine.solver)
 
     # ---- ASE ----------------------------------------------------------------------------------------------------------------------------
     def calculate(self, atoms=None, properties=None, system_changes=all_changes):
@@ -378,6 +372,11 @@ class ForceField(Calculator):
         energy *= u["energy"]
         out = {"energy": energy, "free_energy": energy, "forces": forces * u["force"]}
         volume = atoms.cell.volume if atoms.cell.rank == 3 else 0.0
+        if self.interactions.is_oriented:
+            if of_loop:       # its torques may be those of fixes, too
+                return out
+            turns = turns_as_virials(system.extra["torque"])
+            virial, strains = virial + turns.sum(axis=0), strains + turns
         if volume:
             out["stress"] = virial[VOIGT] * (-u["energy"] / volume)
         n = max(1, len(atoms))

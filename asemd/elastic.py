@@ -8,6 +8,7 @@ Source: Lutsko, J. Appl. Phys. 65, 2991 (1989).
 """
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -18,12 +19,13 @@ from asemd import units as unit_styles
 from asemd.compute.born_matrix import UNIT, VOIGT, add_items, add_pairs
 from asemd.curvatures import bonded_items, of_list
 from asemd.embedded_curvature import of_embedded
-from asemd.errors import InputError, SimulationError
+from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.hessian import ListEngine, of_calculator
 from asemd.manybody_term import ManyBodyTerm
 from asemd.term import BondedTerm, PairListTerm
 
 STRAIN = 1e-4
+AWAY = 0.01       # distance of atoms from where no force acts, at which their elastic constants are not those of the crystal
 SHIFT = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 
 
@@ -34,7 +36,7 @@ def elastic_constants(calculator, atoms, relaxed: bool = True, numerical: bool =
     ----------
     calculator : asemd.ForceField
     atoms : ase.Atoms
-        Forces should vanish; under stress the constants are those by the Lagrangian strain.
+        Forces should vanish, or there is an `InputWarning`; under stress the constants are those by the Lagrangian strain.
     relaxed : bool
         Let the atoms follow the strain; otherwise they keep their places in the cell.
     numerical : bool
@@ -48,14 +50,15 @@ def elastic_constants(calculator, atoms, relaxed: bool = True, numerical: bool =
     Raises
     ------
     InputError
-        The cell has no volume, or a style has no second derivatives.
+        The atoms are not periodic in three directions, or a style has no second derivatives.
     SimulationError
         Some atoms are held by no force.
     """
     if atoms is None:
         raise InputError("get_elastic_constants needs atoms: nothing has been calculated yet")
-    if atoms.cell.rank < 3:
-        raise InputError("elastic constants need a cell with three vectors")
+    if atoms.cell.rank < 3 or not atoms.pbc.all():
+        raise InputError("elastic constants need a crystal: a cell with three vectors that is periodic in all of them, "
+                         f"here pbc is {' '.join(str(int(p)) for p in atoms.pbc)}")
     try:
         born, mixed = _analytic(calculator, atoms)
     except InputError:
@@ -65,9 +68,14 @@ def elastic_constants(calculator, atoms, relaxed: bool = True, numerical: bool =
     if relaxed and len(atoms) > 1:
         matrix = sparse.csc_matrix(of_calculator(calculator, atoms, numerical))[3:, 3:]      # one atom stays: the crystal must not drift
         try:
-            born = born - mixed[3:].T @ linalg.splu(matrix).solve(mixed[3:])
+            factors = linalg.splu(matrix)
         except RuntimeError:
             raise SimulationError("elastic constants: some atoms are held by no force, nothing says where they go under strain") from None
+        born = born - mixed[3:].T @ factors.solve(mixed[3:])
+        away = np.abs(factors.solve(calculator.get_forces(atoms).ravel()[3:])).max()
+        if not away < AWAY:
+            warnings.warn("elastic constants are those of a crystal at rest, and here forces act, which would move atoms by about "
+                          f"{away:.2g}: relax the atoms first", InputWarning, stacklevel=3)
     return 0.5 * (born + born.T) / atoms.get_volume()
 
 
@@ -104,8 +112,8 @@ def _analytic(calculator, atoms) -> tuple[np.ndarray, np.ndarray]:
             born += (found.strained * found.second) @ found.strained.T
             mixed += (found.density @ (found.second * found.strained).T).reshape(n, 3, 6)
         else:
-            raise InputError(f"no second derivatives by strain of {term.category} style {term.style.name}: numerical=True takes "
-                             "differences")
+            name = f"kspace_style {term.solver.style}" if term.category == "kspace" else f"{term.category} style {term.style.name}"
+            raise InputError(f"no second derivatives by strain of {name}: numerical=True takes differences")
     unit = calculator.units
     return (born * unit_styles.factor("energy", unit),
             mixed.reshape(3 * n, 6) * unit_styles.factor("energy/distance", unit))

@@ -89,6 +89,11 @@ class Interactions:
         """Whether a pair style leaves a part to a long-range solver."""
         return any(use.style.needs(use.settings) for use in self.uses["pair"])
 
+    @property
+    def is_oriented(self) -> bool:
+        """Whether a pair style turns atoms."""
+        return any(use.style.variant(use.settings).oriented for use in self.uses["pair"])
+
     def coulomb_constant(self, units) -> float:
         """The energy of two unit charges at unit distance for dielectric constant 1; some styles ask for CHARMM's number."""
         charmm = any(use.style.charmm_constant for use in self.uses["pair"]) and units == unit_styles.get("real")

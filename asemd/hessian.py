@@ -65,8 +65,9 @@ def hessian_of(system, interactions, settings, numerical: bool = False):
         elif type(term) is ManyBodyTerm:
             rest.append(_many(engine, term, numerical, pairs))
         elif term.category == "kspace":
-            raise InputError(f"no second derivatives of kspace_style {term.solver.style}: of forces with a solver take differences, as "
-                             "ase.vibrations and phonon codes do")
+            if not numerical:
+                raise InputError(f"no second derivatives of kspace_style {term.solver.style}; numerical=True takes differences instead")
+            rest.append(_of_forces(engine, term))
         elif type(term) is not OwnTerm:
             raise InputError(f"no second derivatives: {term.category} style {term.style.name} is not a function of positions alone")
     if pairs:

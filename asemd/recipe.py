@@ -25,6 +25,15 @@ def commands(interactions) -> list[str]:
     return [*lines, " ".join(["special_bonds", *interactions.special_line()]), *interactions.kspace_lines()]
 
 
+def type_counts(interactions, topology) -> dict[str, int]:
+    """How many types of each kind there are, by the topology and the coefficients."""
+    out = {f"n{kind}types": int(types.max(initial=0)) for kind, _, types in topology}
+    for category, uses in interactions.uses.items():
+        name = "ntypes" if category == "pair" else f"n{category}types"
+        out[name] = max([out.get(name, 0), *(k if isinstance(k, int) else max(k) for use in uses for k in use.coeff)])
+    return out
+
+
 def commands_of(calc) -> list[str]:
     """The commands of a calculator's interactions, after the one for two dimensions where there are two."""
     return ["dimension 2"] * (calc.like is not None and calc.like.dimension == 2) + commands(calc.interactions)

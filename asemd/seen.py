@@ -37,6 +37,14 @@ def check_finite(atoms) -> None:
         raise SimulationError(f"position of atom {atoms.arrays['id'][k] if 'id' in atoms.arrays else k + 1} is not finite")
 
 
+def turns_as_virials(torques: np.ndarray) -> np.ndarray:
+    """(n, 6) what virials, of which LAMMPS has one half (xy and not yx), gain where atoms have torques (n, 3) and keep their orientation
+    under a strain; their sum is then the derivative of the energy by the strain."""
+    out = np.zeros((len(torques), 6))
+    out[:, 3], out[:, 4], out[:, 5] = 0.5 * torques[:, 2], -0.5 * torques[:, 1], 0.5 * torques[:, 0]
+    return out
+
+
 def same(a, b) -> bool:
     """Whether two arrays, or their absence, are equal."""
     return a is b or (a is not None and b is not None and a.shape == b.shape and bool((a == b).all()))

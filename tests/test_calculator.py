@@ -240,6 +240,45 @@ def test_types_stay_when_an_element_vanishes():
         atoms.get_potential_energy()
 
 
+ORIENTED = {
+    "gayberne": ({"gayberne 1.0 3.0 1.0 4.5": {("Ar", "Ar"): (0.1, 3.4, 1.0, 1.0, 0.2, 1.0, 1.0, 0.2)}}, "", 1e-8),
+    "lj/cut/dipole/cut": ({"lj/cut/dipole/cut 4.5 8": {("Ar", "Ar"): (0.01, 3.0)}}, "", 1e-8),
+    "lj/long/dipole/long": ({"lj/long/dipole/long cut long 4.5": {("Ar", "Ar"): (0.01, 3.0)}}, "ewald/disp 1e-8", 2e-6),
+}
+
+
+@pytest.mark.parametrize("name", ORIENTED)
+def test_stress_of_atoms_that_turn(name):
+    """All six components are derivatives by a strain under which atoms keep their orientation."""
+    pair, kspace, precision = ORIENTED[name]
+    rng = np.random.default_rng(1)
+    atoms = PlainAtoms("Ar4", rng.random((4, 3)) * 2 + [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], cell=[9, 9, 9], pbc=True)
+    turns = rng.normal(size=(4, 4))
+    if name == "gayberne":
+        atoms.set_array("shape", np.full((4, 3), 1.0) * [2, 3, 4])
+        atoms.set_array("quaternions", turns / np.linalg.norm(turns, axis=1)[:, None])
+    else:
+        atoms.set_array("mu", 0.3 * turns[:, :3])
+        atoms.set_initial_charges([0.5, -0.5, 0.5, -0.5])
+    atoms.calc = ForceField(pair=pair, kspace=kspace)
+    stress = atoms.get_stress()
+    assert np.abs(stress - calculate_numerical_stress(atoms, 1e-5)).max() < precision * np.abs(stress).max()
+    assert np.abs(atoms.get_stresses().sum(axis=0) - stress).max() < 1e-12 * np.abs(stress).max()
+    atoms.set_velocities(0.01 * rng.normal(size=(4, 3)))
+    asemd.MolecularDynamics(atoms, 0.01).run(3)
+    after = atoms.get_stress(include_ideal_gas=False)
+    assert np.abs(after - calculate_numerical_stress(atoms, 1e-5)).max() < precision * np.abs(after).max()
+
+
+def test_scripts_in_two_dimensions_come_back_from_their_arguments(tmp_path):
+    atoms = read(tmp_path, "units lj\ndimension 2\nlattice hex 0.8\nregion b block 0 6 0 6 -0.5 0.5\ncreate_box 1 b\ncreate_atoms 1 box\n"
+                           "mass 1 1\npair_style lj/cut 2.5\npair_coeff 1 1 1 1\n")
+    other = atoms.copy()
+    other.calc = ForceField(**json.loads(json.dumps(atoms.calc.todict())))
+    assert other.get_potential_energy() == pytest.approx(atoms.get_potential_energy(), rel=1e-14)
+    assert other.calc.commands() == atoms.calc.commands() and other.calc.commands()[0] == "dimension 2"
+
+
 def test_energies_do_not_depend_on_what_was_asked_before():
     calc = ForceField(pair={"lj/cut 6.0": {("Ar", "Ar"): (0.01, 3.4)}})
     argon, krypton = bulk("Ar", a=5.3), bulk("Kr", a=5.3)

@@ -1,6 +1,8 @@
 """Second derivatives of embedded-atom and other many-body potentials."""
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from ase.build import bulk
@@ -12,7 +14,7 @@ from test_hessian import compare, differences
 
 import asemd
 from asemd import elastic
-from asemd.errors import InputError
+from asemd.errors import InputError, InputWarning
 
 
 def alloy(tmp_path, style, cells=2, seed=2):
@@ -88,4 +90,49 @@ def test_elastic_constants_of_pairs_and_others(tmp_path):
     assert other.calc.get_elastic_constants(other, relaxed=False, numerical=True).shape == (6, 6)
     atoms.cell = None
     with pytest.raises(InputError, match="a cell with three vectors"):
+        atoms.calc.get_elastic_constants(atoms)
+
+
+@pytest.mark.parametrize("solver", ["ewald 1e-8", "pppm 1e-6"])
+def test_crystals_of_ions_by_differences(solver):
+    """Second derivatives of a solver are differences of its forces: against differences of all forces, and of stresses."""
+    salt = bulk("NaCl", "rocksalt", a=5.6)
+    salt.set_initial_charges([1, -1])
+    salt.calc = asemd.ForceField(pair={"lj/cut/coul/long 6.0": {("Na", "Na"): (0.01, 2.4), ("Cl", "Cl"): (0.014, 3.6)}}, kspace=solver)
+    with pytest.raises(InputError, match=f"kspace_style {solver.split()[0]}; numerical=True"):
+        salt.calc.get_hessian(salt)
+    with pytest.raises(InputError, match=f"by strain of kspace_style {solver.split()[0]}: numerical=True"):
+        salt.calc.get_elastic_constants(salt)
+    exact, h = salt.calc.get_hessian(salt, numerical=True).toarray(), 1e-3
+    for k in range(3):
+        forces = []
+        for sign in (1, -1):
+            moved = salt.copy()
+            moved.positions[0, k] += sign * h
+            moved.calc = salt.calc
+            forces.append(moved.get_forces())
+        column = (forces[1] - forces[0]).ravel() / (2 * h)
+        assert np.abs(column - exact[k]).max() < 1e-3 * np.abs(exact).max()
+    c, pressure = salt.calc.get_elastic_constants(salt, numerical=True), -salt.get_stress()[0]
+    stress = []
+    for sign in (1, -1):
+        moved = salt.copy()
+        moved.calc = salt.calc.copy()
+        moved.set_cell(salt.cell.array @ (np.eye(3) + np.diag([sign * h, 0, 0])), scale_atoms=True)
+        stress.append(moved.get_stress())
+    slope = (stress[0] - stress[1]) / (2 * h)
+    assert slope[0] == pytest.approx(c[0, 0] - pressure, rel=1e-3) and slope[1] == pytest.approx(c[0, 1] + pressure, rel=1e-3)
+
+
+def test_elastic_constants_of_what_is_not_at_rest(tmp_path):
+    atoms = bulk("Ar", a=5.2, cubic=True)
+    atoms.calc = asemd.ForceField(pair={"lj/cut 8.5": {("Ar", "Ar"): (0.0104, 3.4)}})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        atoms.calc.get_elastic_constants(atoms)
+    atoms.rattle(0.05, seed=1)
+    with pytest.warns(InputWarning, match="forces act, which would move atoms by about 0.*relax"):
+        atoms.calc.get_elastic_constants(atoms)
+    atoms.pbc = (1, 1, 0)
+    with pytest.raises(InputError, match="periodic in all of them, here pbc is 1 1 0"):
         atoms.calc.get_elastic_constants(atoms)

@@ -23,8 +23,9 @@ from asemd.errors import InputError, InputWarning
 from asemd.kspace_settings import DEFAULTS
 from asemd.registry import class_of
 
-__all__ = ["KSpace", "hold", "solve"]
+__all__ = ["NEUTRAL", "KSpace", "hold", "solve", "tell_charge"]
 CUT = re.compile("coul/(cut|debye|dsf|wolf|charmm|gromacs)")      # pair styles that leave nothing to a solver
+NEUTRAL = 1e-5     # charges that add up to more are told of
 MOST = 16384       # points of a mesh along an edge, as in LAMMPS
 EXAMPLES = ("pppm", "ewald", "pppm/disp", "ewald/disp", "msm")      # the first one that fits is named in messages
 
@@ -311,6 +312,12 @@ def solve(system, interactions, units, skin: float) -> KSpace | None:
     solver.prepare(system, interactions, units, solver.take(mine, interactions, system))
     interactions.long_range = solver.constants
     return solver
+
+
+def tell_charge(solver: KSpace | None) -> None:
+    """Warn of charges that do not add up to 0: with a solver the box has a uniform charge that neutralises them."""
+    if solver is not None and solver.coulomb and abs(solver.qsum) > NEUTRAL:
+        warnings.warn(f"System is not charge neutral, net charge = {solver.qsum:.8g}", InputWarning, stacklevel=3)
 
 
 def hold(system, cell) -> None:

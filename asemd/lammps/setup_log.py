@@ -10,11 +10,10 @@ import numpy as np
 
 from asemd import units as unit_styles
 from asemd.errors import InputError
-from asemd.kspace import solve
+from asemd.kspace import NEUTRAL, solve
 from asemd.pairing import complete
 from asemd.topology import Topology
 
-NEUTRAL = 1e-5      # net charges below are rounding
 
 
 def report_special(session) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from asemd import units as unit_styles
 from asemd.compute._pairs import check_pairwise
 from asemd.errors import InputError, InputWarning
+from asemd.kspace import solve
 from asemd.lammps import live_coefficients
 from asemd.lammps.table_write import append, one_type
 from asemd.pair.table import Grid
@@ -33,7 +34,10 @@ def chosen(session, ntypes: int, units) -> list:
     system = session.scene.system
     for fill in (live_coefficients.fill, live_coefficients.scale):
         fill(session)
-    terms = session.scene.interactions.pair_terms(ntypes, units)
+    scene = session.scene
+    if scene.interactions.needs_solver:       # what it leaves to pairs
+        solve(system, scene.interactions, units, scene.neighbor.skin)
+    terms = scene.interactions.pair_terms(ntypes, units)
     check_pairwise(terms)
     if not any(term.molecules for term in terms):
         return terms
