@@ -15,7 +15,6 @@ from asemd.pairing import complete
 from asemd.topology import Topology
 
 
-
 def report_special(session) -> None:
     """Which atoms are one, two and three bonds apart; nothing for atoms without bonds."""
     scene = session.scene
