@@ -40,8 +40,6 @@ class AcklandAtom(Compute):
             if rest[0] != "legacy":
                 raise InputError(f"compute ackland/atom: unknown keyword {rest[0]!r} (did you mean legacy?)")
             legacy, rest = yes_no(take(rest[1:], 1, "compute ackland/atom legacy")[0], "compute ackland/atom legacy"), rest[2:]
-        if not session.scene.interactions.uses["pair"]:
-            raise InputError("compute ackland/atom needs a pair style, whose neighbour list it uses")
         return cls(group, legacy)
 
     def to_lammps(self) -> list[str]:

@@ -65,8 +65,6 @@ class ADF(Compute):
         triples = [(*rest[k:k + 3], *(number(w, "compute adf: distance") for w in rest[k + 3:k + 7])) for k in range(0, len(rest), 7)]
         out = cls(group, bins, triples, ordinate)
         out._ranges(session.scene.need_system("compute adf"))
-        if not session.scene.interactions.uses["pair"]:
-            raise InputError("compute adf needs a pair style, whose neighbour list it uses")
         return out
 
     def to_lammps(self) -> list[str]:

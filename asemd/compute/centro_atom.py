@@ -53,8 +53,6 @@ class CentroAtom(Compute):
             if rest[0] != "axes":
                 raise InputError(f"compute centro/atom: unknown keyword {rest[0]!r} (did you mean axes?)")
             axes, rest = yes_no(take(rest[1:], 1, "compute centro/atom axes")[0], "compute centro/atom axes"), rest[2:]
-        if not session.scene.interactions.uses["pair"]:
-            raise InputError("compute centro/atom needs a pair style, whose neighbour list it uses")
         return cls(group, name if name in NEIGHBORS else whole(name, "compute centro/atom: neighbours"), axes)
 
     def to_lammps(self) -> list[str]:

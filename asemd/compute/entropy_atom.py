@@ -70,8 +70,6 @@ class EntropyAtom(Compute):
                 length = number(take(rest, 1, f"{what} avg")[0], f"{what} avg cutoff")
                 rest.pop(0)
                 given["average"] = length if on else None
-        if not session.scene.interactions.uses["pair"]:
-            raise InputError(f"{what} needs a pair style, whose neighbour list it uses")
         return cls(group, sigma, cutoff, **given)
 
     def to_lammps(self) -> list[str]:

@@ -62,8 +62,6 @@ class GroupGroup(Compute):
                 given[word] = yes_no(value, f"compute group/group {word}")
         if given.get("molecule", "off") != "off" and not scene.need_system("compute group/group").molecular:
             raise InputError("compute group/group molecule needs an atom style with molecule numbers")
-        if not scene.interactions.uses["pair"]:
-            raise InputError("compute group/group needs a pair style")
         return cls(group, other, **given)
 
     def to_lammps(self) -> list[str]:

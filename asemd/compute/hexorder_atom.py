@@ -61,8 +61,6 @@ class HexOrderAtom(Compute):
                 given["neighbors"] = None if value == "NULL" else positive(value, f"{what} nnn")
             else:
                 given[word] = whole(value, f"{what} degree") if word == "degree" else number(value, f"{what} cutoff")
-        if not session.scene.interactions.uses["pair"]:
-            raise InputError(f"{what} needs a pair style, whose neighbour list it uses")
         return cls(group, **given)
 
     def to_lammps(self) -> list[str]:

@@ -106,8 +106,6 @@ class OrientOrderAtom(Compute):
                 positive(value, f"{what} chunksize")      # memory of accelerators, which changes no number
             else:
                 given["components"] = whole(value, f"{what} components")
-        if not session.scene.interactions.uses["pair"]:
-            raise InputError(f"{what} needs a pair style, whose neighbour list it uses")
         return cls(group, **given)
 
     def to_lammps(self) -> list[str]:

@@ -57,8 +57,6 @@ class PairLocal(Compute):
             cutoff = take(words[k + 1:], 1, "compute pair/local cutoff")[0]
             del words[k:k + 2]
         out = cls(group, words, cutoff)
-        if not scene.interactions.uses["pair"]:
-            raise InputError("compute pair/local needs a pair style")
         if cutoff == "radius" and "radius" not in scene.need_system("compute pair/local").extra:
             raise InputError(f"compute pair/local: cutoff radius needs atoms with a radius, not atom_style {scene.atom_style}")
         return out

@@ -60,8 +60,6 @@ class RDF(Compute):
             raise InputError(f"compute rdf: types come in pairs, got {' '.join(rest)}")
         out = cls(group, bins, zip(rest[::2], rest[1::2], strict=True), cutoff)
         out._ranges(session.scene.need_system("compute rdf"))
-        if cutoff is None and not session.scene.interactions.uses["pair"]:
-            raise InputError("compute rdf needs a pair style or the keyword cutoff")
         return out
 
     def to_lammps(self) -> list[str]:

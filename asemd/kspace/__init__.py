@@ -265,6 +265,7 @@ class KSpace(ABC):
             Cutoffs of several pair styles differ.
         """
         whole = [use.settings["cut"] for use in uses if not use.style.parts]      # no sum of parts, with one cutoff
+        whole += [cut for use in uses if use.style.from_files for cut in use.style.long_cutoffs(use)]
         return self.one_cutoff(whole + [use.settings[part.cut] for use in uses for part in use.style.variant(use.settings).parts
                                         if part.long or (part.charged and not use.style.solvers)])
 

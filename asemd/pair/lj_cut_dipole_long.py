@@ -2,9 +2,10 @@ r"""$$E = 4\epsilon\left[(\sigma/r)^{12} - (\sigma/r)^6\right] + C \left[q_i q_j
     + \vec p_i \cdot \vec p_j B_1 - (\vec p_i \cdot \vec r)(\vec p_j \cdot \vec r) B_2\right], \qquad B_0 = \frac{\mathrm{erfc}(g r)}{r},
     \quad B_{n+1} = -\frac{B_n'}{r}$$
 
-Lennard-Jones up to cut_lj, and what kspace_style ewald/dipole leaves of charges and point dipoles, up to cut_coul; g is the solver's. One
-cutoff given means both. Dipoles feel torques. The complementary error function is LAMMPS's approximation, as in coul/long; special pairs
-lose the part of their bare energy that special_bonds takes off. Source: Toukmaji, Sagui, Board, Darden, J. Chem. Phys. 113, 10913 (2000).
+Lennard-Jones up to cut_lj, and what kspace_style ewald/dipole, or ewald/disp where there are charges, leaves of charges and point dipoles,
+up to cut_coul; g is the solver's. One cutoff given means both. Dipoles feel torques. The complementary error function is LAMMPS's
+approximation, as in coul/long; special pairs lose the part of their bare energy that special_bonds takes off. Source: Toukmaji, Sagui,
+Board, Darden, J. Chem. Phys. 113, 10913 (2000).
 """
 from __future__ import annotations
 
@@ -40,4 +41,4 @@ def radial(r2, whole, weight, cut2, constants):
 
 style = register(DipolePair("lj/cut/dipole/long", radial, coul_long, __doc__, coeff="epsilon sigma [cut_lj]", example="0.1 3.0 7.0",
                             units={"g_ewald": "1/distance"}))
-style.solvers = frozenset(["ewald/dipole"])
+style.solvers = frozenset(["ewald/dipole", "ewald/disp", "ewald/disp/dipole"])

@@ -158,9 +158,16 @@ def even_pieces(file: FileTable, method: str, n: int, cut: float, unit: float):
 
 
 class Table(PairStyle):
-    """Reads files when coefficients are given and makes the pieces when kernels are."""
+    """Reads files when coefficients are given and makes the pieces when kernels are; with a keyword for a solver tables hold what that
+    leaves to pairs."""
 
     from_files = True
+
+    def works_with(self, settings):
+        return frozenset(settings["keywords"].split()) & {"ewald", "pppm", "msm"}
+
+    def long_cutoffs(self, use):
+        return [self.cutoffs(c, use.settings)[0] for c in use.coeff.values()] if self.works_with(use.settings) else []
 
     def parse_settings(self, words_):
         what = "pair_style table"
