@@ -210,7 +210,7 @@ class ForceField(Calculator):
         if self.interactions.kspace != "none" and {"slab", "wire"} & set(self.interactions.kspace_modify):
             hold(system, atoms.cell)
         for use in self.interactions.uses["pair"]:
-            if use.style.charged and system.q is None:
+            if use.style.variant(use.settings).charged and system.q is None:
                 raise InputError(f"pair style {use.style.name} needs charges: atoms.set_initial_charges(...)")
         for kind, n in recipe.type_counts(self.interactions, system.topology).items():
             system.counts[kind] = max(system.counts.get(kind, 0), n)

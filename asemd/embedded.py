@@ -21,6 +21,7 @@ with.
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -40,6 +41,19 @@ HARTREE_BOHR = 27.2 * 0.529      # eV A, the product that funcfl files go with
 def radial(values: np.ndarray) -> np.ndarray:
     """Rows of one function of the distance: its intervals, and zeros."""
     return np.concatenate([polynomials(values), np.zeros((1, 4))])
+
+
+def pair_part(tables: PairTables, i: int, j: int, r2: float) -> tuple[float, float]:
+    """Energy and force between two atoms of types i and j that are not in any density, at a squared distance."""
+    if not 0.0 < r2 < tables.rows[0, i, j]:
+        return 0.0, 0.0
+    r = math.sqrt(r2)
+    p = r * tables.constants[0]
+    m = min(int(p), int(tables.constants[1]))
+    t = min(p - m, 1.0)
+    a, b, c, d = tables.arrays[0][tables.arrays[1][i, j] + m, 4:8].tolist()
+    phi = (((a * t + b) * t + c) * t + d) / r
+    return phi, (phi - ((3.0 * a * t + 2.0 * b) * t + c) * tables.constants[0]) / r
 
 
 class Embedded(ManyBody):

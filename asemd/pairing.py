@@ -197,7 +197,7 @@ def check_complete(interactions: Interactions, system) -> None:
     if interactions.hybrid["pair"] == "hybrid/molecular" and not system.molecular:
         raise InputError("pair_style hybrid/molecular needs an atom_style with molecule numbers, such as full")
     for use in interactions.uses["pair"]:
-        if use.style.charged and system.q is None:
+        if use.style.variant(use.settings).charged and system.q is None:
             raise InputError(f"pair style {use.style.name} needs atom attribute q: use atom_style charge or full")
         if use.style.charged and not use.style.dielectric and "epsilon" in system.extra:
             raise InputError(f"pair style {use.style.name} knows nothing of the dielectric constants that atoms of style "

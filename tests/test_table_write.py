@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+from test_embedded import potentials  # noqa: F401
 from wheel import ask, ran
 
 from asemd.errors import AsemdError, InputError
@@ -132,3 +133,29 @@ def test_parts_of_hybrid_pair_styles(name, tmp_path):
     ask("ran(given['commands']).close()\nanswer = 0", commands=[c.replace("FILE", str(theirs)) for c in lines])
     got, want = sections(ours.read_text())[1], sections(theirs.read_text())[1]
     assert got == pytest.approx(want, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize(("style", "file", "elements"), [("eam/alloy", "CuNi.eam.alloy", "Ni Cu"), ("eam/fs", "AlFe_mm.eam.fs", "Al Fe"),
+                                                         ("eam", "Ni_u3.eam", "")])
+def test_embedded_atoms_have_the_part_between_pairs(style, file, elements, potentials, tmp_path, monkeypatch):  # noqa: F811
+    """At points of the file's table, whose values are r times the energy."""
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    from asemd.embedded_file import read_funcfl, read_setfl
+    from asemd.potential_file import PotentialFile
+    read = PotentialFile(file, "")
+    if style == "eam":
+        data = read_funcfl(read)
+        values = 27.2 * 0.529 * data.charge**2      # of the file's units
+    else:
+        data = read_setfl(read, elements.split(), pairs=style == "eam/fs")
+        a, b = (data.elements.index(e) for e in elements.split())
+        values = data.pair[max(a, b), min(a, b)]
+    low, high = 200, 300
+    path = tmp_path / "pair.table"
+    lmp = ran(["units metal", "region b block 0 9 0 9 0 9", "create_box 2 b", "mass * 50", "create_atoms 1 single 1 1 1",
+               f"pair_style {style}", *(["pair_coeff 1*2 1*2 Ni_u3.eam"] if style == "eam" else [f"pair_coeff * * {file} {elements}"]),
+               f"pair_write 1 2 {high - low + 1} r {low * data.dr!r} {high * data.dr!r} {path} A"])
+    lmp.close()
+    r, energy, force = sections(path.read_text())[1].T
+    assert np.abs(energy * r - values[low:high + 1]).max() < 1e-12 * np.abs(values[low:high + 1]).max()
+    assert np.abs(np.gradient(energy, r)[1:-1] + force[1:-1]).max() < 1e-3 * np.abs(force).max()

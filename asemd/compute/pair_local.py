@@ -69,6 +69,8 @@ class PairLocal(Compute):
 
     def local(self, state) -> np.ndarray:
         """(m,) for one keyword, (m, k) for several."""
+        if state.engine is None or not state.engine.interactions.uses["pair"]:
+            raise InputError("compute pair/local needs a pair style")
         p = neighbors(state, self.group, True, self.cutoff == "radius")
         r = np.sqrt(p.r2)
         columns = {"dist": r, **{f"d{a}": p.d[:, k] for k, a in enumerate("xyz")}}

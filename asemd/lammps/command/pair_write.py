@@ -1,4 +1,7 @@
-"""``pair_write itype jtype N r|rsq|bitmap inner outer file keyword [qi qj]``: a pair potential as a section of a table file."""
+"""``pair_write itype jtype N r|rsq|bitmap inner outer file keyword [qi qj]``: a pair potential as a section of a table file.
+
+Of embedded-atom potentials the part between pairs is written, without embedding energies, as in LAMMPS.
+"""
 from __future__ import annotations
 
 import math
@@ -8,6 +11,7 @@ import numpy as np
 
 from asemd import units as unit_styles
 from asemd.compute._pairs import check_pairwise
+from asemd.embedded import pair_part
 from asemd.errors import InputError, InputWarning
 from asemd.kspace import solve
 from asemd.lammps import live_coefficients
@@ -29,6 +33,11 @@ def squares(style: str, n: int, inner: float, outer: float) -> np.ndarray:
     return out
 
 
+def is_embedded(term) -> bool:
+    """Whether it is an embedded-atom potential, whose part between pairs can be written."""
+    return getattr(term.style, "packable", False)
+
+
 def chosen(session, ntypes: int, units) -> list:
     """The pair styles that act on the two atoms; of ``hybrid/molecular`` the one of the first two atoms, as in LAMMPS."""
     system = session.scene.system
@@ -38,7 +47,7 @@ def chosen(session, ntypes: int, units) -> list:
     if scene.interactions.needs_solver:       # what it leaves to pairs
         solve(system, scene.interactions, units, scene.neighbor.skin)
     terms = scene.interactions.pair_terms(ntypes, units)
-    check_pairwise(terms)
+    check_pairwise([term for term in terms if not is_embedded(term)])
     if not any(term.molecules for term in terms):
         return terms
     which = "other" if system.n > 1 and system.molecule[0] != system.molecule[1] else "same"
@@ -54,6 +63,10 @@ def pair_value(terms, i: int, j: int, r2: float, qq: float) -> tuple[float, floa
     r = math.sqrt(r2)
     for term in terms:
         if np.ndim(term.use.factor):
+            continue
+        if is_embedded(term):
+            e, f = pair_part(term.tables, i, j, r2)
+            energy, force = energy + term.use.factor * e, force + term.use.factor * f
             continue
         row = constant = array = 0
         for part in term.style.parts:
