@@ -24,7 +24,7 @@ from asemd.errors import InputError, InputWarning
 from asemd.forcefield import Interactions
 from asemd.kspace import hold, tell_charge
 from asemd.loads import Field, Load, Maps, Potential, constraints_of, loads_of, together
-from asemd.native import types_by_element, with_keys
+from asemd.native import by_elements, check_numbers, types_by_element, with_keys
 from asemd.result import with_masks
 from asemd.seen import GROUPS, check_finite, same, topology_of, turns_as_virials, typed, uses_charges, view
 from asemd.system import System
@@ -87,8 +87,7 @@ class ForceField(Calculator):
         for name, value, known in (("precision", precision, ("double", "mixed")), ("compat", compat, ("lammps", ""))):
             if value not in known:
                 raise InputError(f"{name} must be {' or '.join(known) if all(known) else 'lammps or nothing'}, got {value!r}")
-        if not skin >= 0.0:
-            raise InputError(f"skin must not be negative, got {skin}")
+        check_numbers(skin, threads, dielectric)
         given = dict(bond=bond, angle=angle, dihedral=dihedral, improper=improper, pair=pair)
         self.arguments = {category: with_keys(styles or {}) for category, styles in given.items()} | dict(
             special_bonds=special_bonds, shift=shift, tail=tail, mix=mix, dielectric=dielectric, compat=compat, kspace=kspace,
@@ -280,9 +279,9 @@ class ForceField(Calculator):
         system = self._system(atoms)
         try:
             self.interactions.check_complete(system)
-        except InputError:
-            self.types = known
-            raise
+        except InputError as e:
+            told, self.types = by_elements(e, self.types, self.arguments.get("pair")), known
+            raise told from None
         settings = self.neighbor_settings(atoms) if self.settings.exclude else self.settings
         if self._engine is None:
             self._engine = Engine(system, self.interactions, settings)

@@ -1,8 +1,13 @@
 """Interactions given as Python mappings instead of LAMMPS commands."""
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from math import isfinite
+from numbers import Real
 from typing import TYPE_CHECKING, Any
+
+from ase.data import chemical_symbols
 
 from asemd.errors import InputError, nearest
 from asemd.registry import find, plain_name
@@ -23,7 +28,12 @@ def fill(interactions: Interactions, category: str, styles: Mapping[str, Any], l
             content = content.get("coeff", {})
         if not isinstance(content, Mapping):
             raise InputError(f"{category} style {title}: coefficients are a mapping from type to values, as {{1: values}}, got {content!r}")
-        coeff = {key_of(key, category, labels): values for key, values in content.items()}
+        coeff: dict = {}
+        for key, values in content.items():
+            place = key_of(key, category, labels)
+            if place in coeff and text(values) != text(coeff[place]):
+                raise InputError(f"{category} style {title}: {key!r} is there twice, with other values")
+            coeff[place] = values
         entries.append((plain_name(name), settings, coeff))
     if len(entries) == 1:
         interactions.set_style(category, [entries[0][0], *entries[0][1]])
@@ -97,9 +107,38 @@ def with_keys(styles: Mapping) -> dict:
         raise InputError(f"styles are given with their coefficients, as {{'harmonic': {{1: (13.0, 1.53)}}}}, got {styles!r}")
     out = {}
     for name, style in styles.items():
+        if not isinstance(coefficients(style), Mapping):
+            raise InputError(f"style {name}: coefficients are a mapping from type to values, as {{('Ar', 'Ar'): (0.01, 3.4)}}, got "
+                             f"{style!r}")
         coeff = {key(k): v for k, v in coefficients(style).items()}
         out[name] = coeff if coefficients(style) is style else {**style, "coeff": coeff}
     return out
+
+
+def check_numbers(skin, threads, dielectric) -> None:
+    """Refuse numbers that make no sense.
+
+    Raises
+    ------
+    InputError
+        A skin below 0, threads that are no whole number above 0, a dielectric constant that is not positive.
+    """
+    for name, value, wanted, fits in (("skin", skin, "a number, not negative", lambda v: v >= 0.0),
+                                      ("threads", threads, "a whole number from 1", lambda v: v >= 1 and v == int(v)),
+                                      ("dielectric", dielectric, "a positive number", lambda v: v > 0.0)):
+        if isinstance(value, (bool, str)) or not isinstance(value, Real) or not isfinite(value) or not fits(value):
+            raise InputError(f"{name} must be {wanted}, got {value!r}")
+
+
+def by_elements(error: InputError, types: list[str], pair: Mapping | None) -> InputError:
+    """The message of missing coefficients with the elements that they were given by, instead of types; others as they are."""
+    keys = [key if isinstance(key, tuple) else (key, key) for style in (pair or {}).values() for key in coefficients(style)]
+    found = re.search(r"pair_coeff for type pairs ([\d ,]+?)(, \.\.\.)? is missing", str(error))
+    if not found or not any(isinstance(word, str) for key in keys for word in key):
+        return error
+    missing = ["-".join(types[int(t) - 1] for t in two.split()) for two in found[1].split(", ")]
+    return InputError(f"no coefficients for {', '.join(missing)}{found[2] or ''}: given are those for "
+                      f"{', '.join('-'.join(map(str, key)) for key in keys)}")
 
 
 def types_by_element(pair: Mapping, known: list[str], atoms) -> list[str]:
@@ -112,6 +151,8 @@ def types_by_element(pair: Mapping, known: list[str], atoms) -> list[str]:
     """
     keys = {k for style in pair.values() for key in coefficients(style) for k in (key if isinstance(key, tuple) else (key,))}
     named = {k for k in keys if isinstance(k, str)} if not known else set()
+    for word in sorted(named - set(chemical_symbols)):
+        raise InputError(f"pair coefficients: {word!r} is no chemical symbol{nearest(word, atoms.get_chemical_symbols())}")
     types = [*known, *sorted((set(atoms.get_chemical_symbols()) | named) - set(known))]
     if types != sorted(types) and any(not isinstance(k, str) for k in keys):
         raise InputError(f"coefficients are given by number, and these atoms have other elements than those before ({' '.join(known)}): "

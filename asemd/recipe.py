@@ -76,6 +76,8 @@ def numbers_of(types: Mapping[str, int] | Iterable[str] | int | None) -> tuple[d
     given = types if isinstance(types, Mapping) else {}
     if not given:
         symbols = list(types)
+        if wrong := [s for s in symbols if not isinstance(s, str)]:
+            raise InputError(f"types are elements in the order of their types, as ['O', 'H'], or their number, got {wrong[0]!r}")
         if len(set(symbols)) < len(symbols):
             twice = next(s for s in symbols if symbols.count(s) > 1)
             raise InputError(f"types has {twice} twice: atoms of one element that differ in their type need the array 'type'")

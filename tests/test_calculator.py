@@ -439,6 +439,13 @@ def test_types_by_number_array():
     (lambda: ForceField(pair=ARGON, topology=Topology(bonds=[(0, 99)])), "names atom 99"),
     (lambda: ForceField(pair=ARGON, precision="half"), "double or mixed"),
     (lambda: ForceField(pair=ARGON, skin=-1), "skin"),
+    *((lambda v=v: ForceField(pair=ARGON, dielectric=v), f"dielectric must be a positive number, got {v!r}") for v in (0, -1.0, "2")),
+    *((lambda v=v: ForceField(pair=ARGON, threads=v), f"threads must be a whole number from 1, got {v!r}") for v in (0, 2.5, "2")),
+    (lambda: ForceField(pair={"lj/cut 8.0": (0.01, 3.4)}), "coefficients are a mapping from type to values"),
+    (lambda: ForceField(pair=ARGON, types=[18]), "types are elements in the order of their types, .*got 18"),
+    (lambda: ForceField(pair={"lj/cut 8.0": {("Aq", "Ar"): (1, 3)}}), "'Aq' is no chemical symbol"),
+    (lambda: ForceField(pair={"lj/cut 8.0": {("Kr", "Kr"): (1, 3)}}), "no coefficients for Ar-Ar, Ar-Kr: given are those for Kr-Kr"),
+    (lambda: ForceField(pair={"lj/cut 8.0": {("Ar", "Kr"): (1, 3), ("Kr", "Ar"): (2, 3)}}), "is there twice, with other values"),
 ])
 def test_mistakes_are_input_errors(make, message):
     atoms = bulk("Ar", "fcc", 5.26, cubic=True)

@@ -86,8 +86,9 @@ def test_tables_have_one_cutoff(tmp_path, monkeypatch):
         ran(text.replace("C 4.5", "C 5.0") + "kspace_style pppm 1e-4\nrun 0")
 
 
-@pytest.mark.parametrize("words", ["c all group/group all", "c all pair/local dist", "c all rdf 10", "c all adf 10", "c all centro/atom fcc",
-                                   "c all orientorder/atom", "c all hexorder/atom", "c all ackland/atom", "c all entropy/atom 0.2 4.0"])
+@pytest.mark.parametrize("words", [
+    "c all group/group all", "c all pair/local dist", "c all rdf 10", "c all adf 10", "c all centro/atom fcc", "c all orientorder/atom",
+    "c all hexorder/atom", "c all ackland/atom", "c all entropy/atom 0.2 4.0"])
 def test_computes_may_come_before_the_pair_style(words):
     """LAMMPS looks for a pair style when a run begins."""
     if "/local" in words or "/atom" in words:
