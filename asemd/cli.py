@@ -155,6 +155,9 @@ def run(context: typer.Context,
     watcher = make_watcher(options.screen is not None)
     session = Session(switches=options, screen=watcher.write if options.screen is None else None)
     session.observer = watcher
+    if isinstance(watcher, Bar):
+        from asemd.kernels import generate
+        generate.announce = lambda: watcher.write("Compiling what is needed for the first time: some ten seconds, up to a minute ...\n")
     if html:
         from asemd.lammps.record import Record
         session.record = Record()

@@ -240,3 +240,21 @@ def test_code_calls_its_own_copies(tmp_path):
     """Not those that were loaded first, which may be rounded otherwise: the last bit would depend on what else was run before."""
     functions = answer(launch(COPIES, tmp_path))
     assert any("many" in name for name, _ in functions) and "linkonce_odr" not in {linkage for _, linkage in functions}
+
+
+def test_the_first_compilation_is_announced(tmp_path):
+    """Once in a process that compiles, and not at all in the next one, which finds its code on the disk."""
+    program = """
+    import json
+    from asemd.kernels import generate
+    said = []
+    generate.announce = lambda: said.append(len(said))
+    values = []
+    for k in (3, 4):
+        b = generate.Builder("a test")
+        b.text(f"def times(x):\\n    return {k} * x")
+        values.append(b.build().times(2))
+    print(json.dumps([said, values]))
+    """
+    assert answer(launch(program, tmp_path)) == [[0], [6, 8]]
+    assert answer(launch(program, tmp_path)) == [[], [6, 8]]

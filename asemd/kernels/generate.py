@@ -55,6 +55,7 @@ def cache_dir() -> Path:
 
 
 _dir: Path | None = None
+announce: Callable[[], None] | None = None      # called once, before a kernel is compiled that is not in the cache
 
 
 class _Plain(ast.NodeTransformer):
@@ -287,6 +288,7 @@ def load(text: str) -> types.ModuleType:
     for value in vars(module).values():
         if hasattr(value, "_cache"):
             _keep_if_there_is_room(value._cache)
+            _announce_misses(value._cache)
     return module
 
 
@@ -322,6 +324,22 @@ def _keep_if_there_is_room(kept) -> None:
                 save(signature, code)
 
         kept.save_overload = attempt
+
+
+def _announce_misses(kept) -> None:
+    """Say so before the first code is compiled that is not in the cache: that takes a while."""
+    if "load_overload" not in vars(kept):
+        look = kept.load_overload
+
+        def found(signature, target):
+            global announce
+            code = look(signature, target)
+            if code is None and announce is not None:
+                say, announce = announce, None
+                say()
+            return code
+
+        kept.load_overload = found
 
 
 def _trim(folder: Path) -> None:
