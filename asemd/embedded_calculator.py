@@ -156,4 +156,7 @@ def _style_of(file: str) -> str:
     for suffix in sorted(SUFFIXES, key=len, reverse=True):
         if file.endswith(suffix):
             return SUFFIXES[suffix]
+    from asemd.potential_calculator import SUFFIXES as OTHERS
+    if any(file.endswith(suffix) for suffix in OTHERS):
+        raise InputError(f"EAM: {file} is no embedded-atom potential: use asemd.Potential")
     raise InputError(f"EAM: the name {file} does not tell its style: give style=, one of {', '.join(STYLES)}")

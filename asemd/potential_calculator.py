@@ -7,6 +7,7 @@ from ase.calculators.calculator import external_calculators, register_calculator
 from ase.data import chemical_symbols
 
 from asemd.calculator import ForceField
+from asemd.embedded_calculator import SUFFIXES as EMBEDDED
 from asemd.errors import InputError, nearest
 from asemd.forcefield import Interactions
 from asemd.potential_file import located, named_elements
@@ -21,7 +22,8 @@ SUFFIXES = {".sw": "sw", ".sw.mod": "sw/mod", ".tersoff": "tersoff", ".tersoff.m
 
 
 class Potential(ForceField):
-    """A many-body potential for ``ase.Atoms``; atoms are those elements of the file that their symbols name.
+    """A many-body potential for ``ase.Atoms``; atoms are those elements of the file that their symbols name. Files that name none (older
+    ones of meam/spline) are for all of them.
 
     Parameters
     ----------
@@ -120,4 +122,6 @@ def _style_of(files: list[str]) -> str:
     for suffix in sorted(SUFFIXES, key=len, reverse=True):
         if any(file.endswith(suffix) for file in files):
             return SUFFIXES[suffix]
+    if any(file.endswith(suffix) for file in files for suffix in EMBEDDED):
+        raise InputError(f"Potential: {' '.join(files)} is an embedded-atom potential: use asemd.EAM")
     raise InputError(f"Potential: the name {' '.join(files)} does not tell its style: give style=, one of {' '.join(SUFFIXES.values())}")

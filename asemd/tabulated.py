@@ -77,7 +77,8 @@ def find_file(name: str, what: str) -> Path:
             return folder / path.name
     if path.is_dir():
         raise InputError(f"{what}: {name} is a folder: name a file in it")
-    raise InputError(f"{what}: cannot open file {name}: no such file here or in a folder of LAMMPS_POTENTIALS")
+    known = [f.name for folder in (*folders, *packaged()) if folder.is_dir() for f in folder.iterdir()]
+    raise InputError(f"{what}: cannot open file {name}: no such file here or in a folder of LAMMPS_POTENTIALS{nearest(path.name, known)}")
 
 
 def packaged() -> list[Path]:
