@@ -196,7 +196,7 @@ def test_lists_of_partners_travel(folder):
 
 
 def test_scripts_turn_items_off_again(folder, tmp_path):
-    """Items that are turned off go into a data file, and commands turn them off; what neither can hold is not handed over as if it could."""
+    """Items that are turned off go into a data file, and commands turn them off; what neither can hold is not handed over."""
     from asemd.lammps.export import commands
     off = {"delete_bonds all bond 1": ["delete_bonds all bond 1"], "delete_bonds all bond 1 remove": None,
            "delete_bonds all multi\ndelete_bonds all bond 2 undo\ngroup a id 1:4\ndelete_bonds a bond 2":

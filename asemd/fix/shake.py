@@ -171,7 +171,7 @@ class Shake(OnLevels, Fix):
         else:
             self.clusters = cc.find(system, loop.groups[self.group], self.chosen, what)
             self.ids = cc.by_id(self.clusters, system)
-            cc.switch(system, self.clusters, False)
+        cc.switch(system, self.clusters, False)         # of a script they are off already, unless the system is another one
         self.distances = cc.lengths(self.clusters, loop.interactions, what)
         if self.settle:
             self._mark_rigid(system)
