@@ -4,6 +4,7 @@ from __future__ import annotations
 import importlib.util
 import json
 
+import ase
 import ase.build
 import numpy as np
 import pytest
@@ -190,6 +191,23 @@ def test_atoms_with_a_mesh():
     for compat in ("", "lammps"):
         salt.calc = asemd.ForceField(pair={"born/coul/long 5.5": born}, kspace="pppm 1.0e-5", compat=compat)
         assert (report := asemd.validate(salt)).ok, str(report)
+
+
+@needs_lammps
+@pytest.mark.parametrize("arguments", [
+    {"pair": {"zbl 3.0 4.0": {("Na", "Na"): (11, 11), ("Cl", "Cl"): (17, 17)}}},
+    {"pair": {"lj/cut/coul/long 4.4": {("Na", "Na"): (0.01, 2.3), ("Cl", "Cl"): (0.01, 3.5)}}, "kspace": "ewald 1e-5"},
+])
+def test_the_coulomb_constant_where_dielectric_does_not_reach(arguments):
+    """In pair styles, and in how finely a long-range sum is split: both programs take that of LAMMPS, and the report says so."""
+    salt = ase.Atoms("NaCl", [[0, 0, 0], [2, 0.3, 0.1]], cell=[9] * 3, pbc=True)
+    salt.set_initial_charges([1.0, -1.0])
+    salt.calc = asemd.ForceField(**arguments)
+    report = validate(salt)
+    assert report.ok and "Coulomb constant of units metal" in str(report), str(report)
+    salt.calc = asemd.ForceField(pair={"lj/cut/coul/cut 4.4": {("Na", "Na"): (0.01, 2.3), ("Cl", "Cl"): (0.01, 3.5)}})
+    report = validate(salt)
+    assert report.ok and not report.notes
 
 
 @needs_lammps
