@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import subprocess
+import sys
 
 import ase
 import ase.build
@@ -208,6 +210,70 @@ def test_the_coulomb_constant_where_dielectric_does_not_reach(arguments):
     salt.calc = asemd.ForceField(pair={"lj/cut/coul/cut 4.4": {("Na", "Na"): (0.01, 2.3), ("Cl", "Cl"): (0.01, 3.5)}})
     report = validate(salt)
     assert report.ok and not report.notes
+
+
+MSM = """units real
+atom_style charge
+boundary f f f
+lattice sc 5
+region box block 0 2 0 2 0 2
+create_box 1 box
+create_atoms 1 box
+displace_atoms all move 2 2 2 units box
+displace_atoms all random 0.5 0.5 0.5 7 units box
+mass 1 20
+group a id 1:4
+set group all charge 1
+set group a charge -1
+pair_style lj/cut/coul/msm 6
+pair_coeff 1 1 0.1 3
+kspace_style msm 1e-4
+thermo_style custom step pe press pxx
+"""
+
+
+@needs_lammps
+def test_msm_as_it_is_by_default(folder):
+    """LAMMPS has no components of the pressure with it, and shrinks a box that is not periodic, whose size its grid follows."""
+    (folder / "in.m").write_text(MSM + "minimize 0 0 2 9\nkspace_style msm 1e-3\nfix 1 all nve\nrun 1\n")
+    report = validate("in.m")
+    assert report.ok and {r.run for r in report.rows} == {0, 1} and "kspace_modify pressure/scalar no" in str(report), str(report)
+    atoms = asemd.read("in.m")
+    assert validate(atoms).ok
+    charges = ase.Atoms("NaCl", [[5, 5, 5], [5, 5, 8]], cell=[20] * 3)
+    charges.set_initial_charges([1, -1])
+    charges.calc = asemd.ForceField(pair={"lj/cut/coul/msm 8": {("Na", "Na"): (0.01, 2), ("Cl", "Cl"): (0.01, 3)}}, kspace="msm 1e-4")
+    assert (report := validate(charges)).ok, str(report)
+
+
+@needs_lammps
+@pytest.mark.parametrize("atoms", [ase.Atoms("Ar"), ase.Atoms("Ar2", [[0, 0, 0], [0, 0, 3.8]]), ase.build.molecule("O2"),
+                                   ase.Atoms("Ar4", [[0, 0, 0], [3, 0, 0], [0, 3, 0], [3, 3, 0]], cell=[6, 6, 0], pbc=[1, 1, 0])])
+def test_boxes_too_flat_for_bins(atoms):
+    atoms.calc = asemd.ForceField(pair={"lj/cut 8.0": {(s, s): (0.01, 3.4) for s in set(atoms.symbols)}})
+    assert (report := validate(atoms)).ok and report.energies, str(report)
+
+
+@needs_lammps
+def test_springs_of_minimisations_are_a_documented_difference(folder):
+    """And the last line names what differs most."""
+    for offset in (0.0, 0.5):
+        shake_scene.write_data(folder / "data.x", offset=offset)
+        (folder / "in.s").write_text(shake_scene.SCRIPT.format(data="data.x", water="1:3") +
+                                     "fix h all shake 1e-4 100 0 b 1 4 a 1\nminimize 0 0 3 9\n")
+        report = validate("in.s")
+        assert not report.ok and "half of the virial of the springs" in str(report)
+        assert ("those across a periodic face twice" in str(report)) == (offset == 0.0)
+        assert max(r.error for r in report.rows if r.column == "PotEng") < 1e-12 or offset == 0.0
+        assert f"({report.worst_term}), the tolerance" in report.verdict and "--compat" not in report.verdict
+        assert report.worst_term.startswith("P") and report.worst_term.endswith(" of run 1")
+
+
+def test_warnings_without_lines_of_code(folder):
+    (folder / "in.w").write_text(BASE + "create_atoms 1 random 2 5 NULL overlap 50\nrun 0\n")
+    done = subprocess.run([sys.executable, "-m", "asemd", "plan", "in.w"], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stderr.splitlines()[0].startswith("WARNING: Only inserted 0 particles out of 2 (in.w:")
+    assert "session.warn" not in done.stderr
 
 
 @needs_lammps

@@ -196,6 +196,10 @@ class Shake(OnLevels, Fix):
                              "them are there any more: give the fix again")
         return cc.Clusters(np.where(ids >= 0, at, -1), self.ids.kind.copy(), self.ids.types)
 
+    def held_pairs(self, system) -> np.ndarray:
+        """(k, 2) rows of the atoms whose distances are held, for a fix of a script."""
+        return self._rows(system).pairs()[2]
+
     def _mark_rigid(self, system) -> None:
         c, d, mass = self.clusters, self.distances, system.atom_masses()
         angled = c.kind == cc.ANGLE

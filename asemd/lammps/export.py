@@ -15,6 +15,8 @@ from asemd.lammps.data_write import write_data
 from asemd.system import System
 from asemd.topology import Topology
 
+FLAT = 0.01     # of the reach of the list; LAMMPS stops at half of that
+
 
 def commands(system: System, interactions: Interactions, settings: Settings | None = None,
              data: str | os.PathLike = "data.lammps") -> list[str]:
@@ -71,8 +73,18 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
         out.append(f"comm_modify cutoff {reach_of_items(system) + settings.skin!r}")
     out += interactions.kspace_lines()
     out.append(f"dielectric {interactions.dielectric * factor!r}")
-    out += [f"neighbor {settings.skin!r} bin", "neigh_modify every 1 delay 0 check yes", *exclusions(system, settings)]
-    return out + off
+    reach = settings.skin + (interactions.cutoff(system.counts["ntypes"], None) if interactions.uses["pair"] else 0.0)
+    out += [f"neighbor {settings.skin!r} {'nsq' if _flat(system, reach) else 'bin'}", "neigh_modify every 1 delay 0 check yes"]
+    return [*out, *exclusions(system, settings), *off]
+
+
+def _flat(system: System, reach: float) -> bool:
+    """Whether LAMMPS refuses to sort atoms into bins: a direction in which its box, shrunk to the atoms, is too short for them."""
+    box = system.box
+    inside = (system.x - box.origin) @ box.inverse
+    shrinks = [bool(set(b) & set("sm")) for b in box.boundary]
+    extents = np.where(shrinks, np.ptp(inside, axis=0) if system.n else 0.0, 1.0) * box.lengths
+    return bool((extents < FLAT * reach).any())
 
 
 def _outdated(topology: Topology) -> bool:

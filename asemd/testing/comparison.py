@@ -58,7 +58,7 @@ class Report:
     notes : list of str
         What was not compared, and why.
     documented : list of str
-        Differences to LAMMPS that are meant; ``compat="lammps"`` takes LAMMPS's side.
+        Differences to LAMMPS that are meant; for those that say so ``compat="lammps"`` takes LAMMPS's side.
     failures : list of str
         What ended one of the programs.
     """
@@ -76,11 +76,21 @@ class Report:
     documented: list[str] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
 
+    def _errors(self) -> list[tuple[float, str]]:
+        """All relative differences, and of what; of equal ones the first counts."""
+        return [*((f.error, f"forces of {f.term}") for f in self.forces), *((f.virial_error, f"virial of {f.term}") for f in self.forces),
+                *((e.error, f"energy of {e.term}") for e in self.energies),
+                *((r.error, f"{r.column} at step {r.step} of run {r.run + 1}") for r in self.rows)]
+
     @property
     def worst(self) -> float:
         """The largest relative difference."""
-        values = [f.error for f in self.forces] + [f.virial_error for f in self.forces]
-        return max([*values, *(e.error for e in self.energies), *(r.error for r in self.rows)], default=0.0)
+        return max((error for error, _ in self._errors()), default=0.0)
+
+    @property
+    def worst_term(self) -> str:
+        """What differs most; empty if nothing was compared."""
+        return max(self._errors(), key=lambda of: of[0], default=(0.0, ""))[1]
 
     @property
     def ok(self) -> bool:
@@ -126,10 +136,11 @@ class Report:
         """The last line."""
         if self.failures:
             return "DISAGREE: the two programs did not both get to the end"
-        text = f"the largest relative difference is {self.worst:.1e}, the tolerance {self.tolerance:g}"
+        text = f"the largest relative difference is {self.worst:.1e}"
         if self.ok:
-            return f"AGREE: {text}"
-        return f"DISAGREE: {text}" + ("; --compat lammps compares with LAMMPS's own forces" if self.documented else "")
+            return f"AGREE: {text}, the tolerance {self.tolerance:g}"
+        switch = "; --compat lammps compares with LAMMPS's own forces" if any("--compat lammps" in d for d in self.documented) else ""
+        return f"DISAGREE: {text} ({self.worst_term}), the tolerance {self.tolerance:g}{switch}"
 
     def __str__(self) -> str:
         return "\n\n".join(map(str, self.parts()))
