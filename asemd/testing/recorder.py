@@ -163,8 +163,8 @@ class Recorder(Session):
                 d = x[i] - x[j]
                 across = np.abs(system.box.minimum_image(d)[0] - d).max(initial=0.0) > 1e-6 * system.box.lengths.min()
                 said = ", and counts those across a periodic face twice: what follows starts from other positions" if across else ""
-                self.documented.append(f"fix {fix.id} (style {fix.style}): in a minimisation LAMMPS takes half of the virial of the springs "
-                                       f"that stand for constraints{said} (docs/differences.md)")
+                self.documented.append(f"fix {fix.id} (style {fix.style}): in a minimisation LAMMPS takes half of the virial of the "
+                                       f"springs that stand for constraints{said} (docs/differences.md)")
 
     def _styled(self) -> int:
         """Where the pair style or the solver was chosen last: new ones start with tables and without a pressure tensor."""
