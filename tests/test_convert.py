@@ -214,6 +214,8 @@ def test_files_go_along(files, monkeypatch, capsys):
     written = {"in.f", "data.f", "1_Mine.eam", "Mine.eam", "pair.mol", "pot.table", "bond.table", "deep"}
     assert main(["convert", "in.f"]) == 0 and "run it in converted" in capsys.readouterr().out
     assert {p.name for p in Path("converted").iterdir()} == written and Path("converted/Mine.eam").read_text().startswith("another")
+    assert main(["convert", "in.f", "-o", "."]) == 0 and not Path("pair.mol").exists()        # here all names hold
+    assert "deep/Mine.eam" in Path("in.f").read_text()
     script = convert("in.f", "python", "out")
     assert main(["convert", "in.f"]) == 0 and {p.name for p in Path("converted").iterdir()} == written
     shutil.rmtree("deep")

@@ -46,7 +46,7 @@ def carried(lines: Iterable[str], folder: Path, taken: Iterable[str] = ()) -> li
             continue
         new = list(words)
         for k, word in enumerate(words[first + 1:], first + 1):
-            if path := _file(word):
+            if (path := _file(word)) and (os.path.isabs(word) or (folder / word).absolute() != path):
                 if path not in places:
                     places[path] = _copied(path, folder, [*taken, *places.values()])
                     if names_more:
