@@ -67,8 +67,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return complain(f"{type(e).__name__}: {' '.join(str(e).split())} (ASEMD_DEBUG=1 shows where)")
 
 
+def show_warning(message, category, *place) -> None:
+    """Warnings of what the user gave, without the line of code that found it."""
+    if issubclass(category, InputWarning):
+        print(f"WARNING: {message}", file=sys.stderr, flush=True)
+    else:
+        sys.stderr.write(warnings.formatwarning(message, category, *place[:2]))
+
+
 def entry() -> None:
     """The console script."""
+    warnings.showwarning = show_warning
     sys.exit(main())
 
 

@@ -32,6 +32,6 @@ def convert(context: typer.Context,
         written = write(path, form, output, switches)
     for warning in caught:
         print(f"WARNING: {warning.message}")
-    print(f"wrote {written}")
+    print(f"wrote {written}" + (f" (run it in {written.parent}, where its files are)" if form == "lammps" else ""))
     return 0
 

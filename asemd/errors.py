@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -98,3 +99,11 @@ def nearest(word: str, known: Iterable[str]) -> str:
     """` (did you mean X?)` for the closest known word, or an empty string."""
     match = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
     return f" (did you mean {match[0]}?)" if match else ""
+
+
+def in_one_line(kind: type[BaseException], error: BaseException, trace) -> None:
+    """A ``sys.excepthook``: errors of asemd without the lines of code that led to them."""
+    if issubclass(kind, AsemdError):
+        print(f"ERROR: {error}", file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)

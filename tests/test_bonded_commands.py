@@ -195,13 +195,25 @@ def test_lists_of_partners_travel(folder):
     assert top != bare and Topology(frozen=top).special(12)[0].tolist() == pairs
 
 
-def test_no_script_for_turned_off_items(folder, tmp_path):
-    """A scene that a data file cannot hold is not handed over as if it could."""
+def test_scripts_turn_items_off_again(folder, tmp_path):
+    """Items that are turned off go into a data file, and commands turn them off; what neither can hold is not handed over."""
     from asemd.lammps.export import commands
-    for line in ("delete_bonds all bond 1", "delete_bonds all bond 1 remove"):
-        scene = ours([*setup(folder), line]).scene
-        with pytest.raises(InputError, match="turned off"):
-            commands(scene.system, scene.interactions, data=tmp_path / "d")
+    off = {"delete_bonds all bond 1": ["delete_bonds all bond 1"], "delete_bonds all bond 1 remove": None,
+           "delete_bonds all multi\ndelete_bonds all bond 2 undo\ngroup a id 1:4\ndelete_bonds a bond 2":
+           ["group turned_off id 1:4", "delete_bonds turned_off bond 2", "group turned_off delete"]}
+    for text, lines in off.items():
+        scene = ours([*setup(folder), *text.splitlines()]).scene
+        if lines is None:
+            with pytest.raises(InputError, match="delete_bonds with remove and special"):
+                commands(scene.system, scene.interactions, data=tmp_path / "d")
+            continue
+        written = commands(scene.system, scene.interactions, data=tmp_path / "d")
+        assert "\n".join(lines) in "\n".join(written)
+        again = ours(written).scene.system.topology
+        assert [types.tolist() for *_, types in again] == [types.tolist() for *_, types in scene.system.topology]
+    scene.system.topology.frozen, scene.system.topology.bonds[:] = None, scene.system.topology.bonds[0]
+    with pytest.raises(InputError, match="bond type 2: items are turned off where others"):
+        commands(scene.system, scene.interactions, data=tmp_path / "d")
 
 
 def test_type_zero_is_a_broken_bond(folder, tmp_path):

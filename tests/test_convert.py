@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import os
+import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,12 +12,15 @@ import ase.io
 import bonded_scene
 import numpy as np
 import pytest
+import shake_scene
 from lj_cell import BASE
 from wheel import ask, ran, start
 
 import asemd
 from asemd.cli import main
 from asemd.errors import InputError
+from asemd.lammps.convert import convert
+from asemd.tabulated import packaged
 
 ROOT = Path(__file__).resolve().parents[1]
 ROWS = """
@@ -115,6 +120,126 @@ def test_python(here, name):
     assert done.returncode == 0, done.stderr
     words = done.stdout.splitlines()[-1].split()
     assert float(words[2]) == pytest.approx(thermo_energy(f"in.{name}"), rel=1e-8)
+
+
+ARGON = """units metal
+lattice fcc 5.3
+region b block 1 3 0 2 0 2
+create_box 1 b
+create_atoms 1 box
+mass 1 40
+pair_style lj/cut 5
+pair_coeff 1 1 0.01 3.4
+group g id 1:9
+group h subtract all g
+variable v equal 0.01
+region r sphere 8 2 2 4
+velocity all create 30 4711 loop geom
+"""
+ALONE = ["npt temp 30 30 0.1 iso 0 0 1", "nph aniso 0 0 1", "nvt temp 30 30 0.1", "rigid group 2 g h", "rigid/nve single"]
+WITH_NVE = """langevin 30 30 0.1 123; temp/csvr 30 30 0.1 123; temp/berendsen v_w 30 0.1; deform 1 x erate 0.01 remap x; spring/self 0.5
+    indent 0.1 sphere 8 2 2 2; recenter INIT INIT INIT; ti/spring 1 2 2; accelerate/cos 0.01; addforce v_v 0 0 region r
+    momentum 1 linear 1 1 1; setforce NULL 0 0; spring tether 1 9 2 2 0; spring couple h 1 1 1 1 0; store/state 0 x y z; viscous 0.01
+    press/berendsen iso 0 0 1; drag 7 2 3 0.1 1; gravity 1 vector 0 0 -1; aveforce 0.1 NULL NULL; heat 1 0.1; addtorque 0.1 0 0
+    smd cvel 1 0.1 tether 1 1 1 2; halt 3 tlimit > 1000"""
+MOVED = ["move linear 1 0 0", "move rotate 8 3 3 0 0 1 2", "rigid single", "nve/limit 0.1"]
+FILES = """units metal
+atom_style full
+lattice fcc 3.615
+region box block 0 2 0 2 0 2
+create_box 2 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 2
+create_atoms 1 box
+mass 2 1
+molecule pair deep/pair.mol
+create_atoms 0 single 1 1 0.5 mol pair 5
+pair_style hybrid eam table linear 100
+pair_coeff 1 1 eam deep/Mine.eam
+pair_coeff *2 2 table {here}/pot.table LJ
+bond_style table linear 100
+bond_coeff 1 bond.table B
+fix 1 all nve
+fix 2 all ave/time 1 1 1 c_thermo_temp file deep/t.txt
+run 2
+"""
+
+
+def test_python_with_any_fix(here, monkeypatch):
+    """The script that is written ends where the script it is of ends, whatever fixes it has; the corner of a cell stays where it is."""
+    fixes = [f"fix 1 all {words}" for words in ALONE]
+    fixes += [f"variable w equal 30\nfix 1 all nve\nfix 2 g {words.strip()}" for words in WITH_NVE.replace("\n", ";").split(";")]
+    fixes += [f"fix 1 g {words}\nfix 2 h nve" for words in MOVED]
+    fixes.append("compute t g temp\nfix 1 all nvt temp 30 30 0.1\nfix_modify 1 temp t")
+    for text in fixes:
+        Path("in.c").write_text(f"{ARGON}{text}\nrun 3\n")
+        path = here / convert("in.c", "python", "out")
+        atoms = runpy.run_path(str(path))["atoms"]
+        os.chdir(here)
+        with start() as lmp:
+            lmp.commands_list(["include in.c", "thermo_modify norm no"])
+            there, box, energy = lmp.scene.system.x, lmp.scene.system.box, lmp.get_thermo("pe")
+        distance = (atoms.positions - atoms.positions[0] - there + there[0]) @ box.inverse
+        assert np.abs(distance - np.round(distance)).max() < 1e-12 and np.abs(atoms.cell.array - box.cell).max() < 1e-12, text
+        assert atoms.get_potential_energy() == pytest.approx(energy, rel=1e-12), text
+
+
+def test_python_of_held_bonds(here):
+    """Bonds that a fix holds are on in the data file and are turned off when the fix is made."""
+    shake_scene.write_data(here / "data.x")
+    Path("in.w").write_text(shake_scene.SCRIPT.format(data="data.x", water="1:3") +
+                            "fix h all shake 1e-4 100 0 b 1 4 a 1\nfix 1 all nve\nrun 3\n")
+    energy = thermo_energy("in.w")
+    found = runpy.run_path(str(here / convert("in.w", "python", "out")))
+    assert found["atoms"].get_potential_energy() == pytest.approx(energy, rel=1e-12)
+    assert (found["atoms"].topology.bond_types > 0).all()
+
+
+@pytest.fixture
+def files(here):
+    """A script that reads files of several folders."""
+    Path("deep").mkdir()
+    shutil.copyfile(packaged()[0] / "Cu_u3.eam", "deep/Mine.eam")
+    Path("deep/pair.mol").write_text("two\n\n2 atoms\n1 bonds\n\nCoords\n\n1 0 0 0\n2 1 0 0\n\nTypes\n\n1 2\n2 2\n\nBonds\n\n1 1 1 2\n")
+    for name, title in (("pot.table", "LJ\nN 40"), ("bond.table", "B\nN 40")):
+        rows = [f"{k + 1} {0.1 + 0.1 * k:.6f} {(k / 10 - 1) ** 2:.6f} {-(k / 10 - 1) / 0.5:.6f}" for k in range(40)]
+        Path(name).write_text(title + "\n\n" + "\n".join(rows) + "\n")
+    Path("in.f").write_text(FILES.format(here=here))
+    return here
+
+
+@pytest.mark.skipif(not packaged(), reason="no potential files")
+def test_files_go_along(files, monkeypatch, capsys):
+    energy = thermo_energy("in.f")
+    Path("converted").mkdir()
+    Path("converted/Mine.eam").write_text("another file of that name")
+    written = {"in.f", "data.f", "1_Mine.eam", "Mine.eam", "pair.mol", "pot.table", "bond.table", "deep"}
+    assert main(["convert", "in.f"]) == 0 and "run it in converted" in capsys.readouterr().out
+    assert {p.name for p in Path("converted").iterdir()} == written and Path("converted/Mine.eam").read_text().startswith("another")
+    assert main(["convert", "in.f", "-o", "."]) == 0 and not Path("pair.mol").exists()        # here all names hold
+    assert "deep/Mine.eam" in Path("in.f").read_text()
+    script = convert("in.f", "python", "out")
+    assert main(["convert", "in.f"]) == 0 and {p.name for p in Path("converted").iterdir()} == written
+    shutil.rmtree("deep")
+    shutil.move("out", "elsewhere")
+    for name in ("pot.table", "bond.table"):
+        Path(name).unlink()
+    done = subprocess.run([sys.executable, f"elsewhere/{script.name}"], capture_output=True, text=True)
+    assert done.returncode == 0 and float(done.stdout.split()[-3]) == pytest.approx(energy, rel=1e-9), done.stderr
+    Path("elsewhere/bond.table").unlink()
+    done = subprocess.run([sys.executable, f"elsewhere/{script.name}"], capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.startswith("ERROR: ") and done.stderr.count("\n") == 1 and "bond.table" in done.stderr
+    monkeypatch.chdir("converted")
+    assert ask("lmp = start()\nlmp.file('in.f')\nanswer = lmp.get_thermo('pe')\nlmp.close()") == pytest.approx(energy, rel=1e-8)
+
+
+@pytest.mark.parametrize(("text", "message"), [
+    ("fix 1 all nve\nfix 2 all evaporate 2 1 b 123", "after fix 2 .style evaporate. there may be other atoms.*--to lammps"),
+    ("fix 1 all nve\nrun_style respa 2 2 pair 1", "run_style respa has no form under ASE"),
+])
+def test_python_refuses_what_ase_cannot_follow(here, text, message):
+    Path("in.c").write_text(f"{ARGON}{text}\nrun 3\n")
+    with pytest.raises(InputError, match=message):
+        convert("in.c", "python", "out")
+    assert not Path("out").exists()
 
 
 def thermo_energy(path: str) -> float:

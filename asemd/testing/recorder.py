@@ -6,11 +6,14 @@ import importlib
 from collections.abc import Sequence
 from typing import Any
 
-from asemd import coulomb_table
+import numpy as np
+
 from asemd.errors import InputError, SimulationError
+from asemd.fix.shake import Shake
 from asemd.lammps.export import quoted
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
+from asemd.testing.lammps_side import comparable
 
 # flow of control is resolved here; output and the shell are left out on both sides
 CONTROL = frozenset("if include jump label quit".split())
@@ -45,6 +48,8 @@ class Recorder(Session):
         The run and minimize commands that were carried out, as given to LAMMPS.
     notes : list of str
         Why something was not carried out.
+    documented : list of str
+        Differences to LAMMPS that are meant, in what was carried out.
     failed : str
         The error that ended a run; empty if there was none.
     """
@@ -54,6 +59,7 @@ class Recorder(Session):
         self.commands: list[str] = []
         self.runs: list[str] = []
         self.notes: list[str] = []
+        self.documented: list[str] = []
         self.start: int | None = None
         self.first = None
         self.failed = ""
@@ -110,7 +116,9 @@ class Recorder(Session):
         if noisy and name == "run":
             args = ["0"]
         self._rebuild_in_time()
-        self._compute_tabled()
+        self._make_comparable()
+        if name == "minimize":
+            self._compare_springs()
         words = self._capped(name, args)
         self.runs.append(" ".join([name, *map(quoted, words)]))
         self.commands.append(self.runs[-1])
@@ -140,13 +148,27 @@ class Recorder(Session):
             n.every, n.delay, n.check = 1, 0, True
             self.commands.append("neigh_modify every 1 delay 0 check yes")
 
-    def _compute_tabled(self) -> None:
+    def _make_comparable(self) -> None:
         """Let LAMMPS compute the short range of charges and dispersion, too, unless its tables are asked for."""
-        self.commands += [c for c in coulomb_table.without(self.scene.interactions) if c not in self.commands[self._styled():]]
+        self.commands += [c for c in comparable(self.scene.interactions) if c not in self.commands[self._styled():]]
+
+    def _compare_springs(self) -> None:
+        """Say what is known of the springs that a minimisation has in place of constraints."""
+        system = self.scene.system
+        x = system.x.copy()
+        system.box.wrap(x, system.image.copy())
+        for fix in self.scene.fixes.values():
+            if isinstance(fix, Shake):
+                i, j = fix.held_pairs(system).T
+                d = x[i] - x[j]
+                across = np.abs(system.box.minimum_image(d)[0] - d).max(initial=0.0) > 1e-6 * system.box.lengths.min()
+                said = ", and counts those across a periodic face twice: what follows starts from other positions" if across else ""
+                self.documented.append(f"fix {fix.id} (style {fix.style}): in a minimisation LAMMPS takes half of the virial of the "
+                                       f"springs that stand for constraints{said} (docs/differences.md)")
 
     def _styled(self) -> int:
-        """Where the pair style was chosen last: a new one starts with tables."""
-        return max((k for k, c in enumerate(self.commands) if c.split()[0] == "pair_style"), default=0)
+        """Where the pair style or the solver was chosen last: new ones start with tables and without a pressure tensor."""
+        return max((k for k, c in enumerate(self.commands) if c.split()[0] in ("pair_style", "kspace_style")), default=0)
 
     def _end(self, note: str) -> None:
         self.notes.append(note)

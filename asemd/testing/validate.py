@@ -4,13 +4,12 @@ from __future__ import annotations
 import copy
 import os
 import tempfile
-from dataclasses import asdict, dataclass, field
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from asemd import coulomb_table
+from asemd import units as unit_styles
 from asemd.engine import Engine, Settings
 from asemd.errors import InputError
 from asemd.forcefield import CATEGORIES, Interactions
@@ -20,10 +19,10 @@ from asemd.lammps.switches import Switches
 from asemd.scene import Scene
 from asemd.system import System
 from asemd.testing import thermo_rows
-from asemd.testing.lammps_side import ZERO_STEP
+from asemd.testing.comparison import Energy, Force, Report
+from asemd.testing.lammps_side import TENSOR, ZERO_STEP, comparable
 from asemd.testing.oracle import OracleError, ask, lammps_available, lammps_version, why_not
-from asemd.testing.thermo_rows import Cell, relative
-from asemd.text_table import Table
+from asemd.testing.thermo_rows import relative
 
 TOLERANCE = {"double": 1e-9, "mixed": 1e-4}
 ENERGIES = {"evdwl": "pair vdwl", "ecoul": "pair coul", "ebond": "bond", "eangle": "angle", "edihed": "dihedral", "eimp": "improper",
@@ -31,140 +30,6 @@ ENERGIES = {"evdwl": "pair vdwl", "ecoul": "pair coul", "ebond": "bond", "eangle
 SETTINGS = frozenset("""fix fix_modify unfix compute compute_modify uncompute thermo thermo_style thermo_modify velocity min_style
                      min_modify run_style timestep reset_timestep""".split())
 HOLDERS, FILLED = {"property/atom"}, {"cmap"}       # fixes that hold what belongs to atoms, and those that read_data fills with forces
-VIRIAL = ("xx", "yy", "zz", "xy", "xz", "yz")
-
-
-@dataclass
-class Energy:
-    """One energy, in units of the scene; `error` relative to its size (at least a thousandth of all energies)."""
-
-    term: str
-    asemd: float
-    lammps: float
-    error: float
-
-
-@dataclass
-class Force:
-    """Forces and virial of one category of terms, or of all.
-
-    `largest` is the largest force component of LAMMPS, `worst` and `rms` the differences (force units), `error` is `worst` relative to
-    `scale`; `virial_asemd`, `virial_lammps` (6,): xx yy zz xy xz yz, energy units, `virial_error` relative to the size of the virials.
-    """
-
-    term: str
-    largest: float
-    worst: float
-    rms: float
-    error: float
-    virial_asemd: list[float]
-    virial_lammps: list[float]
-    virial_error: float
-
-
-@dataclass
-class Report:
-    """The result of `validate`; ``print(report)`` shows it.
-
-    Attributes
-    ----------
-    source : str
-    atoms : int
-    units : str
-    version : str
-        Of LAMMPS.
-    tolerance : float
-        Largest relative difference that counts as agreement.
-    scale : float
-        What force differences are relative to: the largest force, or the force that the virial of an atom means if that is larger.
-    energies, forces, rows : list
-        Rows of the three tables.
-    notes : list of str
-        What was not compared, and why.
-    documented : list of str
-        Differences to LAMMPS that are meant; ``compat="lammps"`` takes LAMMPS's side.
-    failures : list of str
-        What ended one of the programs.
-    """
-
-    source: str
-    atoms: int
-    units: str
-    version: str
-    tolerance: float
-    scale: float
-    energies: list[Energy] = field(default_factory=list)
-    forces: list[Force] = field(default_factory=list)
-    rows: list[Cell] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
-    documented: list[str] = field(default_factory=list)
-    failures: list[str] = field(default_factory=list)
-
-    @property
-    def worst(self) -> float:
-        """The largest relative difference."""
-        values = [f.error for f in self.forces] + [f.virial_error for f in self.forces]
-        return max([*values, *(e.error for e in self.energies), *(r.error for r in self.rows)], default=0.0)
-
-    @property
-    def ok(self) -> bool:
-        """Whether asemd and LAMMPS agree."""
-        return not self.failures and self.worst <= self.tolerance
-
-    def parts(self) -> list[Table | str]:
-        """Tables and paragraphs, in order."""
-        out: list[Table | str] = [f"{self.source}: {self.atoms} atoms, units {self.units}, asemd and LAMMPS {self.version}"]
-        table = Table("Energies at the first step", ("term", "asemd", "LAMMPS", "difference", "relative"))
-        for e in self.energies:
-            table.rows.append((e.term, f"{e.asemd:.15g}", f"{e.lammps:.15g}", f"{e.asemd - e.lammps:.2g}", f"{e.error:.1e}"))
-        if self.forces:
-            out.append(table)
-            out.append(Table("Forces and virials at the first step",
-                             ("term", "largest force", "max difference", "rms difference", "relative", "virial difference", "relative"),
-                             [(f.term, f"{f.largest:.6g}", f"{f.worst:.2g}", f"{f.rms:.2g}", f"{f.error:.1e}",
-                               f"{max(abs(a - b) for a, b in zip(f.virial_asemd, f.virial_lammps)):.2g}", f"{f.virial_error:.1e}")
-                              for f in self.forces]))
-            ours, theirs = self.forces[-1].virial_asemd, self.forces[-1].virial_lammps
-            out.append(Table("Virial of all terms", ("", *VIRIAL), [
-                ("asemd", *(f"{v:.10g}" for v in ours)), ("LAMMPS", *(f"{v:.10g}" for v in theirs)),
-                ("difference", *(f"{a - b:.2g}" for a, b in zip(ours, theirs)))]))
-        out += self._row_tables()
-        out += [f"Note: {n}" for n in self.notes] + [f"Documented difference: {d}" for d in self.documented] + self.failures
-        return [*out, self.verdict]
-
-    def _row_tables(self) -> list[Table]:
-        tables = []
-        for run in dict.fromkeys(r.run for r in self.rows):
-            cells = [r for r in self.rows if r.run == run]
-            columns = list(dict.fromkeys(c.column for c in cells))
-            table = Table(f"Thermo rows of run {run + 1}", ("Step", "", *columns))
-            for step in dict.fromkeys(c.step for c in cells):
-                row = {c.column: c for c in cells if c.step == step}
-                for name in ("asemd", "LAMMPS", "relative"):
-                    table.rows.append((str(step) if name == "asemd" else "", name, *(_shown(row.get(c), name) for c in columns)))
-            tables.append(table)
-        return tables
-
-    @property
-    def verdict(self) -> str:
-        """The last line."""
-        if self.failures:
-            return "DISAGREE: the two programs did not both get to the end"
-        text = f"the largest relative difference is {self.worst:.1e}, the tolerance {self.tolerance:g}"
-        if self.ok:
-            return f"AGREE: {text}"
-        return f"DISAGREE: {text}" + ("; --compat lammps compares with LAMMPS's own forces" if self.documented else "")
-
-    def __str__(self) -> str:
-        return "\n\n".join(map(str, self.parts()))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Everything, JSON-able."""
-        return {"ok": self.ok, "worst": self.worst, "verdict": self.verdict, **asdict(self)}
-
-
-def _shown(cell: Cell | None, name: str) -> str:
-    return "" if cell is None else f"{cell.error:.0e}" if name == "relative" else f"{getattr(cell, name.lower()):.10g}"
 
 
 def validate(source, *, steps: int | None = 20, tolerance: float | None = None, compat: str = "", precision: str = "double",
@@ -237,6 +102,7 @@ def _script(path: str, switches: Switches, tolerance: float | None) -> Report:
     else:
         report = _zero_step(path, scene.system, scene.interactions, scene.settings(), setup, words, limit)
     report.notes += dict.fromkeys(session.notes)
+    report.documented += dict.fromkeys(session.documented)
     if session.failed:
         report.failures.append(f"asemd stopped: {session.failed}")
     if session.runs:
@@ -274,10 +140,31 @@ def _exported(name: str, system: System, interactions: Interactions, settings: S
     interactions = copy.deepcopy(interactions)
     interactions.compat = compat or interactions.compat
     interactions.check_complete(system)
+    notes = []
+    if system.units == "ase" and _own_constants(system, interactions):
+        system = system.copy()
+        system.units = "metal"
+        notes.append("both programs take the Coulomb constant of units metal, 2.4e-08 smaller than that of ASE's units: it is part of the "
+                     "pair style, or of the choice of the long-range sum")
+    if interactions.kspace.startswith("msm"):       # its grid is that of the box, which LAMMPS would shrink to the atoms
+        system = system.copy()
+        system.box = replace(system.box, boundary=tuple(b.replace("s", "f").replace("m", "f") for b in system.box.boundary))
     with tempfile.TemporaryDirectory(prefix="asemd-validate-") as folder:
         setup = export.commands(system, interactions, settings, Path(folder) / "data.scene")
         limit = TOLERANCE[settings.precision] if tolerance is None else tolerance
-        return _zero_step(name, system, interactions, settings, setup, [], limit)
+        report = _zero_step(name, system, interactions, settings, setup, [], limit)
+    report.notes += notes
+    return report
+
+
+def _own_constants(system: System, interactions: Interactions) -> bool:
+    """Whether the Coulomb constant is in more than the product of two charges, which ``dielectric`` cannot make up for in LAMMPS."""
+    if interactions.kspace != "none":
+        return True
+    terms = (interactions.pair_terms(system.counts["ntypes"], unit_styles.get(name)) for name in ("ase", "metal"))
+    tables = [[term.tables for term in of] for of in terms]
+    numbers = [[np.asarray(a) for t in of for a in (t.rows, t.constants, *t.arrays)] for of in tables]
+    return any(not np.array_equal(a, b, equal_nan=True) for a, b in zip(*numbers, strict=True))
 
 
 # --------------------------------------------------------------------------------------------- energies, forces, virials ---
@@ -294,7 +181,7 @@ def removal_order(interactions: Interactions) -> list[str]:
 
 def _zero_step(source: str, system: System, interactions: Interactions, settings: Settings, setup: list[str], switches: list[str],
                tolerance: float) -> Report:
-    order, exact = removal_order(interactions), coulomb_table.without(interactions)
+    order, exact = removal_order(interactions), comparable(interactions)
     ours = [_evaluate(system, interactions, settings)]
     less = copy.deepcopy(interactions)
     for category in order[:-1]:
@@ -317,9 +204,11 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
     result = ours[0]
     report = Report(source, system.n, system.units, lammps_version() or "", tolerance, 0.0,
                     documented=documented(interactions) if interactions.compat != "lammps" else [])
-    if exact:
-        report.notes.append(f"LAMMPS is told {exact[0]}: asemd computes what LAMMPS looks up in tables of 4096 distances, which changes "
-                            "forces between charges by 1e-6; with --compat lammps both look it up")
+    for command in exact:
+        report.notes.append(f"LAMMPS is told {command}: " + (
+            "by default it has no components of the pressure with msm" if command == TENSOR else
+            "asemd computes what LAMMPS looks up in tables of 4096 distances, which changes forces between charges by 1e-6; with --compat "
+            "lammps both look it up"))
     _energies(report, result, theirs["energy"], interactions)
     to_virial = theirs["volume"] / theirs["nktv2p"]
     their_virial = {c: _back(rotation, np.asarray(v) * to_virial) for c, v in theirs["virial"].items()}
