@@ -95,6 +95,7 @@ class Session:
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
         self.list_told: str | None = None       # the last description of the neighbour list
+        self.precision_told = ""        # what was said of styles that mixed precision leaves as they are
         self.later: list[str] = []              # lines of the set-up of a run that come after that
         self.partners_told: Any = None          # see asemd.lammps.setup_log.partners_per_atom
         self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
