@@ -94,6 +94,7 @@ class Session:
         self._depth = 0                    # scripts within scripts
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
+        self.stopped_at: Where | None = None        # the run at which a passive session stopped
         self.list_told: str | None = None       # the last description of the neighbour list
         self.precision_told = ""        # what was said of styles that mixed precision leaves as they are
         self.later: list[str] = []              # lines of the set-up of a run that come after that
@@ -171,6 +172,7 @@ class Session:
             raise InputError(f"{name} command after simulation box is defined: move it before read_data or create_box")
         if self.passive and name in ACTIONS and not self.dry:
             self.scene.need_system(name)
+            self.stopped_at = self._position
             raise Stop
         if name in ACTIONS:
             self.log.to_file(self.origin.line())
