@@ -312,9 +312,20 @@ class Session:
         """Formulas see a run that has this progress."""
         self.moment.progress, self.running = progress, True
         try:
-            yield
+            with self.at_step(progress.begin):
+                yield
         finally:
             self.running = False
+
+    @contextmanager
+    def at_step(self, step: int):
+        """Errors of what is called inside name the step."""
+        try:
+            yield
+        except SimulationError as error:
+            if not str(error).startswith("step "):
+                error.args = (f"step {step}: {error}",)
+            raise
 
     def stale(self) -> None:
         """What was known about the last step no longer holds."""
