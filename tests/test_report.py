@@ -194,6 +194,13 @@ def test_cutoff_that_is_the_model(melt, tmp_path):
     assert "part of the model" in cutoff.needs(load(tmp_path / "in.wca"))
 
 
+def test_no_table_for_forces_of_many_bodies(tmp_path):
+    (tmp_path / "in.atm").write_text(MELT.replace("lj/cut 2.5", "atm 2.5 1.5").replace("pair_coeff 1 1 1.0 1.0", "pair_coeff * * * 0.1"))
+    scene = load(tmp_path / "in.atm")
+    table = next(k for k in knob.all_knobs(scene) if k.name == "table")
+    assert table.needs(scene) == "pair style atm has many-body forces, which no table of distances holds"
+
+
 def test_styles_and_fixes_bring_knobs(melt):
     class Tolerance:
         name, title, order = "tolerance", "tolerance of something", 80
