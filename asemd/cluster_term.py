@@ -108,3 +108,19 @@ class PairTerm(FactorTerm):
 
     def describe(self, engine, item, value):
         return SimulationError(f"pair style {self.style.name}: energy or force is not finite")
+
+
+def has_single(style) -> bool:
+    """Whether a pair style has kernels in single precision, which mixed precision takes."""
+    return bool(style.parts) and not style.listed and not any(part.arrays for part in style.parts)
+
+
+def in_double(engine) -> tuple[list[str], str]:
+    """Pair styles of a scene that are computed in double precision even if mixed precision is asked for, and why."""
+    names = list(dict.fromkeys(t.style.name for t in engine.pair_terms + engine.many_terms))
+    mixed = {t.style.name for t in engine.terms if isinstance(t, PairTerm)}
+    stay = [name for name in names if name not in mixed]
+    without = [name for name in stay if not any(t.style.name == name and has_single(t.style) for t in engine.pair_terms)]
+    if without or engine.mode == "none":
+        return stay, f"no kernel in single precision for {', '.join(without)}" if stay != without else "no kernel in single precision"
+    return stay, "a sub-style with a factor for each atom" if engine.expanded else engine.why

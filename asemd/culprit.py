@@ -20,6 +20,7 @@ STEP = 1e-4             # of differences, relative to the length of an item
 EARLY = 1000            # steps: a kick that is far too large before was so at the start,
 TOO_LARGE = 0.5         # which is this part of the item's length
 PERIODS = 20            # steps per period of a vibration
+SHORTER = "a shorter timestep (asemd check finds one)"
 CLOSE = 15.0            # times the mean kinetic energy of an atom: pairs of that energy did not get there by themselves
 
 
@@ -189,7 +190,7 @@ def _closest(engine, term: PairListTerm, scale) -> list[Item]:
     return [item]
 
 
-def advice(item: Item | None, dt: float, steps: int, kinetic: float) -> list[str]:
+def advice(item: Item | None, dt: float, steps: int, kinetic: float, start: bool = True) -> list[str]:
     """What to try when a run came apart.
 
     Parameters
@@ -202,17 +203,18 @@ def advice(item: Item | None, dt: float, steps: int, kinetic: float) -> list[str
         Steps since the run began.
     kinetic : float
         Mean kinetic energy of an atom in the last good state.
+    start : bool
+        Whether that is the state before the first step, so that the timestep has not made it.
     """
     early = item is not None and steps < EARLY and not item.kick < TOO_LARGE * item.distance
     if early and item.kind == "pair" and not item.energy < CLOSE * kinetic:
         return [f"minimize before the run, because atoms {' and '.join(map(str, item.ids))} overlap",
-                "a soft start: pair_style soft, or fix nve/limit, for the first steps"]
-    shorter = dt / 4.0
-    why = ""
+                "a soft start: pair_style soft, or fix nve/limit, for the first steps", *[SHORTER] * (not start)]
+    shorter = SHORTER
     if item is not None and item.kind != "pair" and math.isfinite(item.period):
-        shorter = min(max(item.period / PERIODS, dt / PERIODS), dt / 2.0)
-        why = f" (this {item.kind} vibrates with a period of {item.period:.3g}, {item.period / dt:.3g} steps)"
-    out = [f"timestep {shorter:.2g}{why}"]
+        shorter = (f"timestep {min(max(item.period / PERIODS, dt / PERIODS), dt / 2.0):.2g} (this {item.kind} vibrates with a period of "
+                   f"{item.period:.3g}, {item.period / dt:.3g} steps)")
+    out = [shorter]
     if early:
         out.insert(0, "minimize before the run, or fix nve/limit for its first steps: atoms start too close together, or bonds too long")
     return out

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 LINE = 300       # characters of a line of the user's that a message repeats
+# what helps where atoms are in one place: no force tells in which direction they should part
+ONE_PLACE = "delete one of them (delete_atoms overlap) or move it (displace_atoms), minimize cannot part them"
 
 
 def readable(text: str, longest: int) -> str:

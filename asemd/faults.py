@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.errors import SimulationError
+from asemd.errors import ONE_PLACE, SimulationError
 
 
 def not_finite(engine) -> SimulationError:
@@ -16,6 +16,6 @@ def not_finite(engine) -> SimulationError:
             m = int(np.argmin((d * d).sum(0)))
             a, b = sorted(int(s.id[engine.state.row[t[m]]]) for t in (i, j))
             distance = np.sqrt((d[:, m] ** 2).sum())
-            return SimulationError(f"atoms {a} and {b} overlap (distance {distance:.3g}): energy or force is not finite")
+            return SimulationError(f"atoms {a} and {b} overlap (distance {distance:.3g}): energy or force is not finite; {ONE_PLACE}")
     who = f"atom {s.id[bad[0]]}: force is not finite (NaN or infinite)" if len(bad) else "the energy is not finite"
     return SimulationError(who + "; atoms overlap, or the time step is too long")

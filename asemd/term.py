@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from asemd.errors import InputError, SimulationError
+from asemd.errors import ONE_PLACE, InputError, SimulationError
 from asemd.kernels import pair as pair_kernels
 from asemd.kernels.pair_list import ROOM
 from asemd.kernels.pair_scaled import scaled
@@ -290,7 +290,7 @@ class PairListTerm(Term):
 def not_finite(engine, style, i: int, j: int, distance: float) -> SimulationError:
     """The error of two slots whose pair energy or force is not finite."""
     first, second = sorted(int(engine.system.id[engine.state.row[slot]]) for slot in (i, j))
-    why = "the atoms coincide" if distance == 0 else style.domain or "outside the style's domain"
+    why = f"the atoms coincide; {ONE_PLACE}" if distance == 0 else style.domain or "outside the style's domain"
     return SimulationError(f"pair style {style.name}: energy or force between atoms {first} and {second} at distance {distance:.6g} "
                            f"is not finite: {why}")
 

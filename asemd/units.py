@@ -85,6 +85,10 @@ _TABLE = (
 )
 STYLES = {u.name: u for u in _TABLE}
 LAMMPS_STYLES = tuple(name for name in STYLES if name != "ase")
+# names of the units of length and time
+NAMES = {"lj": ("sigma", "tau"), "real": ("Angstrom", "fs"), "metal": ("Angstrom", "ps"), "si": ("m", "s"), "cgs": ("cm", "s"),
+         "electron": ("Bohr", "fs"), "micro": ("micrometre", "microsecond"), "nano": ("nm", "ns"),
+         "ase": ("Angstrom", "Angstrom sqrt(amu/eV)")}
 
 
 def get(name: str) -> Units:
@@ -139,6 +143,11 @@ _BASES = {
 }
 DIMENSIONS = tuple(_BASES["lj"])
 _TOKEN = re.compile(r"\s*([*/]?)\s*([A-Za-z_]+|1)\s*(?:\^\s*(-?\d+(?:\.\d+)?))?\s*")
+
+
+def name(base: str, style: str) -> str:
+    """The name of the unit of ``distance`` or ``time`` of a unit style: ``Angstrom``, ``fs``."""
+    return NAMES[style][base == "time"]
 
 
 @cache

@@ -348,7 +348,8 @@ class Watchdog:
                 parts.append(f"strongest pull at step {frame.step}: {verdict.item}")
             parts += self._write(verdict)
             if not isinstance(error, LostAtoms) or verdict.item is not None:
-                verdict.advice = advice(verdict.item, loop.dt, loop.step - self.first, _kinetic(verdict.good, loop.units))
+                verdict.advice = advice(verdict.item, loop.dt, loop.step - self.first, _kinetic(verdict.good, loop.units),
+                                        frame.step == self.first)
                 parts.append(f"try {', or '.join(verdict.advice)}")
             text = "; ".join([text, *parts])
         error.args = (text,)

@@ -90,10 +90,10 @@ BROKEN = {
     "shifted in the well": (edit(LJ, ("lj/cut 2.5", "lj/cut 1.3"), ("run 10", "pair_modify shift yes\nrun 10")), "jump at the cutoff",
                             "note", (), "energy of types 1 and 1 does not jump"),
     "small box": (edit(LJ, ("0 4 0 4 0 4", "0 2 0 2 0 2"), ("lj/cut 2.5", "lj/cut 3.5")), "box and cutoff", "warning", (), "and itself"),
-    "short damping": (edit(BUTANE, ("300.0 100.0", "300.0 5.0")), "damping", "warning", (), "5 steps"),
-    "no damping time": (edit(BUTANE, ("300.0 100.0", "300.0 1.0")), "damping", "error", (), "too short"),
-    "friction": (edit(CHAIN, ("1.0 10.0", "1.0 0.02")), "damping", "warning", (), "friction of a step is 30 %"),
-    "friction that turns round": (edit(CHAIN, ("1.0 10.0", "1.0 0.002")), "damping", "error", (), "turns velocities round"),
+    "short damping": (edit(BUTANE, ("300.0 100.0", "300.0 5.0")), "temperature damping", "warning", (), "5 steps"),
+    "no damping time": (edit(BUTANE, ("300.0 100.0", "300.0 1.0")), "temperature damping", "error", (), "too short"),
+    "friction": (edit(CHAIN, ("1.0 10.0", "1.0 0.02")), "temperature damping", "warning", (), "friction of a step is 30 %"),
+    "friction that turns round": (edit(CHAIN, ("1.0 10.0", "1.0 0.002")), "temperature damping", "error", (), "turns velocities round"),
     "exclusions of fene": (edit(CHAIN, ("special_bonds fene", "special_bonds lj/coul 1 1 1"), ("lj/cut 1.12", "lj/cut 2.5"),
                                 ("1 1 1.0 1.0\nvel", "1 1 5.0 1.05\nvel")), "exclusions", "warning", None, "special_bonds for them is 1"),
     "exclusions of molecules": (edit(HARMONIC, ("lj/coul 0 0", "lj/coul 1 1")), "exclusions", "warning", None, "bonded pairs"),
@@ -129,21 +129,23 @@ def test_broken_twins_are_found(folder, name):
 
 def test_integrators_that_stand_any_friction(folder):
     text = edit(CHAIN, ("fix 1 all nve\n", ""), ("langevin 1.0 1.0 10.0", "baoab 1.0 1.0 0.002"))
-    assert check(text).of("damping")[0].severity == "note"
+    assert check(text).of("temperature damping")[0].severity == "note"
     text = edit(CHAIN, ("1.0 10.0 904297", "1.0 0.02 904297 gjf vhalf"))
-    assert check(text).of("damping")[0].severity == "ok"
+    assert check(text).of("temperature damping")[0].severity == "ok"
 
 
 def test_damping_times_of_barostats(folder):
     text = edit(BUTANE, ("nvt temp 300.0 300.0 100.0", "npt temp 300.0 300.0 100.0 iso 0 0 60.0"))
-    found = check(text).of("damping")
+    report = check(text)
+    found = [*report.of("temperature damping"), *report.of("pressure damping")]
     assert [f.severity for f in found] == ["ok", "warning"] and "pressure with a damping time of 60" in found[1].message
 
 
 def test_scaling_of_velocities_has_no_damping_time(folder):
     text = edit(BUTANE, ("nvt temp 300.0 300.0 100.0", "nve"), ("run 10", "fix 2 all temp/rescale 1 300 300 1.0 1.0\nrun 10"))
-    assert not check(text).of("damping")
-    assert check(edit(text, ("temp/rescale 1 300 300 1.0 1.0", "temp/berendsen 300 300 5.0"))).of("damping")[0].severity == "warning"
+    assert not check(text).of("temperature damping")
+    berendsen = check(edit(text, ("temp/rescale 1 300 300 1.0 1.0", "temp/berendsen 300 300 5.0")))
+    assert berendsen.of("temperature damping")[0].severity == "warning"
 
 
 def test_exclusions_by_neigh_modify_are_seen(folder):
@@ -423,3 +425,21 @@ def test_scenes_with_mistakes_end_in_one_message(folder):
             assert asemd.check("in.scene").findings
         except AsemdError as e:
             assert "\n" not in str(e), case.name
+
+
+def test_atoms_in_one_place(folder):
+    """Nothing but the user parts them: neither a minimisation nor a limit of steps."""
+    for text in (LJ, edit(LJ, ("run 10", "minimize 0 0 10 100\nrun 10")), edit(LJ, ("fix 1 all nve", "fix 1 all nve/limit 0.1"))):
+        found = check(edit(text, ("mass 1", "create_atoms 1 single 0 0 0\nmass 1"))).of("overlaps")[0]
+        assert found.severity == "error" and "delete_atoms overlap" in found.advice and "neither minimize nor" in found.advice
+
+
+def test_forces_of_many_bodies(folder):
+    """What is left out says why, and the box is looked at."""
+    text = edit(LJ, ("pair_style lj/cut 2.5", "pair_style atm 3.5 1.5"), ("pair_coeff 1 1 1.0 1.0", "pair_coeff * * * 0.1"))
+    report = check(text)
+    left = dict(report.left_out)
+    for name in ("overlaps", "jump at the cutoff"):
+        assert left[name].startswith("atm: many-body forces are no sum over pairs; first step and fastest vibration")
+    assert report.of("box and cutoff") and report.of("first step") and report.of("fastest vibration")
+    assert check(edit(text, ("0 4 0 4 0 4", "0 2 0 2 0 2"))).of("box and cutoff")[0].severity == "warning"

@@ -55,6 +55,25 @@ jump SELF forever
 """
 
 
+SALT = """units lj
+atom_style charge
+lattice sc 0.6
+region b block 0 6 0 6 0 6
+create_box 2 b
+create_atoms 1 box
+mass * 1.0
+set type 1 type/fraction 2 0.5 12
+set type 1 charge 1.0
+set type 2 charge -1.0
+pair_style lj/cut/coul/long 2.5
+pair_coeff * * 1.0 1.0
+kspace_style pppm 1e-4
+fix 1 all nve
+run 10
+run 20
+"""
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -179,3 +198,18 @@ def test_dry_looks_at_dumps(folder, capsys):
     problems = capsys.readouterr().err.splitlines()
     assert len(problems) == 2 and "dump_modify e element" in problems[0]
     assert "no charges for the column q (in.dump:11: run 10)" in problems[1]
+
+
+@pytest.mark.parametrize("old, new, problem", [
+    ("kspace_style pppm 1e-4\n", "", "pair style lj/cut/coul/long needs a kspace_style, such as pppm 1.0e-4 (in.x:14: run 10)"),
+    ("1e-4", "1e-14", "is too large; use a lower accuracy, a larger Coulomb cutoff, or kspace_modify (in.x:15: run 10)"),
+    ("lj/cut/coul/long 2.5", "lj/cut 2.5", "kspace_style pppm needs a pair style that leaves it the long-range part, such as"),
+    ("pppm 1e-4", "pppm 10", "the relative accuracy must be at most 1, got 10 (in.x:13: kspace_style pppm 10)"),
+    ("pair_style lj/cut/coul/long", "pair_style lj/cut/coul/lang", "unknown pair style 'lj/cut/coul/lang'"),
+    ("1e-4", "1e-5", "")])
+def test_dry_looks_at_the_long_range_solver(folder, capsys, old, new, problem):
+    """What a run would find when it sets up the solver; one problem, where it is met first."""
+    (folder / "in.x").write_text(SALT.replace(old, new))
+    assert cli.main(["run", "--dry", "in.x"]) == bool(problem)
+    shown = " ".join(" ".join(capsys.readouterr()).split())
+    assert problem in shown and ("no problems found" if not problem else ": 1 problem") in shown

@@ -187,7 +187,7 @@ def test_strong_friction_is_brownian_motion():
     ("fix 1 all baoab 300 300 0.5 77", "note"), ("fix 1 all gjf 300 300 0.5 77", "note")])
 def test_the_check_knows_which_scheme_stands_friction(line, severity):
     from asemd.check import check
-    assert [f.severity for f in check(session(line).scene).of("damping")] == [severity]
+    assert [f.severity for f in check(session(line).scene).of("temperature damping")] == [severity]
 
 
 def test_gjf_yes_of_old_versions_is_vfull():

@@ -321,6 +321,7 @@ def test_calculator(potentials, monkeypatch):
 @pytest.mark.parametrize("along", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (3, -1, 2)])
 def test_straight_chains_of_carbon(along, potentials, monkeypatch):
     """Dihedrals around straight angles have no sine, also where rounding leaves some of it."""
+    from ase import Atoms
     monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
     u = np.array(along) / np.linalg.norm(along)
     chain = Atoms("HC4H", positions=[10.0 + u * t for t in (-1.06, 0.0, 1.2, 2.55, 3.75, 4.81)], cell=[30.0] * 3, pbc=True)

@@ -96,6 +96,40 @@ def test_only_on_request_is_the_machine_measured(folder, capsys, monkeypatch):
     assert "Measuring the speed of this machine" in shown.err and "a calibration of this machine" in shown.out
 
 
+def test_when_energy_and_virial_are_computed(folder):
+    """A barostat asks for the virial on every step; nothing is said of dumps where there are none."""
+    text = big(6).replace("fix 1 all nve", "fix 1 all {} temp 1 1 1{}") + "thermo 5\nrun 10\n"
+    for style, more in (("nvt", ""), ("npt", " iso 0 0 1")):
+        (folder / "in.x").write_text(text.format(style, more))
+        plan = asemd.plan("in.x")
+        output, left = items(plan, "Output"), items(plan, "Left out")
+        assert output["energy and virial"].how == "every 5 steps, first and last"
+        assert ("virial" in output) == ("energy between outputs" in left) == (style == "npt")
+        assert ("energy and virial between outputs" in left) == (style == "nvt")
+    assert output["virial"].how == "every step" and output["virial"].why == "fix 1 (npt) asks for it"
+    (folder / "in.x").write_text(text.format("nve #", "") + "dump d all atom 3 dump.x\nrun 10\n")
+    (folder / "in.x").write_text((folder / "in.x").read_text().replace("run 10\n", "", 1))
+    assert items(asemd.plan("in.x"), "Output")["energy and virial"].how.endswith("; on steps with a dump")
+
+
+def test_a_script_that_begins_with_minimize(folder):
+    (folder / "in.x").write_text(big(6) + "minimize 1e-3 1e-4 10 20\nrun 10\n")
+    plan = asemd.plan("in.x")
+    line = (folder / "in.x").read_text().splitlines().index("minimize 1e-3 1e-4 10 20") + 1
+    assert str(plan).startswith(f"Plan of in.x, line {line}: minimize 1e-3 1e-4 10 20")
+    fixes = items(plan, "Fixes")
+    assert fixes["minimisation"].how == "min_style cg" and "time loop" not in fixes and fixes["fix 1"].why == "rests during minimisation"
+    assert items(plan, "Output")["energy and virial"].how == "at every evaluation" and "Speed" not in plan.sections
+
+
+def test_mistakes_have_a_place(folder, capsys):
+    text = big(6).replace("pair_coeff", "#") + "run 10\n"
+    (folder / "in.x").write_text(text)
+    for command in ("plan", "report"):
+        assert cli.main([command, "in.x"]) == 1
+        assert f"(in.x:{len(text.splitlines())}: run 10)" in capsys.readouterr().err
+
+
 def test_no_forces(folder, capsys):
     (folder / "in.x").write_text("region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\n")
     assert cli.main(["plan", "in.x", "--json"]) == 0

@@ -10,9 +10,10 @@ from types import SimpleNamespace
 import pytest
 
 import asemd
+from asemd import units as unit_styles
 from asemd.errors import InputError
 from asemd.loop import Loop
-from asemd.report import advice, bench, clock, course, knob, nve, study
+from asemd.report import advice, bench, clock, course, knob, nve, plots, study
 from asemd.report.apply import apply_to
 from asemd.report.copies import copied, load, read
 from asemd.report.plots import Line, Picture
@@ -193,6 +194,13 @@ def test_cutoff_that_is_the_model(melt, tmp_path):
     assert "part of the model" in cutoff.needs(load(tmp_path / "in.wca"))
 
 
+def test_no_table_for_forces_of_many_bodies(tmp_path):
+    (tmp_path / "in.atm").write_text(MELT.replace("lj/cut 2.5", "atm 2.5 1.5").replace("pair_coeff 1 1 1.0 1.0", "pair_coeff * * * 0.1"))
+    scene = load(tmp_path / "in.atm")
+    table = next(k for k in knob.all_knobs(scene) if k.name == "table")
+    assert table.needs(scene) == "pair style atm has many-body forces, which no table of distances holds"
+
+
 def test_styles_and_fixes_bring_knobs(melt):
     class Tolerance:
         name, title, order = "tolerance", "tolerance of something", 80
@@ -343,3 +351,42 @@ def test_atoms_and_scenes(melt, tmp_path, monkeypatch):
     apply_to(best_of({"skin": 0.45}), load(melt), None, "in.scene")
     again = load("in.scene")
     assert again.system.n == 500 and again.neighbor.skin == 0.45
+
+
+# ---- plots ------------------------------------------------------------------------------------------------------------------------------
+
+def drawn(curve, units="real"):
+    """The figure of a curve, and the texts of its upper axis of numbers that are within it."""
+    plt = plots._pyplot()
+    figure = plots._draw_curve(plt, curve, Report("", 1, units, script=curve.points[0]))
+    figure.canvas.draw()
+    top = figure.axes[0]
+    low, high = top.get_ylim()
+    texts = [label for minor in (False, True) for label, y in zip(top.get_yticklabels(minor=minor), top.get_yticks(minor=minor))
+             if low <= y <= high and label.get_text()]
+    plt.close(figure)
+    return figure, texts
+
+
+@pytest.mark.parametrize("errors", [[0.99326, 0.99327, 0.99326], [7.1e-7, 7.3e-7, 7e-7], [1e-15, 2e-15, 1e-15]])
+def test_axes_of_equal_errors(errors):
+    """Ticks are different powers of ten, within the figure, and the axis keeps its label."""
+    points = [dataclasses.replace(point(f"p{k}", 1.0 + 0.01 * k, force_error=e), number=1.0 + k, quartiles=(1.0, 1.0))
+              for k, e in enumerate(errors)]
+    figure, texts = drawn(Curve("skin", "skin", "distance", "force_error", False, points=points))
+    assert len(texts) > 1 and len({t.get_text() for t in texts}) == len(texts) and all("times" not in t.get_text() for t in texts)
+    assert min(t.get_window_extent().x0 for t in texts) > 0.0
+    top, bottom = figure.axes
+    assert top.yaxis.label.get_window_extent().x0 > 0.0 and bottom.get_xlabel() == "skin / Angstrom"
+
+
+def test_long_labels_are_within_the_figure():
+    points = [dataclasses.replace(point("every 20 delay 0 unchecked"), quartiles=(1.0, 1.0)) for _ in range(6)]
+    figure, _ = drawn(Curve("rebuild", "list rebuild", "", "force_error", False, points=points))
+    boxes = [label.get_window_extent() for label in figure.axes[1].get_xticklabels()]
+    assert min(b.x0 for b in boxes) > 0.0 and min(b.y0 for b in boxes) > 0.0
+
+
+def test_names_of_units():
+    assert set(unit_styles.NAMES) == set(unit_styles.STYLES)
+    assert [unit_styles.name("time", style) for style in ("real", "metal", "lj")] == ["fs", "ps", "tau"]

@@ -146,7 +146,7 @@ def test_a_timestep_far_too_long_in_a_melt(tmp_path):
     """Energy from nowhere: found long before anything is infinite; LAMMPS goes on with it, or loses atoms."""
     error, _ = failure(MELT.format(n=5, dt=0.05) + "run 1000\n", tmp_path)
     good = error.verdict.good
-    assert error.verdict.step < 300 and "timestep 0.01" in str(error)
+    assert error.verdict.step < 300 and "try a shorter timestep (asemd check finds one)" in str(error)
     assert np.abs(good.v).max() * 0.05 < 2.5 and error.verdict.item.energy < 1e4
 
 
@@ -312,8 +312,29 @@ def test_advice():
     assert advice(bond, 0.1, 5000, 1.0) == ["timestep 0.02 (this bond vibrates with a period of 0.4, 4 steps)"]
     pair = Item("pair", "pair_style lj/cut", 0, (1, 2), 0.1, 1e9, 1e11, 1e6, period=1e-6)
     near, far = advice(pair, 0.004, 3, 1.0), advice(pair, 0.004, 10**6, 1.0)
-    assert near[0].startswith("minimize") and "overlap" in near[0] and not any("timestep" in a for a in near) and far == ["timestep 0.001"]
-    assert advice(None, 1.0, 0, 1.0) == ["timestep 0.25"]
+    assert near[0].startswith("minimize") and "overlap" in near[0] and not any("timestep" in a for a in near)
+    assert far == advice(None, 1.0, 0, 1.0) == ["a shorter timestep (asemd check finds one)"]
+
+
+def test_the_timestep_that_check_finds_holds(tmp_path):
+    """What the message of a run advises is the estimate of the check, which holds at once."""
+    path = tmp_path / "in.melt"
+    path.write_text(MELT.format(n=5, dt=0.5) + "run 200\n")
+    error, _ = failure(path.read_text(), tmp_path)
+    assert "asemd check finds one" in str(error)
+    told = asemd.check(path).of("time step")[0].advice
+    Session(screen=None).commands(MELT.format(n=5, dt=float(told.split("a timestep of ")[1].split()[0])) + "run 200\n")
+
+
+@pytest.mark.parametrize("cells", [5, 1])
+def test_atoms_in_one_place(tmp_path, cells):
+    """The step is named, and what the message advises helps; minimize would end with the same error."""
+    text = MELT.format(n=cells, dt=0.005).replace("velocity", "create_atoms 1 single 0 0 0\nvelocity", 1)
+    for command in ("run 10\n", "minimize 0 0 10 100\n"):
+        error, _ = failure(text + command, tmp_path)
+        assert str(error).startswith("step 0: ") and "delete one of them (delete_atoms overlap) or move it (displace_atoms)" in str(error)
+    for mended in ("delete_atoms overlap 0.3 all all", "group one id 1\ndisplace_atoms one move 0.4 0.4 0"):
+        Session(screen=None).commands(f"{text}{mended}\nminimize 0 0 100 1000\nrun 10\n")
 
 
 def test_switched_off(tmp_path):

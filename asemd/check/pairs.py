@@ -62,6 +62,14 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
     return of
 
 
+def why_none(case) -> str:
+    """Why a scene has no energies of single pairs."""
+    many = list(dict.fromkeys(t.style.name for t in case.engine.many_terms))
+    if not many:
+        return "no pair forces"
+    return f"{', '.join(many)}: many-body forces are no sum over pairs; first step and fastest vibration look at them"
+
+
 def _radius(case, t: int) -> float:
     """Mean radius of the atoms of a type."""
     return float(case.system.extra["radius"][case.system.type == t].mean())

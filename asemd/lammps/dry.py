@@ -6,7 +6,9 @@ import re
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
+from asemd import units
 from asemd.errors import AsemdError, InputError, NotYet, Undefined, Where
+from asemd.kspace import solve
 from asemd.lammps import script
 from asemd.lammps.driver import Driver, check
 from asemd.lammps.names import COMMANDS
@@ -23,7 +25,8 @@ KINDS = ("pair", "bond", "angle", "dihedral", "improper")
 # what an error says -> commands of which one that failed before explains it
 CONSEQUENCES = {**{f"(before|must define) {k}_style": (f"{k}_style",) for k in KINDS},
                 **{f"All {k} coeffs are not set": (f"{k}_style", f"{k}_coeff", *BOX, "include", "jump") for k in KINDS},
-                "before a kspace_style": ("kspace_style",),
+                "before a kspace_style|needs a kspace_style|kspace_style .* needs a pair style|all charges are 0":
+                    ("kspace_style", "pair_style", "set", *BOX, "include", "jump"),
                 "no mass for atom type": ("mass", "pair_style", *BOX, "include", "jump")}
 ROUNDS = 2      # how often a jump is followed from one line
 
@@ -124,6 +127,7 @@ class DrySession(Session):
         """What is left of a run: the checks before it, and the references of its output."""
         try:
             check(self)
+            self._solve()
         except InputError as e:
             self._add(e.at(self._position))
         for word in driver.words:
@@ -135,6 +139,19 @@ class DrySession(Session):
                 self._add(InputError(f"thermo_style: column {word}: {e.message}", self._position))
         self.scene.step += driver.plan.steps
         self._ran = True
+
+    def _solve(self) -> None:
+        """The parameters of the long-range solver, which the run would choose first; a problem is told at the first run that has it."""
+        scene = self.scene
+        interactions = scene.interactions
+        if interactions.kspace == "none" and not interactions.needs_solver:
+            return
+        try:
+            with self.passing_warnings():
+                solve(scene.system, interactions, units.get(scene.units), scene.neighbor.skin)
+        except InputError as e:
+            if not any(p.message == e.message for p in self.problems):
+                raise
 
     def _bind(self, word: str) -> None:
         """Look whether what a thermo column refers to is there."""

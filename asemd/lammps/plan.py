@@ -1,6 +1,7 @@
 """What a scene needs, what is left out, and why; nothing is compiled and no step is run."""
 from __future__ import annotations
 
+import math
 import os
 import sys
 from dataclasses import asdict, dataclass, field
@@ -81,7 +82,7 @@ def plan(source, calibrate: bool = False) -> Plan:
     Parameters
     ----------
     source : path, asemd.scene.Scene or ase.Atoms
-        A script is executed up to its first run; atoms need `asemd.ForceField` as calculator.
+        A script is executed up to its first run or minimisation; atoms need `asemd.ForceField` as calculator.
     calibrate : bool
         Measure the speed of this machine if that was not done before (in a process of its own: about seven seconds, about a minute
         where kernels have to be compiled first). Without it, or for atoms, the expected speed is told only where it is known.
@@ -111,26 +112,32 @@ def plan(source, calibrate: bool = False) -> Plan:
 
 
 def of_script(path: str, switches=None, calibrate: bool = False) -> Plan:
-    """The plan of a script's scene at its first run."""
+    """The plan of a script's scene at its first run or minimisation."""
     from asemd.lammps.session import Session, Stop
     session = Session(switches=switches, passive=True)
     try:
         session.file(path)
     except Stop:
         session.label = None
-    return of_scene(session.scene, path, session.variables.references, calibrate)
+    where = session.stopped_at
+    source = f"{path}, line {where.line}: {' '.join(where.text.split())}" if where else f"{path}, which runs nothing: its scene at the end"
+    minimizes = where is not None and where.text.split()[0] == "minimize"
+    try:
+        return of_scene(session.scene, source, session.variables.references, calibrate, minimizes)
+    except InputError as error:
+        raise error.at(where) from None
 
 
-def of_scene(scene, source: str = "scene", references=lambda word: {word}, calibrate: bool = False) -> Plan:
-    """The plan of a scene; `references` tells which names a formula uses."""
+def of_scene(scene, source: str = "scene", references=lambda word: {word}, calibrate: bool = False, minimizes: bool = False) -> Plan:
+    """The plan of a scene; `references` tells which names a formula uses. A run is described, or a minimisation."""
     system = scene.need_system("plan")
     scene.interactions.check_complete(system)
     engine = Engine(system, scene.interactions, scene.settings())
     out = _of_engine(source, engine)
-    out.sections["Fixes"] = _fixes(scene)
-    out.sections["Output"], more = _output(scene, references)
+    out.sections["Fixes"] = _fixes(scene, minimizes)
+    out.sections["Output"], more = _output(scene, references, minimizes)
     out.left_out += more
-    _costs(out, engine, scene, calibrate)
+    _costs(out, engine, scene, calibrate, minimizes)
     return out
 
 
@@ -278,8 +285,13 @@ def _absent(e: Engine) -> list[Item]:
 
 # ------------------------------------------------------------------------------------------------------------ from the scene ---
 
-def _fixes(scene) -> list[Item]:
+def _fixes(scene, minimizes: bool) -> list[Item]:
     out, python = [], []
+    if minimizes:
+        out = [Item(f"fix {id}", f"{f.style} on group {f.group}", "acts on the forces" if f.minimizes else "rests during minimisation")
+               for id, f in scene.fixes.items()]
+        why = "the script begins with it; runs after it have a time loop, which this plan does not describe"
+        return [Item("minimisation", f"min_style {scene.min_style}", why), *out]
     for id, fix in scene.fixes.items():
         hooks = fix.hooks()
         names = ", ".join(name + ("" if compiled else " (Python)") for name, compiled in hooks.items()) or "no hooks"
@@ -290,7 +302,7 @@ def _fixes(scene) -> list[Item]:
     return [loop, *out] if movers or out else [Item("time loop", "compiled, atoms do not move", "no fix integrates")]
 
 
-def _output(scene, references) -> tuple[list[Item], list[Item]]:
+def _output(scene, references, minimizes: bool) -> tuple[list[Item], list[Item]]:
     thermo, computes = scene.thermo, scene.computes
     words = thermo.columns()
     row = thermo.needs(words, computes, references)
@@ -306,11 +318,11 @@ def _output(scene, references) -> tuple[list[Item], list[Item]]:
             needs = ", ".join(sorted(compute.needs)) or "nothing but the atoms"
             when_used = "shown in thermo rows" if shown else "evaluated when asked for"
             out.append(Item(f"compute {id}", compute.style, f"needs {needs}; {when_used}"))
-    out.append(Item("energy and virial", f"{when}; on steps with a dump", "the kernel with energies runs on these steps only"))
+    often, absent = _energies(scene, when, minimizes)
+    out += often
     per_atom = {"energies", "virials"}
     asking = [f"dump {id}" for id, d in scene.dumps.items() if d.needs & per_atom] + [
         f"compute {id}" for id, c in computes.items() if c.needs & per_atom]
-    absent = [Item("energy and virial between outputs", "", "nobody looks at them: the force-only kernel runs", "thermo 1")]
     if row & per_atom or asking:
         out.append(Item("per-atom kernels", "on the steps on which they are shown, and on the last one", ", ".join(asking) or "thermo row"))
     else:
@@ -318,6 +330,25 @@ def _output(scene, references) -> tuple[list[Item], list[Item]]:
     if not scene.dumps:
         absent.append(Item("dumps", "", "none is defined", "dump"))
     return out, absent
+
+
+def _energies(scene, when: str, minimizes: bool) -> tuple[list[Item], list[Item]]:
+    """On which steps energy and virial are computed, and when they are not."""
+    if minimizes:
+        return [Item("energy and virial", "at every evaluation", "the minimiser looks at the energy: the kernel with energies runs")], []
+    asking = {id: f for id, f in scene.fixes.items() if f.virial_every}
+    every = math.gcd(*(f.virial_every for f in asking.values()))
+    whose = ", ".join(f"fix {id} ({f.style})" for id, f in asking.items())
+    late = [f"fix {id} ({f.style}) every {f.every}" for id, f in scene.fixes.items() if f.needs and not f.virial_every]
+    when = "; ".join([when, *["on steps with a dump"] * bool(scene.dumps), *late])
+    steps = "every step" if every == 1 else f"every {every} steps"
+    if any(f.with_energies for f in asking.values()):
+        return [Item("energy and virial", steps, f"{whose} asks for them")], []
+    out = [Item("energy and virial", when, "the kernel with energies runs on these steps only")]
+    if every:
+        return ([*out, Item("virial", steps, f"{whose} asks for it")],
+                [Item("energy between outputs", "", "nobody looks at it", "thermo 1")])
+    return out, [Item("energy and virial between outputs", "", "nobody looks at them: the force-only kernel runs", "thermo 1")]
 
 
 # ------------------------------------------------------------------------------------------------------------- what it costs ---
@@ -339,12 +370,14 @@ def _bytes(n: float) -> str:
     return f"{n / 2**20:.3g} MB" if n >= 2**20 else f"{n / 2**10:.3g} kB"
 
 
-def _costs(out: Plan, e: Engine, scene, calibrate: bool) -> None:
+def _costs(out: Plan, e: Engine, scene, calibrate: bool, minimizes: bool) -> None:
     """Memory, modules and expected speed."""
     from asemd.lammps import calibration, plan_speed
     costs = (calibration.calibrate if calibrate else calibration.known)(e.threads, e.settings.precision)
     per_atom = any(x.needs & {"energies", "virials"} for x in (*scene.computes.values(), *scene.dumps.values()))
     _memory(out, e, per_atom, costs)
+    if minimizes:
+        return
     if costs is None:
         why = "this machine has not been measured: asemd plan --calibrate does it, once, in about a minute"
         out.sections["Speed"] = [Item("steps per second", "not known", why)]

@@ -94,7 +94,9 @@ class Session:
         self._depth = 0                    # scripts within scripts
         self._lines = 0                    # texts of several lines that are being executed
         self._position: Where | None = None
+        self.stopped_at: Where | None = None        # the run at which a passive session stopped
         self.list_told: str | None = None       # the last description of the neighbour list
+        self.precision_told = ""        # what was said of styles that mixed precision leaves as they are
         self.later: list[str] = []              # lines of the set-up of a run that come after that
         self.partners_told: Any = None          # see asemd.lammps.setup_log.partners_per_atom
         self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
@@ -170,6 +172,7 @@ class Session:
             raise InputError(f"{name} command after simulation box is defined: move it before read_data or create_box")
         if self.passive and name in ACTIONS and not self.dry:
             self.scene.need_system(name)
+            self.stopped_at = self._position
             raise Stop
         if name in ACTIONS:
             self.log.to_file(self.origin.line())
@@ -309,9 +312,20 @@ class Session:
         """Formulas see a run that has this progress."""
         self.moment.progress, self.running = progress, True
         try:
-            yield
+            with self.at_step(progress.begin):
+                yield
         finally:
             self.running = False
+
+    @contextmanager
+    def at_step(self, step: int):
+        """Errors of what is called inside name the step."""
+        try:
+            yield
+        except SimulationError as error:
+            if not str(error).startswith("step "):
+                error.args = (f"step {step}: {error}",)
+            raise
 
     def stale(self) -> None:
         """What was known about the last step no longer holds."""

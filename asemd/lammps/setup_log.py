@@ -9,6 +9,7 @@ import time
 import numpy as np
 
 from asemd import units as unit_styles
+from asemd.cluster_term import in_double
 from asemd.errors import InputError
 from asemd.kspace import NEUTRAL, solve
 from asemd.pairing import complete
@@ -117,6 +118,7 @@ def report_list(session, engine) -> None:
     """The neighbour list, where it is another one than before, and what fixes told meanwhile."""
     if engine.mode != "none":
         _report_list(session, engine)
+        _report_precision(session, engine)
     for line in session.later:
         session.print(line)
     session.later.clear()
@@ -138,6 +140,15 @@ def _report_list(session, engine) -> None:
     if text != session.list_told:
         session.list_told = text
         session.print(text)
+
+
+def _report_precision(session, engine) -> None:
+    """Mixed precision that is asked for in vain, once."""
+    names, why = in_double(engine) if engine.settings.precision == "mixed" else ([], "")
+    text = f"mixed precision: pair style {', '.join(names)} stays in double precision ({why})"
+    if names and text != session.precision_told:
+        session.precision_told = text
+        session.log.warn(text)
 
 
 def partners_per_atom(session) -> float:

@@ -15,6 +15,7 @@ from asemd.compute.temp import Temp
 from asemd.engine import Engine
 from asemd.report import nve
 from asemd.report.clock import Clock
+from asemd.report.constraints import field_forces
 from asemd.report.copies import copied
 from asemd.report.knob import Knob
 from asemd.report.knobs.thermostat import baths
@@ -140,8 +141,9 @@ class Bench:
 
         def observe(k, loop, result):
             if k in looks and reference is not None and free.any():
-                d = (loop.system.f - reference.at(loop.system.x).forces)[free]
-                f = loop.system.f[free] - d
+                found = field_forces(loop)[free]
+                d = found - reference.at(loop.system.x).forces[free]
+                f = found - d
                 squares.append((float((d * d).sum()), float((f * f).sum())))
         series = nve.run(scene, steps=steps, samples=samples, fixes=fixes, seed=self.seed, observe=observe,
                          configurational=LOOKS if fixes == "nve" else min(samples, OFTEN),

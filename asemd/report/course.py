@@ -51,7 +51,10 @@ def carry_out(source, budget, at, folder, apply, only, seed, tolerance, lammps, 
         warnings.simplefilter("ignore", InputWarning)
         warnings.simplefilter("ignore", RuntimeWarning)     # of numpy, in runs that end in numbers that are not finite
         reader = copies.read(os.fspath(source), switches, at) if isinstance(source, (str, os.PathLike)) else None
-        scene = copies.load(reader.taken if reader else source)
+        try:
+            scene = copies.load(reader.taken if reader else source)
+        except InputError as error:
+            raise error.at(reader.where if reader else None) from None
         found = Report(os.fspath(source) if reader else "scene" if isinstance(source, Scene) else "atoms", scene.system.n, scene.units,
                        machine=machine(), seed=seed, budget=float(budget))
         if reader:

@@ -26,6 +26,7 @@ from asemd.errors import InputError, SimulationError
 from asemd.fix.nve import NVE
 from asemd.loop import Loop
 from asemd.report.configurational import Probe
+from asemd.report.constraints import holding
 from asemd.report.copies import copied, load, warm
 from asemd.report.statistics import block_error, fit_exponent, residual, slope
 from asemd.scene import Scene
@@ -195,7 +196,8 @@ def run(source, dt: float | None = None, steps: int = 1000, settings: Settings |
     samples : int
         How often energies are looked at, at equal distances; each sample costs one computation of energies.
     configurational : int
-        How many of the samples have a configurational temperature.
+        How many of the samples have a configurational temperature; none has where fixes hold distances, for its formula asks for free
+        coordinates.
     temperature : float, optional
         Fresh velocities of this temperature before the run; by default those of the scene.
     seed : int
@@ -233,6 +235,7 @@ def run(source, dt: float | None = None, steps: int = 1000, settings: Settings |
         if hasattr(fix, "tally"):
             fix.tally = True
     loop = make_loop(scene, chosen, dt, levels or scene.respa)
+    configurational = 0 if holding(scene) else configurational
     probe = Probe(scene, seed) if configurational else None
     return _carry_out(scene, loop, steps, samples, configurational, potentials, baths, probe, observe, deadline)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from asemd import units as unit_styles
 from asemd.page.plot import COLOURS
 from asemd.report import advice
 from asemd.report.nve import drift_unit
@@ -210,6 +211,14 @@ def _plain_numbers(axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def _at_least(ax, decades: float) -> None:
+    """An axis of errors or times over so many powers of ten: over less there are no ticks that people can read."""
+    low, high = np.log10(ax.get_ylim())
+    if high - low < decades:
+        middle = 0.5 * (low + high)
+        ax.set_ylim(10.0 ** (middle - 0.5 * decades), 10.0 ** (middle + 0.5 * decades))
+
+
 def _draw_curve(plt, curve: Curve, report: Report):
     """Error and run time against the value of one knob."""
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(5.6, 5.4), sharex=True)
@@ -218,7 +227,8 @@ def _draw_curve(plt, curve: Curve, report: Report):
     labels = [curve.script_label if p.own else p.label for p in points]
     measured = f"measured: {curve.exponent:.2f} \u00b1 {curve.exponent_error:.2f}"
     plain = len(set(numbers)) == len(numbers) and curve.unit in ("time", "distance")
-    figure.subplots_adjust(0.17, 0.1 if plain else 0.19, 0.97, 0.95, hspace=0.08)
+    first, longest = (0, 5) if plain else (len(labels[0]), max(map(len, labels)))        # characters; labels are turned
+    figure.subplots_adjust(min(0.3, max(0.17, 0.01 * first)), min(0.3, 0.07 + 0.0065 * longest), 0.97, 0.95, hspace=0.08)
     x = np.array(numbers if plain else range(len(points)), float)
     values = np.array([max(abs(getattr(p, curve.metric)), LEAST) for p in points])
     error = np.array([getattr(p, advice.NOISE.get(curve.metric, ""), 0.0) for p in points])
@@ -240,14 +250,15 @@ def _draw_curve(plt, curve: Curve, report: Report):
     bottom.set(yscale="log", ylabel=time_label(report))
     _plain_numbers(bottom.yaxis)
     if plain:
-        bottom.set(xscale="log", xlabel=f"{curve.title} / {curve.unit} units ({report.units})")
+        bottom.set(xscale="log", xlabel=f"{curve.title} / {unit_styles.name(curve.unit, report.units)}")
         bottom.set_xticks(x, [f"{v:g}" for v in x])
         bottom.minorticks_off()
     else:
         bottom.set_xticks(x, labels, rotation=30, ha="right")
-    for ax in (top, bottom):
+    for ax, decades in ((top, 2.0), (bottom, 0.9)):
         ax.grid(True, which="major", alpha=0.25)
         ax.margins(0.06, 0.15)
+        _at_least(ax, decades)
     if curve.metric == "force_error" and values.max() < EXACT:      # digits of round-off mean nothing
         top.set_ylim(LEAST, 1e-12)
         top.axhspan(LEAST, EXACT, color="0.5", alpha=0.15, linewidth=0, label="round-off")

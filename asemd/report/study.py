@@ -10,6 +10,7 @@ from asemd.fix import HOOKS
 from asemd.report import advice, nve
 from asemd.report.bench import LOOKS, WARM, Bench, kinetic_temperature
 from asemd.report.clock import Clock
+from asemd.report.constraints import holding, named, switch_off
 from asemd.report.copies import copied
 from asemd.report.knob import Knob, all_knobs
 from asemd.report.result import COMBINED, SCRIPT, Curve, Point, Report
@@ -53,6 +54,7 @@ class Study:
         self.report, self.clock, self.tell, self.force, self.lammps = report, clock, tell, force, lammps
         self.bench: Bench | None = None
         self.scene = copied(scene)
+        switch_off(self.scene)
         self.only, self.overhead = only, 0.0        # seconds that a point takes beside its run
         self.knobs: dict[str, Knob] = {}
 
@@ -119,6 +121,9 @@ class Study:
         missing = nve.left_out(scene)
         if missing:
             report.notes.append(f"Runs at constant energy do without {', '.join(missing)}.")
+        if held := holding(scene):
+            report.notes.append(f"No configurational temperature: {named(held)} holds distances, and its formula asks for free "
+                                "coordinates. Force errors are those of the force field, without the forces that hold distances.")
         if any(f.style == "nve/limit" for f in scene.fixes.values()):
             report.notes.append("The script bounds displacements (fix nve/limit), as one does while atoms overlap; the runs here do not: "
                                 "measure at a later run of the script (--at), or after it.")

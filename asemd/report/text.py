@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 
+from asemd import units as unit_styles
 from asemd.report import advice
 from asemd.report.nve import drift_unit
 from asemd.report.result import Curve, Point, Report
@@ -98,7 +99,7 @@ def explanations(report: Report) -> list[str]:
         f"units {report.units}.",
         f"drift: slope of the conserved quantity in {drift_unit(report.units)}; fluctuation: of the conserved quantity, relative to that "
         f"of the kinetic energy (above {advice.FLUCTUATION:g} a timestep is long); runs at constant energy over "
-        f"{value(report.duration)} time units.",
+        f"{value(report.duration)} {unit_styles.name('time', report.units)}.",
         f"The same error: force error below {advice.FORCE:g}, drift below {advice.DRIFT:g}, fluctuation below {advice.FLUCTUATION:g}, "
         "kinetic and configurational temperature alike, no list that may have come too late; or not worse than the script, the noise "
         "considered.",

@@ -64,7 +64,8 @@ def draw(result: dict, path: Path) -> None:
     for k, (name, one) in enumerate(result.items()):
         axes[-1].bar(np.arange(4) + 0.4 * k, [one[n] for n in names], 0.38, label=name)
     axes[-1].set(title="elastic constants", ylabel="GPa", xticks=np.arange(4) + 0.2, xticklabels=names)
-    axes[-1].legend()
+    axes[-1].margins(y=0.2)         # room for the legend
+    axes[-1].legend(loc="upper center", ncols=2)
     figure.savefig(path, dpi=90)
 
 

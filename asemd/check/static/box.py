@@ -41,7 +41,7 @@ def width(case: Case) -> list[Finding]:
     """Cells narrower than twice the cutoff are computed right here, with all images; half the cutoff is rarely meant."""
     name, system = "box and cutoff", case.system
     periodic = system.box.periodic & (np.arange(3) < system.dimension)
-    if not periodic.any() or not case.engine.pair_terms:
+    if not periodic.any() or not case.engine.has_pairs:
         raise DoesNotApply("no pair forces across a periodic face")
     widths = 1.0 / np.linalg.norm(np.linalg.inv(system.box.cell), axis=0)
     k = int(np.argmin(np.where(periodic, widths, np.inf)))

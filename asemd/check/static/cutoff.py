@@ -31,7 +31,8 @@ CHARGED = ("charges that end at a cutoff heat the run and order the liquid aroun
 def jump_at_the_cutoff(case: Case) -> list[Finding]:
     name, kt, worst = "jump at the cutoff", case.units.boltz * case.temperature, (-1.0,)
     if not case.engine.pair_terms or not pairs.tabled(case):
-        raise DoesNotApply("no pair forces that depend on the distance alone")
+        none = "no pair forces that depend on the distance alone"
+        raise DoesNotApply(pairs.why_none(case) if case.engine.many_terms and not case.engine.pair_terms else none)
     q = _charges(case)
     for i, j in pairs.type_pairs(case):
         qq = q[i] * q[j]

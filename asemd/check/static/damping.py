@@ -41,7 +41,7 @@ def relaxation_times(fix) -> list[tuple[str, float]]:
 def _judge(case: Case, fix, word: str, time: float) -> Finding:
     frictional = word == "temperature" and any(s in fix.style for s in FRICTIONAL)
     least, low, most = PRESSURE if word == "pressure" else FRICTION if frictional else TEMPERATURE
-    steps, name, dt = time / abs(case.dt), "damping", abs(case.dt)
+    steps, name, dt = time / abs(case.dt), f"{word} damping", abs(case.dt)
     usual = 1000.0 if word == "pressure" else 100.0
     text = f"Fix {fix.id} ({fix.style}) couples the {word} with a damping time of {time:g}, {steps:.3g} steps"
     advice = f"usual are {usual:g} steps: {usual * dt:g}"

@@ -16,8 +16,10 @@ WORDS = {1: "bonded", 2: "1-3", 3: "1-4"}
 @static("exclusions")
 def exclusions(case: Case) -> list[Finding]:
     name, e, system = "exclusions", case.engine, case.system
-    if not e.pair_terms or not len(system.topology.bonds):
-        raise DoesNotApply("no bonds, or no pair forces")
+    if not len(system.topology.bonds):
+        raise DoesNotApply("no bonds")
+    if not e.pair_terms:
+        raise DoesNotApply(pairs.why_none(case))
     kt = case.units.boltz * case.temperature
     special, kinds = case.interactions.special_pairs(system)
     replaced = {tuple(sorted(map(int, p))) for p in replaced_pairs(system, case.interactions)}

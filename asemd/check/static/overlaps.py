@@ -18,13 +18,16 @@ JUMP = 0.2                  # of the distance between neighbours, that a force m
 SAME = 1e-4                 # of the cutoff: atoms in one place
 WAYS = ("minimize first, or run a few hundred steps with fix nve/limit and a soft pair style (see the workflow polymer-melt); "
         "look also for atoms twice in the data file and for the periodic box")
+ONE_PLACE = 1e-10           # of the cutoff: no force tells in which direction atoms should part
+APART = ("delete one of the two (delete_atoms overlap), or move one (displace_atoms): neither minimize nor fix nve/limit takes apart "
+         "atoms in one place; look also for atoms twice in the data file and for the periodic box")
 
 
 @static("overlaps")
 def overlaps(case: Case) -> list[Finding]:
     name, e = "overlaps", case.engine
     if not e.pair_terms:
-        raise DoesNotApply("no pair forces")
+        raise DoesNotApply(pairs.why_none(case))
     why = pairs.can_list(case)
     if why is not None:
         raise DoesNotApply(str(why))
@@ -46,7 +49,8 @@ def overlaps(case: Case) -> list[Finding]:
     i, j = sorted(case.ids(found[worst]))
     energy = pairs.interaction(case, int(a[worst]), int(b[worst]))(float(r[worst]))[0] if r[worst] > 0.0 else math.inf
     deep = bool((r[close] < limit[1, a[close], b[close]]).any()) or r[worst] < SAME * e.cutoff
-    severity = "note" if case.gentle else "error" if deep else "warning"
+    stuck = r[worst] < ONE_PLACE * e.cutoff
+    severity = "error" if stuck else "note" if case.gentle else "error" if deep else "warning"
     closest = float(limit[0, a[worst], b[worst]])
     ids = list(dict.fromkeys(int(k) for row in close[np.argsort(r[close])][:8] for k in case.ids(found[row])))
     text = (f"{len(close)} pair{'s' * (len(close) > 1)} of atoms overlap{'s' * (len(close) == 1)}, the worst {i}-{j} at distance "
@@ -54,7 +58,8 @@ def overlaps(case: Case) -> list[Finding]:
             + (f" ({HIGH:g} kT is at {closest:.4g})" if closest > 0.0 else "") + ".")
     if case.relaxes:
         text += " The script minimises first."
-    return [Finding(severity, name, text, ids, float(r[worst]), closest or SAME * e.cutoff, "" if case.gentle else WAYS)]
+    advice = APART if stuck else "" if case.gentle else WAYS
+    return [Finding(severity, name, text, ids, float(r[worst]), closest or SAME * e.cutoff, advice)]
 
 
 @static("first step")

@@ -65,7 +65,8 @@ class Minimization(Driver):
         session, scene = self.session, self.scene
         loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
         loop.warn, loop.say = session.warn, session.print
-        loop.setup(begin, begin + self.plan.steps)
+        with session.at_step(begin):
+            loop.setup(begin, begin + self.plan.steps)
         setup_log.report_list(session, loop.engine)
         if scene.min_style == "fire":
             session.log.write(find("fire").parameters(scene.min_modify) + "\n")

@@ -7,6 +7,7 @@ import os
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.report.constraints import held
 from asemd.report.knob import Knob
 from asemd.report.knobs.pair_table import HIGH, thermal_energy
 
@@ -26,6 +27,8 @@ class BondTable(Knob):
         items, types = scene.system.topology.items(kind)
         if not len(items) or not inter.uses[kind]:
             return f"no {kind}s"
+        if holder := held(scene, kind):
+            return f"{holder} holds {kind}s: they have no forces, and it takes what they are held at from the {kind} style"
         if inter.hybrid[kind]:
             return f"{kind}_style hybrid: its sub-styles are not replaced by tables"
         use = inter.uses[kind][0]

@@ -38,7 +38,8 @@ class PairTable(Knob):
         if style.name == "table":
             return "the pair style is a table already"
         if not style.parts:
-            return f"pair style {style.name} has no forces"
+            what = "many-body forces, which no table of distances holds" if style.many else "no forces"
+            return f"pair style {style.name} has {what}"
         if style.charged:
             return f"pair style {style.name} depends on charges, which a table of distances cannot hold"
         if ntypes * (ntypes + 1) // 2 > MOST:

@@ -1,6 +1,7 @@
 """The precision of pair forces: double, or single with sums in double."""
 from __future__ import annotations
 
+from asemd.cluster_term import in_double
 from asemd.engine import Engine
 from asemd.report.knob import Knob
 
@@ -14,10 +15,9 @@ class Precision(Knob):
         engine = Engine(scene.system.copy(), scene.interactions, scene.settings())
         if engine.mode == "none":
             return "no pair style: bonded forces are always in double precision"
-        if engine.mode != "cluster":
-            return f"{engine.why}: its pairs are computed one by one, in double precision"
-        if engine.expanded or engine.sparse:
-            return "the pairs of this scene are computed one by one, in double precision"
+        names, why = in_double(engine)
+        if len(names) == len({t.style.name for t in engine.pair_terms + engine.many_terms}):
+            return f"pair style {', '.join(names)} is always computed in double precision here: {why}"
         return None
 
     def values(self, scene):

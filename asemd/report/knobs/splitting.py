@@ -1,6 +1,7 @@
 """How Langevin dynamics is put together from steps: which temperature the positions get, at the script's timestep and at twice that."""
 from __future__ import annotations
 
+from asemd.report.constraints import holding, named
 from asemd.report.knob import Knob, nice
 from asemd.report.knobs.thermostat import TIMES
 
@@ -27,6 +28,8 @@ class Splitting(Knob):
             return "no fix langevin"
         if mover is None:
             return f"fix langevin acts on group {bath.group}, which no fix nve moves"
+        if held := holding(scene):
+            return f"{named(held)} holds distances: there is no configurational temperature to compare"
         if sum(f.ecouple for f in scene.fixes.values()) > 1:
             return "several thermostats"
         if callable(bath.start) or bath.start != bath.stop:
