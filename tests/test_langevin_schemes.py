@@ -211,4 +211,4 @@ def test_scripts_for_lammps_refuse_fixes_of_asemd(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         made = convert(script, "python", tmp_path / "py")
-    assert "find('baoab')" in Path(made).read_text()
+    assert "fix 1 all baoab 300 300 10 77" in Path(made).read_text()
