@@ -35,12 +35,29 @@ class Term(Protocol):
     # def relisted(self, engine) -> list[tuple[str, tuple]] | None: for a class whose `rebuild` compiled code can do, too, at least now:
     # functions of `asemd.kernels.relist` and their arguments; those of the term's kernels do not change
 
+    # def look(self, engine) -> None: for a class whose kernels depend on time: Python is going to call them, not the time loop
+    # def rewind(self) -> None: for a class whose kernels draw random numbers: the last ones once more
+
     def rename(self, new: np.ndarray) -> None:
         """Atoms that no item names left: the `new` number of each row."""
 
     def arguments(self, engine, tid: int) -> tuple: ...
 
     def describe(self, engine, item: int, value: float) -> SimulationError: ...
+
+
+def look(engine) -> None:
+    """Python is going to call the kernels: terms that depend on time see where the run is."""
+    for t in engine.terms:
+        if hasattr(t, "look"):
+            t.look(engine)
+
+
+def rewind(engine) -> None:
+    """The next evaluation has the random numbers of the last one."""
+    for t in engine.terms:
+        if hasattr(t, "rewind"):
+            t.rewind()
 
 
 class BondedTerm(Term):

@@ -20,6 +20,7 @@ from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
 from asemd.kspace.term import KSpaceTerm
 from asemd.population import retie
+from asemd.term import rewind
 from asemd.words import bounds, take, whole, yes_no
 
 BONDED = ("bond", "angle", "dihedral", "improper")
@@ -156,6 +157,7 @@ class Adapt(Fix):
             seen += [extra["torque"].copy()] if "torque" in extra else []
             self._follow(loop)
             loop.engine.forces(True)
+            rewind(loop.engine)
             loop.sync_out()
             for array, values in zip((loop.system.f, extra.get("torque")), seen):
                 array[:] = values

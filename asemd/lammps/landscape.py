@@ -40,8 +40,9 @@ class Landscape:
     def evaluate(self) -> tuple[float, np.ndarray]:
         """Energy and forces where the atoms are."""
         loop, system = self.loop, self.system
-        for fix in self.live:       # variables see the step of the iteration
+        if self.live or self.random:        # variables and temperatures see the step of the iteration
             loop.step = self.session.scene.step = system.step = self.step
+        for fix in self.live:
             self.session.moment.forget()
             fix.update(loop)
         loop.trial_step = self.step
