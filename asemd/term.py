@@ -259,8 +259,8 @@ class PairListTerm(Term):
             rules = engine.exclusions
             self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul)
             if self.sized:
-                row = engine.state.row
-                self.radii = np.where(row >= 0, engine.system.extra["radius"][row], 0.0)
+                self.radii = np.zeros(engine.state.x.shape[1])
+                self.take_radii(engine)
             if self.owner.molecules:
                 molecule = rules.molecule[engine.state.row]
                 chosen = (molecule[self.i] == molecule[self.j]) == (self.owner.molecules == "same")
@@ -274,6 +274,11 @@ class PairListTerm(Term):
             engine.k.special_pairs(pairs, kinds, engine.slot_of, engine.state.x, engine.close_shifts, engine.close_periodic, *out)
             self.i, self.j, self.code = out
             self.shifts, self.lj, self.coul = engine.close_shifts, weights, weights
+
+    def take_radii(self, engine) -> None:
+        """Take up the present radii of atoms; the array that kernels work on stays the same."""
+        row = engine.state.row
+        self.radii[:] = np.where(row >= 0, engine.system.extra["radius"][row], 0.0)
 
     def relisted(self, engine):
         if self.pairs == "one_four":

@@ -19,6 +19,7 @@ from asemd.fix import Fix, sampled
 from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
 from asemd.kspace.term import KSpaceTerm
+from asemd.pairstyle import largest_radii
 from asemd.population import retie
 from asemd.term import rewind
 from asemd.words import bounds, take, whole, yes_no
@@ -195,8 +196,7 @@ class Adapt(Fix):
                             coefficients = True
         if self.charge is not None or self.diameter is not None:
             self._change_atoms(loop)
-        if coefficients or self.charge is not None:
-            self._follow(loop)
+        self._follow(loop, coefficients)
         if self.kspace is not None:
             loop.interactions.kspace_factor = float(self.kspace(loop))
             for term in loop.engine.terms:
@@ -230,12 +230,28 @@ class Adapt(Fix):
         used = s.row >= 0
         s.mass[used], s.inverse_mass[used] = e.mass_row[s.row[used]], e.inverse_row[s.row[used]]
 
-    def _follow(self, loop) -> None:
-        """Running terms take the coefficients and charges as they are now."""
+    def _follow(self, loop, coefficients: bool = True) -> None:
+        """Running terms take radii, charges and, if they have changed, coefficients as they are now."""
         e = loop.engine
-        if self.charge is not None or not _in_place(e, loop.interactions, loop.system):
+        if self.diameter is not None:
+            coefficients |= _learn_radii(loop.interactions, loop.system)
+            for t in e.terms:
+                if getattr(t, "sized", False):
+                    t.take_radii(e)
+        if self.charge is not None or coefficients and not _in_place(e, loop.interactions, loop.system):
             retie(loop)
             loop._make_module()
+
+
+def _learn_radii(interactions, system) -> bool:
+    """Tell the pair styles that tables depend on the radii of types; whether tables may be others now. Cutoffs of smaller spheres stay."""
+    changed, radii = False, largest_radii(system)
+    for use in interactions.uses["pair"]:
+        known = use.settings.get("radii")
+        if known is not None and (not use.style.sized or any(new > old for new, old in zip(radii, known))):
+            use.style.learn(use.settings, system)
+            changed = True
+    return changed
 
 
 def _put(holder, key, value) -> None:
