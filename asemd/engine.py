@@ -69,11 +69,11 @@ class Engine:
         self.update(system)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
-    def update(self, system) -> None:
-        """Take over types, charges, topology, box and groups after they changed; coefficients too."""
+    def update(self, system, solver=None) -> None:
+        """Take over types, charges, topology, box and groups after they changed; coefficients too. A `solver` that is given stays."""
         self.system, s, inter = system, self.settings, self.interactions
         self.set_box()
-        self.solver = solve(system, inter, self.units, s.skin) if inter.kspace != "none" or inter.needs_solver else None
+        self.solver = solve(system, inter, self.units, s.skin, solver) if inter.kspace != "none" or inter.needs_solver else None
         inter.learn(system)
         terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts or t.style.many]
         for kind, *pair in s.exclude:

@@ -20,7 +20,7 @@ from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
 from asemd.kspace.term import KSpaceTerm
 from asemd.pairstyle import largest_radii
-from asemd.population import retie
+from asemd.population import recharge, retie
 from asemd.term import rewind
 from asemd.words import bounds, take, whole, yes_no
 
@@ -238,8 +238,10 @@ class Adapt(Fix):
             for t in e.terms:
                 if getattr(t, "sized", False):
                     t.take_radii(e)
-        if self.charge is not None or coefficients and not _in_place(e, loop.interactions, loop.system):
-            retie(loop)
+        if self.charge is not None:
+            recharge(loop)
+        if coefficients and not _in_place(e, loop.interactions, loop.system):
+            retie(loop, afresh=True)
             loop._make_module()
 
 

@@ -119,6 +119,10 @@ class EwaldTerm(Waves):
         self.table = np.zeros((3, 1 + top, 2, 0))
         self.constants = np.append(self.constants[:7], [s.q2, s.n, s.accuracy])
 
+    def count(self, engine):
+        super().count(engine)
+        self.constants[7:9] = self.solver.q2, self.solver.n
+
     def make_room(self, slots):
         if self.table.shape[3] < slots:
             self.table = np.zeros((*self.table.shape[:3], slots))
