@@ -18,6 +18,7 @@ from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
 from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
+from asemd.kspace.ewald import choose_waves
 from asemd.kspace.term import KSpaceTerm
 from asemd.pairstyle import largest_radii
 from asemd.population import recharge, retie
@@ -140,6 +141,8 @@ class Adapt(Fix):
             raise InputError("fix adapt kspace needs a kspace_style")
         self._kept = []
         self._change(loop)
+        if self.charge is not None:
+            choose_waves(loop.engine)
         forces_again(loop, self)
 
     def pre_force(self, loop) -> None:

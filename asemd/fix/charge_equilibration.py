@@ -20,6 +20,7 @@ from asemd.compute._pairs import half
 from asemd.errors import InputError
 from asemd.fix import Fix, sampled
 from asemd.fix.first_forces import forces_again
+from asemd.kspace.ewald import choose_waves
 from asemd.population import recharge
 from asemd.potential_file import PotentialFile, Record
 from asemd.words import bounds, number, take, whole, yes_no
@@ -159,6 +160,7 @@ class ChargeEquilibration(Fix):
             raise InputError(f"fix {self.style} needs a pair style, whose neighbour list it uses")
         if loop.step % self.find_every == 0:
             self.find_charges(loop)
+            choose_waves(loop.engine)
             forces_again(loop, self)
 
     def pre_force(self, loop) -> None:

@@ -93,8 +93,11 @@ class EwaldDisp(Ewald):
             raise InputError(f"kspace_style {self.style}: an accuracy of forces of {self.accuracy:g} is too low, it must be below 1")
         if self.modify["gewald/disp"] not in (0.0, self.g_ewald):
             raise InputError(f"kspace_style {self.style} has one splitting parameter: use kspace_modify gewald, not gewald/disp")
-        vectors = system.box.cell * self.stretch[:, None]
         self.choice[4] = self.accuracy
+        self.choose_waves(system)
+
+    def choose_waves(self, system):
+        vectors = system.box.cell * self.stretch[:, None]
         self.check_size()
         self.waves, self.top = ewald_disp.chooser()(vectors, self.g_ewald, *self.choice, np.zeros((0, 3), np.int64))
 
