@@ -33,6 +33,12 @@ def charged(pairs, solver, *commands, words="", charges=(), runs=("run 2", "run 
                 *commands, *NVE, values=[*VALUES, "pzz"], runs=runs)
 
 
+def perturbed(pairs, solver, *words, runs=("run 2", "run 2")):
+    """Charges that compute fep changes, with what they have by themselves and with a solver."""
+    return case(*CHARGES, *pairs, *solver, "group a id 1:30", "variable s equal 0.02",
+                f"compute f a fep 300 atom charge 2*3 v_s {' '.join(words)}", *NVE, values=["c_f[1]", "c_f[3]"], runs=runs)
+
+
 TABLE0 = ["pair_modify table 0"]
 NET = ["group some type 1", "fix f some adapt 2 atom charge v_q reset yes"]
 CASES = {
@@ -53,6 +59,13 @@ CASES = {
     "coul/cut": scaled("coul/cut", "5.5", words="scale yes"),
     "coul/cut/global": scaled("coul/cut/global", "5.5", words="reset yes"),
     "coul/debye": scaled("coul/debye", "0.3 5.5"),
+    "fep ewald": perturbed(LONG, ["kspace_style ewald 1e-4"]),
+    "fep pppm": perturbed(LONG, ["kspace_style pppm 1e-4"], "pair coul/long scale * * v_s"),
+    "fep pppm/disp": perturbed(LIKE, ["kspace_style pppm/disp 1e-4", "kspace_modify gewald 0.4 gewald/disp 0.4 mesh/disp 8 8 8"]),
+    "fep dsf": perturbed(["pair_style hybrid/overlay lj/cut 4.0 coul/dsf 0.2 5.5", "pair_coeff * * lj/cut 0.05 2.2",
+                          "pair_coeff * * coul/dsf"],
+                         [], "pair lj/cut epsilon 1 * v_s"),
+    "fep wolf": perturbed(["pair_style coul/wolf 0.2 5.5", "pair_coeff * *"], [], runs=["run 0"]),
     "charges, pppm": charged(LONG, ["kspace_style pppm 1e-4"]),
     "charges, net": charged(LONG, ["kspace_style pppm 1e-4"], charges=NET, runs=["run 3", "unfix f", "run 2"]),
     "charges, ewald": charged(LONG, ["kspace_style ewald 1e-4"], charges=NET),
