@@ -1,9 +1,9 @@
 """LAMMPS's tables of the part of 1/r that a long-range solver leaves, for an explicit ``pair_modify table N``, and of that of 1/r^6 for
 ``table/disp N``; with ``compat="lammps"`` those of 2^12 distances that LAMMPS takes without being asked.
 
-Up to 2^N squared distances from ``tabinner`` on, the bits of a number in single precision but the leading ones being zero; lines between
-them, for energy, force and the bare 1/r that special pairs lose. Below ``tabinner`` the pair style's own function counts. Without the
-keyword the function is used everywhere, which is exact.
+Up to 2^N squared distances from ``tabinner`` on, or from less than that where both ends have the same leading bits, the bits of a number in
+single precision but the leading ones being zero; lines between them, for energy, force and the bare 1/r that special pairs lose. Below
+them the pair style's own function counts. Without the keyword the function is used everywhere, which is exact.
 Source: Wolff and Rudd, Comput. Phys. Commun. 120, 20 (1999); LAMMPS manual, pair_modify.
 """
 from __future__ import annotations
@@ -43,8 +43,10 @@ class Bits:
             raise InputError(f"pair_modify table {bits}: too {few} bits for a table from {inner:g} to {outer:g}")
         shift = 23 - mantissa_bits
         self.per_octave = float(1 << mantissa_bits)
-        number = int(np.float32(inner * inner).view(np.int32)) >> shift
+        number, last = (int(np.float32(r * r).view(np.int32)) >> shift for r in (inner, outer))
         number += bool(np.int32(number << shift).view(np.float32) < inner * inner)
+        if number >> bits == last >> bits:        # LAMMPS's entries are those of one block of numbers, from its start on
+            number = number >> bits << bits
         self.r2 = ((number + np.arange(1 << bits)) << shift).astype(np.int32).view(np.float32)
         mantissa, exponent = math.frexp(float(self.r2[0]))
         self.first = (2.0 * mantissa - 1.0 + exponent) * self.per_octave

@@ -27,7 +27,7 @@ from asemd.noise_term import list_term
 from asemd.own_term import own_terms
 from asemd.result import Result, Settings, Snapshot
 from asemd.site_terms import made
-from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, bonded_terms, store_torques
+from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, bonded_terms, look, store_torques
 
 SPARSE = 8            # neighbours per atom (half list) below which rows of single atoms beat packed clusters
 SLOTTED = 9           # the first fields of a `State`, those by slot
@@ -69,12 +69,11 @@ class Engine:
         self.update(system)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
-    def update(self, system) -> None:
-        """Take over types, charges, topology, box and groups after they changed; coefficients too."""
-        self.system = system
+    def update(self, system, solver=None) -> None:
+        """Take over types, charges, topology, box and groups after they changed; coefficients too. A `solver` that is given stays."""
+        self.system, s, inter = system, self.settings, self.interactions
         self.set_box()
-        s, inter = self.settings, self.interactions
-        self.solver = solve(system, inter, self.units, s.skin) if inter.kspace != "none" or inter.needs_solver else None
+        self.solver = solve(system, inter, self.units, s.skin, solver) if inter.kspace != "none" or inter.needs_solver else None
         inter.learn(system)
         terms = [t for t in inter.pair_terms(system.counts["ntypes"], self.units) if t.style.parts or t.style.many]
         for kind, *pair in s.exclude:
@@ -304,6 +303,7 @@ class Engine:
         if self.settings.outdated:
             self.farthest[:] = self.k.displacements(self.state.x, self.held, self.ns, self.moved)
         spent = np.zeros(len(self.terms))
+        look(self)
         calls = self._bound[energy].calls([t.kernel(energy, False) for t in self.terms], self.arguments())
 
         def work(tid):

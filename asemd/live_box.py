@@ -42,7 +42,7 @@ def shrunk(engine) -> None:
     engine.set_box()
     if engine.mode == "cluster" and (engine.widths[engine.periodic] <= engine.reach).any():
         engine.store()
-        engine.update(engine.system)
+        engine.update(engine.system, engine.solver)
         engine.load(listed=False)
 
 

@@ -50,13 +50,26 @@ class NoiseTerm(PairListTerm):
         if order is not None and engine.threads == 1:
             order.arrange(loop, self)
         if self.streams is None:
-            if len(settings.get("streams", ())) < engine.threads:        # they go on from run to run
-                settings["streams"] = np.array([stream(settings["seed"] + k) for k in range(engine.threads)])
-            self.streams, self.control = settings["streams"], np.zeros((engine.threads, 6))
-            self.before = self.streams.copy()
+            if len(settings.get("streams", ((),))[0]) < engine.threads:       # they go on from run to run; what they are and what they were
+                settings["streams"] = np.array([[stream(settings["seed"] + k) for k in range(engine.threads)]] * 2)
+            (self.streams, self.before), self.control = settings["streams"], np.zeros((engine.threads, 6))
         ends = [2.0 * engine.units.boltz * settings[name] for name in self.style.temperatures]
-        self.control[:] = [loop.dt**-0.5, ends[0], ends[-1], loop.step - loop.begin, loop.end - loop.begin, 1.0]
+        self.control[:, 3:5] = ends[0], ends[-1]
+        self.look(engine)
         self.scale(engine)
+        deform = next((f for f in loop.fixes if getattr(f, "remap", "") == "v"), None)
+        self.group = 0 if deform is None else loop.group_bit(deform.group)
+        self.rates = np.zeros(9) if deform is None else deform.p
+        self.images = np.rint(self.shifts @ np.linalg.inv(engine.vectors))
+
+    def look(self, engine):
+        """Where the run is."""
+        loop = engine.loop
+        self.control[:, :3] = loop.dt, loop.step - loop.begin, loop.end - loop.begin
+
+    def rewind(self):
+        """The next evaluation has the random numbers of the last one."""
+        self.streams[:] = self.before
 
     def scale(self, engine):
         """The factor stands apart: noise has the root of the weights of special pairs, but all of the factor."""
@@ -66,12 +79,13 @@ class NoiseTerm(PairListTerm):
 
     def arguments(self, engine, tid, shares=False):
         s, m, nth = engine.state, len(self.i), engine.threads
-        random = self.streams[tid], self.before[tid], self.control[tid]
+        random = self.streams[tid], self.before[tid]
         if shares:      # the same random numbers once more
-            random = self.before[tid].copy(), np.empty_like(self.before[tid]), self.control[tid] - [0, 0, 0, 1, 0, 0]
-        return (s.x, engine.buffers[tid], s.v, s.type, self.i, self.j, self.code, self.shifts, self.lj, m * tid // nth,
-                m * (tid + 1) // nth, self.tables.rows, *random, engine.acc[tid, self.index], engine.atom_energy[tid],
-                engine.atom_virial[tid])
+            self.look(engine)
+            random = self.before[tid].copy(), np.empty_like(self.before[tid])
+        return (s.x, engine.buffers[tid], s.v, s.type, s.mask, self.i, self.j, self.code, self.shifts, self.images, self.rates, self.group,
+                self.lj, m * tid // nth, m * (tid + 1) // nth, self.tables.rows, *random, self.control[tid], engine.acc[tid, self.index],
+                engine.atom_energy[tid], engine.atom_virial[tid])
 
 
 def stream(seed: int) -> np.ndarray:

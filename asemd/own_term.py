@@ -27,6 +27,13 @@ class OwnTerm(Term):
         """Take up the present factor of the pair style; one by atom has no energy."""
         self.factor[0] = self.owner.use.factor if np.ndim(self.owner.use.factor) == 0 else 0.0
 
+    def of_charges(self, engine, q: np.ndarray) -> float:
+        """The energy that charges q (n,) would have."""
+        self.scale(engine)
+        acc, n, types = np.zeros(8), len(q), np.ascontiguousarray(engine.system.type, np.int32)
+        own_energy.energies(q, types, np.zeros(n, np.int32), 0, n, self.numbers, self.factor, acc, np.zeros(0))
+        return float(acc[1])
+
     def arguments(self, engine, tid):
         s, ns, nth = engine.state, engine.ns, engine.threads
         return (s.q, s.type, s.row, ns * tid // nth, ns * (tid + 1) // nth, self.numbers, self.factor, engine.acc[tid, self.index],

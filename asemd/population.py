@@ -9,6 +9,7 @@ import numpy as np
 from asemd import turnover
 from asemd.errors import InputError, SimulationError
 from asemd.kernels.rows import of_slots
+from asemd.kspace.term import count
 from asemd.topology import CROSSTERM
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def _change(loop: Loop, rows, atoms: System | None, groups, lost: bool, listed: 
         if listed:
             e.rebuild()
     else:
-        e.update(loop.system)
+        e.update(loop.system, e.solver)
         e.load(listed)
     _resize(loop, (lambda old, new: old[~gone] if len(old) == n else new) if atoms is None else _joined(gone))
 
@@ -200,12 +201,20 @@ def _put_in(loop: Loop, atoms: System, groups: Iterable[str] | Mapping[str, np.n
     loop.natoms += n
 
 
-def retie(loop: Loop) -> None:
-    """Go on after bonds, types or charges of the system were changed."""
+def recharge(loop: Loop) -> None:
+    """Go on after charges of the system were changed, with the list, terms and parameters of solvers that there are."""
+    e = loop.engine
+    e.q_row[:] = e.state.q[e.slot_of] = loop.system.q
+    e.varies[2] = True
+    count(e)
+
+
+def retie(loop: Loop, afresh: bool = False) -> None:
+    """Go on after bonds, types or charges of the system were changed; `afresh`: after coefficients were, which solvers depend on."""
     e = loop.engine
     e.store()
     e.groups = dict(loop.groups)
-    e.update(loop.system)
+    e.update(loop.system, None if afresh else e.solver)
     e.load()
     _resize(loop, lambda old, new: old if old.shape == new.shape else new)
 

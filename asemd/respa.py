@@ -24,7 +24,7 @@ from asemd.kernels.hooks import Calls, bound
 from asemd.kernels.state import Thread
 from asemd.loop import Loop
 from asemd.respa_pieces import ShortClusterTerm, ShortListTerm
-from asemd.term import PairListTerm, PairRowsTerm
+from asemd.term import PairListTerm, PairRowsTerm, look, rewind
 
 FORCES = ("bond", "angle", "dihedral", "improper", "pair", "kspace")
 PIECES = ("inner", "middle", "outer")
@@ -136,6 +136,7 @@ class RespaLoop(Loop):
         self._new_lists()
         self._level_forces = [np.zeros_like(total) for _ in self._times]
         self.state.virial[:] = 0.0
+        rewind(self.engine)
         for level in range(1, self.levels.n + 1):
             self._forces(level, True, fixes=())
         self.engine.buffers[0] = total
@@ -345,6 +346,7 @@ class RespaLoop(Loop):
     def _compute(self, calls) -> None:
         """Clear the forces, run kernels."""
         e, spent = self.engine, np.zeros(len(calls))
+        look(e)
 
         def work(tid):
             e.k.clear(e.buffers[tid], e.ns)

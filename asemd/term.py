@@ -35,12 +35,29 @@ class Term(Protocol):
     # def relisted(self, engine) -> list[tuple[str, tuple]] | None: for a class whose `rebuild` compiled code can do, too, at least now:
     # functions of `asemd.kernels.relist` and their arguments; those of the term's kernels do not change
 
+    # def look(self, engine) -> None: for a class whose kernels depend on time: Python is going to call them, not the time loop
+    # def rewind(self) -> None: for a class whose kernels draw random numbers: the last ones once more
+
     def rename(self, new: np.ndarray) -> None:
         """Atoms that no item names left: the `new` number of each row."""
 
     def arguments(self, engine, tid: int) -> tuple: ...
 
     def describe(self, engine, item: int, value: float) -> SimulationError: ...
+
+
+def look(engine) -> None:
+    """Python is going to call the kernels: terms that depend on time see where the run is."""
+    for t in engine.terms:
+        if hasattr(t, "look"):
+            t.look(engine)
+
+
+def rewind(engine) -> None:
+    """The next evaluation has the random numbers of the last one."""
+    for t in engine.terms:
+        if hasattr(t, "rewind"):
+            t.rewind()
 
 
 class BondedTerm(Term):
@@ -242,8 +259,8 @@ class PairListTerm(Term):
             rules = engine.exclusions
             self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul)
             if self.sized:
-                row = engine.state.row
-                self.radii = np.where(row >= 0, engine.system.extra["radius"][row], 0.0)
+                self.radii = np.zeros(engine.state.x.shape[1])
+                self.take_radii(engine)
             if self.owner.molecules:
                 molecule = rules.molecule[engine.state.row]
                 chosen = (molecule[self.i] == molecule[self.j]) == (self.owner.molecules == "same")
@@ -257,6 +274,11 @@ class PairListTerm(Term):
             engine.k.special_pairs(pairs, kinds, engine.slot_of, engine.state.x, engine.close_shifts, engine.close_periodic, *out)
             self.i, self.j, self.code = out
             self.shifts, self.lj, self.coul = engine.close_shifts, weights, weights
+
+    def take_radii(self, engine) -> None:
+        """Take up the present radii of atoms; the array that kernels work on stays the same."""
+        row = engine.state.row
+        self.radii[:] = np.where(row >= 0, engine.system.extra["radius"][row], 0.0)
 
     def relisted(self, engine):
         if self.pairs == "one_four":

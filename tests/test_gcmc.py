@@ -88,6 +88,10 @@ CASES = {
     "mcmoves of atoms": atoms(GCMC + "mcmoves 3 0 0"),
     "mcmoves in a region": molecules(MOVES + "mcmoves 0 1 1 region s", first="region s block 2 14 2 14 2 14"),
     "molecules, small": molecules(MOVES + "full_energy", width=9, n=6),
+    "charges, damped": atoms(GCMC + "charge -0.2 full_energy", style="charge", more="set type 1 charge 0.3",
+                             pair="lj/cut/coul/dsf 0.2 2.5 3.0\npair_coeff * * 1 1"),
+    "no charges among ions": atoms(GCMC, style="charge", pair="lj/cut/coul/long 2.5 3.0\npair_coeff * * 1 1", more="pair_modify table 0\n"
+                                   "set type 1 type/fraction 2 0.5 8\nset type 2 charge 0.3\nkspace_style pppm 1e-4"),
     "widom": atoms(WIDOM),
     "widom, tail": atoms("widom 2 50 1 29494 2.0", more="pair_modify tail yes"),
     "widom, tilted": atoms(WIDOM + "full_energy", box=TILTED),
@@ -286,6 +290,13 @@ def test_made_in_python():
 def test_mistakes(line, said):
     with pytest.raises(InputError, match=said):
         asemd(atoms(line, more="region wide block 0 9 0 1 0 1", boundary="boundary p p f" if "wall" in line else "", steps=0))
+
+
+@pytest.mark.parametrize("fix, q", [(GCMC + "charge 0.1", 0.0), (WIDOM + "charge 0.1", 0.0), (GCMC, 0.2)])
+def test_charges_that_a_solver_has_a_part_of_are_refused(fix, q):
+    text = CASES["no charges among ions"].replace(GCMC, fix).replace("kspace_style", f"set type 1 charge {q}\nkspace_style")
+    with pytest.raises(InputError, match="part of kspace_style pppm, which the gas feels"):
+        asemd(text)
 
 
 def test_single_draws_are_those_of_a_series():

@@ -59,7 +59,7 @@ CASES = {
        for kept, words in (("all", "splittol 1e-4"), ("two", "splittol 1e-6 eigtol 0.05"), ("one", "eigtol 1e-6 splittol 0.6"))},
     **{f"tables, {name}": case("lj/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4", modify=f"pair_modify {words}")
        for name, words in (("both", "table 12 table/disp 12"), ("dispersion", "table 0 table/disp 10 tabinner/disp 2"),
-                           ("charges", "table 14 table/disp 0"))},
+                           ("inner", "table 9 tabinner 2.8 table/disp 8 tabinner/disp 2.8"), ("charges", "table 14 table/disp 0"))},
     "tables, Buckingham": case("buck/long/coul/long long long 5.0", "kspace_style ewald/disp 1e-4", coeff=BUCK,
                                modify="pair_modify table 12 table/disp 12"),
     "pppm/cg": case("lj/cut/coul/long 5.0", "set type 3 charge 0.01", "kspace_style pppm/cg 1e-4 0.1", modify="pair_modify table 0"),

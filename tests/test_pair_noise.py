@@ -52,6 +52,48 @@ def test_trajectories_are_those_of_lammps():
         assert_same(asemd(script(name)), theirs[name], x=1e-10, v=1e-10)
 
 
+# what a run does besides: the timestep, the end of a ramp and the velocity of images across faces count at each step
+RUNS = {
+    "ramp over two runs": ("dpd/tstat 1.0 4.0 1.5 34387", "pair_coeff * * 4.5", "run 10 post no\nrun 10 pre no post no"),
+    "ramp": ("dpd/tstat 1.0 4.0 1.5 34387", "pair_coeff * * 4.5", "run 5 start 0 stop 40\ntimestep 0.005\nrun 5 pre no start 0 stop 40"),
+    "timestep": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5", "fix 2 all dt/reset 2 0.001 0.02 0.02 units box\nrun 20"),
+    "strain": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5",
+               "fix 2 all deform 1 x trate 0.1 y wiggle 0.3 1 z erate -0.1 remap v\nrun 20"),
+    "shear": ("dpd/ext 0.0 1.5 34387", "pair_coeff * * 25 4.5 3 0.5 0.7",
+              "change_box all triclinic\nfix 2 all deform 2 xy erate 0.2 yz erate 0.1 remap v\nrun 20"),
+    "levels": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5", "run_style respa 2 2 pair 1\nrun 10\nrun_style respa 2 2 pair 2\nrun 10"),
+    "new coefficients": ("hybrid/overlay soft 1.1 dpd/tstat 1.0 2.0 1.5 34387", "pair_coeff * * soft 8\npair_coeff * * dpd/tstat 4.5",
+                         "variable a equal 8+step/10\nfix 2 all adapt 4 pair soft a * * v_a reset yes\nrun 10\nrun 10"),
+}
+MINIMISATIONS = {
+    "dpd": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 0.0045", "minimize 0 1e-6 8 100\nminimize 1e-2 1e-6 8 100\nrun 3"),
+    "cold": ("dpd 0.0 1.5 34387", "pair_coeff * * 25 4.5", "minimize 0 1e-6 8 100"),
+    "ramp": ("hybrid/overlay soft 1.1 dpd/tstat 1.0 4.0 1.5 34387", "pair_coeff * * soft 8\npair_coeff * * dpd/tstat 0.05",
+             "minimize 0 1e-6 6 100"),
+    "fire": ("dpd/ext 1.0 1.5 34387", "pair_coeff * * 25 4.5 3.0 0.5 0.7", "min_style fire\nminimize 0 1e-6 6 100"),
+    "explicit": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5",
+                 "min_style fire\nmin_modify integrator eulerexplicit\nminimize 0 1e-6 6 100"),
+    "quickmin": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5", "min_style quickmin\nminimize 0 1e-6 6 100"),
+    "box": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 0.045", "fix 2 all box/relax aniso 3.0 nreset 2\nminimize 0 1e-6 6 100"),
+}
+
+
+def in_small_box(pair: str, coeff: str, what: str) -> str:
+    return FLUID.format(pair=pair, coeff=coeff, more="", size=4, steps="@").replace("run @ post no", what)
+
+
+def test_runs_with_more_than_one_timestep_ramp_or_box():
+    theirs = lammps({name: in_small_box(*case) for name, case in RUNS.items()})
+    for name, case in RUNS.items():
+        assert_same(asemd(in_small_box(*case)), theirs[name], x=1e-10, v=1e-10)
+
+
+def test_minimisations_are_those_of_lammps():
+    theirs = lammps({name: in_small_box(*case) for name, case in MINIMISATIONS.items()})
+    for name, case in MINIMISATIONS.items():
+        assert_same(asemd(in_small_box(*case)), theirs[name], x=1e-10, v=1e-10)
+
+
 def test_momentum_is_conserved_and_the_temperature_comes():
     lmp = ran(script("dpd", 400).replace("create 1.0", "create 0.1").splitlines())
     v = np.array(lmp.gather_atoms("v", 1, 3)).reshape(-1, 3)

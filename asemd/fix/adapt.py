@@ -18,8 +18,11 @@ from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
 from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
+from asemd.kspace.ewald import choose_waves
 from asemd.kspace.term import KSpaceTerm
-from asemd.population import retie
+from asemd.pairstyle import largest_radii
+from asemd.population import recharge, retie
+from asemd.term import rewind
 from asemd.words import bounds, take, whole, yes_no
 
 BONDED = ("bond", "angle", "dihedral", "improper")
@@ -138,6 +141,8 @@ class Adapt(Fix):
             raise InputError("fix adapt kspace needs a kspace_style")
         self._kept = []
         self._change(loop)
+        if self.charge is not None:
+            choose_waves(loop.engine)
         forces_again(loop, self)
 
     def pre_force(self, loop) -> None:
@@ -156,6 +161,7 @@ class Adapt(Fix):
             seen += [extra["torque"].copy()] if "torque" in extra else []
             self._follow(loop)
             loop.engine.forces(True)
+            rewind(loop.engine)
             loop.sync_out()
             for array, values in zip((loop.system.f, extra.get("torque")), seen):
                 array[:] = values
@@ -193,8 +199,7 @@ class Adapt(Fix):
                             coefficients = True
         if self.charge is not None or self.diameter is not None:
             self._change_atoms(loop)
-        if coefficients or self.charge is not None:
-            self._follow(loop)
+        self._follow(loop, coefficients)
         if self.kspace is not None:
             loop.interactions.kspace_factor = float(self.kspace(loop))
             for term in loop.engine.terms:
@@ -228,12 +233,30 @@ class Adapt(Fix):
         used = s.row >= 0
         s.mass[used], s.inverse_mass[used] = e.mass_row[s.row[used]], e.inverse_row[s.row[used]]
 
-    def _follow(self, loop) -> None:
-        """Running terms take the coefficients and charges as they are now."""
+    def _follow(self, loop, coefficients: bool = True) -> None:
+        """Running terms take radii, charges and, if they have changed, coefficients as they are now."""
         e = loop.engine
-        if self.charge is not None or not _in_place(e, loop.interactions, loop.system):
-            retie(loop)
+        if self.diameter is not None:
+            coefficients |= _learn_radii(loop.interactions, loop.system)
+            for t in e.terms:
+                if getattr(t, "sized", False):
+                    t.take_radii(e)
+        if self.charge is not None:
+            recharge(loop)
+        if coefficients and not _in_place(e, loop.interactions, loop.system):
+            retie(loop, afresh=True)
             loop._make_module()
+
+
+def _learn_radii(interactions, system) -> bool:
+    """Tell the pair styles that tables depend on the radii of types; whether tables may be others now. Cutoffs of smaller spheres stay."""
+    changed, radii = False, largest_radii(system)
+    for use in interactions.uses["pair"]:
+        known = use.settings.get("radii")
+        if known is not None and (not use.style.sized or any(new > old for new, old in zip(radii, known))):
+            use.style.learn(use.settings, system)
+            changed = True
+    return changed
 
 
 def _put(holder, key, value) -> None:

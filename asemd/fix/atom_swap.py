@@ -22,6 +22,7 @@ import numpy as np
 from asemd import population
 from asemd.errors import InputError, nearest
 from asemd.fix import NEVER, Fix
+from asemd.kspace.term import count
 from asemd.random import ParkMiller
 from asemd.words import bounds, number, take, whole, yes_no
 
@@ -164,6 +165,8 @@ class AtomSwap(Fix):
         before = {row: int(loop.system.type[row]) for row in changes}
         for row, kind in changes.items():
             self._set(loop, row, kind)
+        if self.mu is not None:
+            count(loop.engine)
         energy = self._energy(loop)
         exponent = (self.energy - energy + work) / (loop.units.boltz * self.temperature)
         if self.random.uniform() < math.exp(min(exponent, 0.0)):

@@ -20,7 +20,8 @@ from asemd.compute._pairs import half
 from asemd.errors import InputError
 from asemd.fix import Fix, sampled
 from asemd.fix.first_forces import forces_again
-from asemd.kspace.term import KSpaceTerm
+from asemd.kspace.ewald import choose_waves
+from asemd.population import recharge
 from asemd.potential_file import PotentialFile, Record
 from asemd.words import bounds, number, take, whole, yes_no
 
@@ -159,6 +160,7 @@ class ChargeEquilibration(Fix):
             raise InputError(f"fix {self.style} needs a pair style, whose neighbour list it uses")
         if loop.step % self.find_every == 0:
             self.find_charges(loop)
+            choose_waves(loop.engine)
             forces_again(loop, self)
 
     def pre_force(self, loop) -> None:
@@ -199,13 +201,8 @@ class ChargeEquilibration(Fix):
     @staticmethod
     def hand_over(loop, rows: np.ndarray, q: np.ndarray) -> None:
         """From now on these are the charges."""
-        e, system = loop.engine, loop.system
-        system.q[rows] = e.q_row[rows] = q
-        e.state.q[e.slot_of[rows]] = q
-        e.varies[2] = True
-        for term in e.terms:
-            if isinstance(term, KSpaceTerm):
-                term.constants[2:4] = system.q.sum(), system.q @ system.q
+        loop.system.q[rows] = q
+        recharge(loop)
 
     def state(self) -> dict:
         """The last charges, from which the next are guessed."""

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from asemd.term import rewind
+
 if TYPE_CHECKING:
     from asemd.fix import Fix
     from asemd.loop import Loop
@@ -10,6 +12,7 @@ if TYPE_CHECKING:
 
 def forces_again(loop: Loop, fix: Fix) -> None:
     """Compute the first forces, and what the fixes before `fix` do to them, in its `setup`."""
+    rewind(loop.engine)
     loop.engine.forces(True)
     loop.first_shares()
     for n in range(loop.fixes.index(fix)):

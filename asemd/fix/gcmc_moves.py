@@ -57,7 +57,8 @@ class Moves(Reservoir):
         """All attempts of one time: compiled where single atoms move in a periodic box along the axes, or in a block of it."""
         fix, anywhere = self.fix, self.fix.region is None or self.fix.region.style == "block"
         plain = fix.molecule is None and not fix.by_molecule and anywhere and not self.tail.on and not self.closed
-        if plain and self.energies.aligned and not (self.energies.exact and self.energies.narrow):
+        alone = self.energies.own_terms or (self.energies.exact and self.energies.narrow)
+        if plain and self.energies.aligned and not alone:
             self.compiled()
         else:
             for _ in range(fix.exchanges + fix.moves):

@@ -9,6 +9,7 @@ import numpy as np
 from asemd.engine import Engine, Settings
 from asemd.errors import InputError, nearest
 from asemd.fix.trial_atoms import Energies, TrialAtoms
+from asemd.kernels import own_energy
 from asemd.molecule import rotation, turned
 from asemd.words import bounds, take, whole
 
@@ -112,9 +113,16 @@ def check_scene(fix, loop) -> float:
         loop.warn(f"{what} takes single atoms, but atoms of group {fix.group} belong to molecules")
     inter = loop.interactions
     uses = inter.uses["pair"]
-    if not fix.full_energy and (not uses or inter.hybrid["pair"] or any(inter.modified(u, "tail") for u in uses)):
+    solver = loop.engine.solver
+    charged = (fix.charge or molecule is not None and molecule.q is not None and np.any(molecule.q)
+               or system.q is not None and system.q[gas].any())
+    if solver is not None and (charged and solver.coulomb or getattr(solver, "dispersion", None) is not None):
+        raise InputError(f"{what}: energies of trials do not have the part of kspace_style {solver.style}, which the gas feels: use pair "
+                         "styles that end at a cutoff, such as coul/dsf for charges")
+    if not fix.full_energy and (not uses or solver is not None or inter.hybrid["pair"] or any(inter.modified(u, "tail") for u in uses)):
         fix.full_energy = True
-        loop.warn(f"{what} takes energies of the whole system (full_energy), since the pair style is a hybrid, has a tail or is none")
+        loop.warn(f"{what} takes energies of the whole system (full_energy), since there is a kspace_style, or the pair style is a "
+                  "hybrid, has a tail or is none")
     if fix.full_energy:
         _check_full(fix, loop, gas)
     if molecule is None:
@@ -250,9 +258,11 @@ class Reservoir:
                       counts=dict(system.counts), **own)
 
     def alone_atom(self, kind: int, charge: float) -> float:
-        """Energy of an atom with its own images, as far as they count."""
-        if not (self.energies.exact and self.energies.narrow):
+        """Energy of an atom with its own images, and of its charge by itself, as far as they count."""
+        if not self.energies.exact:
             return 0.0
+        if not self.energies.narrow:
+            return sum(float(t.factor[0] * own_energy.alone(charge, t.numbers[kind])) for t in self.energies.own_terms)
         return self.alone(self.new_atoms(np.array([kind]), np.array([charge]), self.box.origin[None].copy()), ("atom", kind, charge))
 
     def template_energy(self, at) -> float:

@@ -15,6 +15,7 @@ from asemd.errors import InputError
 from asemd.fix.atom_order import AtomOrder
 from asemd.kernels import trial
 from asemd.kernels.rows import of_rows, of_slots
+from asemd.own_term import OwnTerm
 
 NOBODY = -1
 _known: WeakKeyDictionary = WeakKeyDictionary()      # loop -> energies that were asked for
@@ -50,6 +51,7 @@ class Energies:
         if engine.many_terms:
             raise InputError(f"{what}: pair style {engine.many_terms[0].style.name} is a many-body potential, in which "
                              "an atom has no energy of pairs")
+        self.own_terms = [t for t in engine.terms if isinstance(t, OwnTerm)] if exact else []
         self.module = trial.kernel(tuple(t.style for t in terms))
         one = np.ones(5)
         self.tables = tuple((t.tables.rows, t.tables.constants, t.tables.arrays, np.array([w[0] for w in t.weights(one, one)]))

@@ -13,19 +13,23 @@ from asemd.kernels.pair_sums import add, eight, halve
 ENERGY = PER_ATOM = ACROSS = False
 
 
-def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi, rows, stream, before, control, acc, atom_energy,
-                 atom_virial):
+def noisy_forces(th, x, f, v, type_of, mask, pair_i, pair_j, code, shifts, images, rates, group, weight, lo, hi, rows, stream, before,
+                 control, acc, atom_energy, atom_virial):
     """Pairs lo..hi-1: forces added to `f`, energy and virial to `acc (8,)`, shares to `atom_energy (cap,)` and `atom_virial (6, cap)`.
 
-    `rows`: cut^2, 0, a0, cut, gamma, gamma across, exponents along and across. `control`: 1/sqrt(dt), 2 kT at the beginning and at the end
-    of the run, evaluations up to now, steps of the run, factor of all forces. `before` becomes what `stream` was.
+    `rows`: cut^2, 0, a0, cut, gamma, gamma across, exponents along and across. `control`: dt, steps of the run up to now and in all, for
+    calls outside the time loop; 2 kT at the beginning and at the end of the run, factor of all forces. `before` becomes what `stream` was.
+    Images (`images (m, 3)` in cell vectors) of the atoms whose mask has the bit `group` move with the box: `rates[3:9]` are those of its
+    lengths x y z and of its tilts yz xz xy.
     """
     for k in range(len(stream)):
         before[k] = stream[k]
-    part = min(control[3] / control[4], 1.0) if control[4] > 0.0 else 0.0
-    heat = control[1] + part * (control[2] - control[1])
-    control[3] += 1.0
-    scale = control[0]
+    dt, gone, steps = control[0], control[1], control[2]
+    if th.dt > 0.0:
+        dt, gone, steps = th.dt, float(th.step - th.begin), float(th.end - th.begin)
+    part = min(gone / steps, 1.0) if steps > 0.0 else 0.0
+    heat = control[3] + part * (control[4] - control[3])
+    scale = 1.0 / math.sqrt(dt)
     factor = control[5]
     for m in range(lo, hi):
         i = pair_i[m]
@@ -49,6 +53,11 @@ def noisy_forces(x, f, v, type_of, pair_i, pair_j, code, shifts, weight, lo, hi,
         ux = v[0, i] - v[0, j]
         uy = v[1, i] - v[1, j]
         uz = v[2, i] - v[2, j]
+        if mask[j] & group:
+            na, nb, nc = images[image, 0], images[image, 1], images[image, 2]
+            ux -= na * rates[3] + nb * rates[8] + nc * rates[7]
+            uy -= nb * rates[4] + nc * rates[6]
+            uz -= nc * rates[5]
         along = (dx * ux + dy * uy + dz * uz) * rinv
         near = 1.0 - r / rows[3, ti, tj]
         a0 = rows[2, ti, tj]

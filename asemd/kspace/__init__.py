@@ -165,11 +165,8 @@ class KSpace(ABC):
         if self.slab == "ew2d":
             warnings.warn(f"kspace_style {self.style}: slab ew2d is for solvers of electrodes, this one does not sum in two dimensions; "
                           "slab 3.0 comes close to that", InputWarning, stacklevel=2)
-        q = np.asarray(system.q if self.coulomb else np.zeros(system.n), float)
-        self.n, self.cutoff = max(system.n, 1), float(cutoff)
-        self.qsum, self.qsqsum = float(q.sum()), float(q @ q)
-        self.scale = interactions.coulomb_constant(units) / interactions.dielectric
-        self.q2 = self.charge_squares(system, q) * self.scale
+        self.cutoff, self.scale = float(cutoff), interactions.coulomb_constant(units) / interactions.dielectric
+        self.count(system)
         self.factor = interactions.kspace_factor
         a, b, c = system.box.cell
         lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
@@ -187,6 +184,12 @@ class KSpace(ABC):
             self.choose(system)
         except ArithmeticError:
             raise self.impossible(self.q2) from None
+
+    def count(self, system) -> None:
+        """Take the sums over atoms that there are now, as LAMMPS does within a run; parameters stay."""
+        q = np.asarray(system.q if self.coulomb else np.zeros(system.n), float)
+        self.n, self.qsum, self.qsqsum = max(system.n, 1), float(q.sum()), float(q @ q)
+        self.q2 = self.charge_squares(system, q) * self.scale
 
     def charge_squares(self, system, q: np.ndarray) -> float:
         """The sum of squared charges that estimates of errors take."""
@@ -282,15 +285,18 @@ class KSpace(ABC):
         return cutoffs.pop()
 
 
-def solve(system, interactions, units, skin: float) -> KSpace | None:
+def solve(system, interactions, units, skin: float, kept: KSpace | None = None) -> KSpace | None:
     """The solver of a scene, ready; None without ``kspace_style``. `interactions.long_range` gets what pair styles must know; `skin` is
-    that of the neighbour list.
+    that of the neighbour list. A solver that is `kept` in the midst of a run counts atoms and charges anew, and no more.
 
     Raises
     ------
     InputError
         Solver and pair styles do not belong together, cutoffs of several pair styles differ, the box does not fit.
     """
+    if kept is not None:
+        kept.count(system)
+        return kept
     interactions.long_range = {}
     uses = [use for use in interactions.uses["pair"] if use.style.needs(use.settings)]
     if interactions.kspace == "none":

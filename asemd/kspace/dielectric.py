@@ -35,12 +35,17 @@ class DielectricTerm(KSpaceTerm):
 
     def rebuild(self, engine):
         super().rebuild(engine)
-        cap, nth, system = engine.state.x.shape[1], engine.threads, engine.system
+        cap, nth = engine.state.x.shape[1], engine.threads
         self.epsilon = of_slots(engine)
         self.charges, self.own_forces, self.own_acc = np.zeros((3, cap)), np.zeros((nth, 3, cap)), np.zeros((nth, 3, 8))
         self.own_energy, self.own_virial = np.zeros((nth, 3, cap)), np.zeros((nth, 3, 6, cap))
-        scaled = system.q / system.extra["epsilon"]
         self.sets = [self.constants.copy() for _ in range(3)]
+        self.count(engine)
+
+    def count(self, engine):
+        super().count(engine)
+        system = engine.system
+        scaled = system.q / system.extra["epsilon"]
         for constants, q in zip(self.sets, (scaled, system.q, scaled + system.q)):
             constants[2:4] = q.sum(), q @ q
 

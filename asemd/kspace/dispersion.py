@@ -67,6 +67,12 @@ class Dispersion:
         return float(self.signs @ (total * total)), float(self.own[types].sum()), total
 
 
+    def all_sums(self, types) -> np.ndarray:
+        """The same as one array."""
+        everyone, own, each = self.sums(types)
+        return np.concatenate([[everyone, own], each])
+
+
 def dispersion_of(uses, interactions, system, style: str, mix: str = "pair", tolerance: float = 0.0) -> tuple[Dispersion | None, list]:
     """The dispersion that pair styles leave to a solver, and its parts (`Use`, part); None if there is none; `mix` and `tolerance`
     as in ``kspace_modify mix/disp`` and ``splittol``.

@@ -29,6 +29,10 @@ class Ewald(KSpace):
         given = np.array(self.modify["kmax/ewald"], np.int64)
         self.kmax = given * given.all()       # with one of them 0 LAMMPS chooses all three
         self.tilted = self._tilted(system)
+        self.choose_waves(system)
+
+    def choose_waves(self, system) -> None:
+        """Waves for the box and the sums over atoms."""
         vectors, self.most = system.box.cell * self.stretch[:, None], np.zeros((2, 3), np.int64)
         if not self.kmax.any():
             self.check_size()
@@ -119,6 +123,10 @@ class EwaldTerm(Waves):
         self.table = np.zeros((3, 1 + top, 2, 0))
         self.constants = np.append(self.constants[:7], [s.q2, s.n, s.accuracy])
 
+    def count(self, engine):
+        super().count(engine)
+        self.constants[7:9] = self.solver.q2, self.solver.n
+
     def make_room(self, slots):
         if self.table.shape[3] < slots:
             self.table = np.zeros((*self.table.shape[:3], slots))
@@ -126,3 +134,14 @@ class EwaldTerm(Waves):
     def of_solver(self, engine, tid):
         return (self.numbers, self.solver.kmax, self.most, self.waves, self.held, self.inverse, self.table, self.sfac, self.sums,
                 self.constants)
+
+
+def choose_waves(engine) -> None:
+    """Waves are chosen by the present charges, as in LAMMPS once fixes have acted at the set-up of a run."""
+    waves = [t for t in engine.terms if isinstance(t, Waves)]
+    if waves:
+        engine.solver.choose_waves(engine.system)
+        for t in waves:
+            t.ready = False
+            t.rebuild(engine)
+        engine.thread_arguments = None

@@ -34,9 +34,9 @@ class EwaldDipole(Ewald):
         if np.any(system.q):
             raise InputError("kspace_style ewald/dipole needs atoms without charges: set group all charge 0.0")
 
-    def prepare(self, system, interactions, units, cutoff):
+    def count(self, system):
         self.squares = float((np.asarray(system.extra["mu"]) ** 2).sum()) if "mu" in system.extra else 0.0
-        super().prepare(system, interactions, units, cutoff)
+        super().count(system)
 
     @property
     def mu2(self) -> float:
@@ -105,6 +105,10 @@ class EwaldDipoleTerm(EwaldTerm):
     def prepare(self, engine):
         super().prepare(engine)
         self.sfac = np.zeros((*self.sfac.shape[:2], 6))
+        self.count(engine)
+
+    def count(self, engine):
+        super().count(engine)
         self.constants[[2, 3, 7]] = 0.0, self.solver.squares, self.solver.mu2
 
     def of_solver(self, engine, tid):

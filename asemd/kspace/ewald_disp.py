@@ -33,6 +33,10 @@ class EwaldDisp(Ewald):
     dispersion = None
     dipoles = False             # the pair style leaves it dipoles
 
+    def __init__(self, *arguments):
+        super().__init__(*arguments)
+        self.choice = np.zeros(5)       # what kernels choose waves by
+
     def take(self, uses, interactions, system):
         self.dipoles = any(use.style.variant(use.settings).oriented == "dipole" for use in uses)
         self.dispersion, parts = dispersion_of(uses, interactions, system, self.style)
@@ -42,14 +46,15 @@ class EwaldDisp(Ewald):
             return self.cutoff_of(charged)
         return float(parts[0][0].settings.get("cut_coul", self.cutoff_of(parts)))       # LAMMPS takes it although nothing ends there
 
-    def prepare(self, system, interactions, units, cutoff):
+    def count(self, system):
         self.b2 = 0.0
         self.squares_mu = float((np.asarray(system.extra["mu"]) ** 2).sum()) if self.dipoles else 0.0
         if self.dispersion is not None:
             self.b2 = self.dispersion.sums(system.type)[1]
             if self.dispersion.rule == "arithmetic":      # LAMMPS's estimates count a quarter of it then
                 self.b2 /= 4.0
-        super().prepare(system, interactions, units, cutoff)
+        super().count(system)
+        self.choice[:4] = self.q2, self.b2, self.m2, self.n
 
     def first_guess(self):
         if self.coulomb and self.q2 != 0.0:
@@ -88,8 +93,11 @@ class EwaldDisp(Ewald):
             raise InputError(f"kspace_style {self.style}: an accuracy of forces of {self.accuracy:g} is too low, it must be below 1")
         if self.modify["gewald/disp"] not in (0.0, self.g_ewald):
             raise InputError(f"kspace_style {self.style} has one splitting parameter: use kspace_modify gewald, not gewald/disp")
+        self.choice[4] = self.accuracy
+        self.choose_waves(system)
+
+    def choose_waves(self, system):
         vectors = system.box.cell * self.stretch[:, None]
-        self.choice = np.array([self.q2, self.b2, self.m2, self.n, self.accuracy])
         self.check_size()
         self.waves, self.top = ewald_disp.chooser()(vectors, self.g_ewald, *self.choice, np.zeros((0, 3), np.int64))
 
@@ -126,13 +134,17 @@ class WavesTerm(Waves):
         if self.dispersion is None:
             super().set_factor(factor)
 
+    def count(self, engine):
+        super().count(engine)
+        if self.dispersion is not None:
+            self.constants[7:] = self.dispersion.all_sums(engine.system.type)
+
     def prepare(self, engine):
         s, nth = self.solver, engine.threads
         self.factors, self.signs = np.zeros((0, 1)), np.ones(1)
         if self.dispersion is not None:
             self.factors, self.signs = self.dispersion.factors, self.dispersion.signs
-            everyone, own, each = self.dispersion.sums(engine.system.type)
-            self.constants = np.concatenate([self.constants[:7], [everyone, own], each])
+            self.constants = np.append(self.constants[:7], self.dispersion.all_sums(engine.system.type))
         m, top = self.make_waves(engine, s.waves, s.top)
         n, self.most = self.factors.shape[1], np.zeros(3, np.int64)
         self.all_sums, self.sums = np.zeros((nth, n, m, 2)), np.zeros((nth, 8))
@@ -151,6 +163,10 @@ class DipoleWavesTerm(Waves):
     """The sum over waves of charges with dipoles; kernels read dipoles where they are, by row, for fixes may turn them."""
 
     make_kernel = staticmethod(ewald_disp_dipole.kernel)
+
+    def count(self, engine):
+        super().count(engine)
+        self.constants[7] = self.solver.squares_mu
 
     def prepare(self, engine):
         s, nth = self.solver, engine.threads

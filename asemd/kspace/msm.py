@@ -81,14 +81,17 @@ class MSM(KSpace):
         self.cut_by = [(use.settings, part.cut) for use in uses for part in use.style.variant(use.settings).parts if part.long]
         return super().take(uses, interactions, system)
 
+    def count(self, system):
+        super().count(system)
+        if abs(self.qsum) > 1e-5:
+            raise InputError(f"kspace_style {self.style}: charges must add up to 0, here they add up to {self.qsum:g}")
+
     def first_guess(self):
         return 0.0
 
     def choose(self, system):
         if not self.q2:
             warnings.warn("Using kspace solver on system with no charge", InputWarning, stacklevel=2)
-        if abs(self.qsum) > 1e-5:
-            raise InputError(f"kspace_style {self.style}: charges must add up to 0, here they add up to {self.qsum:g}")
         self.order = self.modify["order"]
         if self.order not in BOUNDS:
             raise InputError(f"kspace_style {self.style}: order must be 4, 6, 8 or 10, not {self.order}")

@@ -220,12 +220,16 @@ class MeshTerm(PPPMTerm):
             self._make_shares()
         return pppm_disp.kernel(level, self.order, self.solver.ad)
 
+    def count(self, engine):
+        super().count(engine)
+        if self.attractive:
+            self.constants[7:] = self.solver.dispersion.all_sums(engine.system.type)
+
     def prepare(self, engine):
         self.factors, self.signs = np.zeros((0, 1)), np.ones(1)
         if self.attractive:
             self.factors, self.signs = self.solver.dispersion.factors, self.solver.dispersion.signs
-            everyone, own, each = self.solver.dispersion.sums(engine.system.type)
-            self.constants = np.concatenate([self.constants, [everyone, own], each])
+            self.constants = np.append(self.constants[:7], self.solver.dispersion.all_sums(engine.system.type))
         super().prepare(engine)
         n = self.factors.shape[1]
         self.density = np.zeros((n, *self.density.shape), self.density.dtype)

@@ -11,6 +11,15 @@ from asemd.kernels.hooks import bound
 from asemd.term import Term
 
 
+def count(engine) -> None:
+    """The solver and its terms take the sums over atoms that there are now: charges or types have changed."""
+    if engine.solver is not None:
+        engine.solver.count(engine.system)
+        for t in engine.terms:
+            if isinstance(t, KSpaceTerm):
+                t.count(engine)
+
+
 class KSpaceTerm(Term):
     """What the terms of all solvers have in common.
 
@@ -28,6 +37,10 @@ class KSpaceTerm(Term):
         a, _, c = solver.stretch
         self.constants = np.array([solver.g_ewald, solver.scale * solver.factor, solver.qsum, solver.qsqsum, -a if solver.wire else c,
                                    correction, solver.least])
+
+    def count(self, engine) -> None:
+        """Take the solver's sums over atoms as they are now."""
+        self.constants[2:4] = self.solver.qsum, self.solver.qsqsum
 
     def kernel(self, energy, per_atom):
         return self.make_kernel(2 if per_atom else 1 if energy else 0)

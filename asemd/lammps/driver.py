@@ -12,7 +12,7 @@ import numpy as np
 from asemd import units
 from asemd.errors import InputError, InputWarning
 from asemd.lammps import checkpoint, log, references, restart, setup_log, torn
-from asemd.lammps.live_coefficients import fill, live_coefficients, scale
+from asemd.lammps.live_coefficients import fill, own_fixes, scale
 from asemd.moment import Moment, Progress
 from asemd.thermo import evaluate
 
@@ -173,7 +173,7 @@ class Driver:
             restart.check_folders(session)
             state = restart.first_run(session)
             session.close_loop()
-            fixes = [*scene.dynamic_groups.values(), *scene.fixes.values(), *live_coefficients(session)]
+            fixes = [*scene.dynamic_groups.values(), *scene.fixes.values(), *own_fixes(session)]
             parts = (scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt)
             with session.passing_warnings():        # of solvers
                 loop = session.loop = RespaLoop(*parts, step=begin, levels=scene.respa) if scene.respa else Loop(*parts, step=begin)

@@ -21,10 +21,17 @@ class Landscape:
         self.step = loop.step
         self.next_step = loop.step + 1
         self.x0 = loop.system.x.copy()
+        # forces with random numbers are others each time: they are computed as often as LAMMPS does it
+        self.random = any(use.style.stirred for use in loop.interactions.uses["pair"])
+        self.known = self.random        # whether the next evaluation is where the last one was, and is left out
 
     def __call__(self, x: np.ndarray) -> tuple[float, np.ndarray]:
         self.place(x)
         return self.evaluate()
+
+    def move(self, v: np.ndarray) -> None:
+        """Velocities of damped dynamics, for forces that depend on them."""
+        self.system.v[:] = v
 
     def place(self, x: np.ndarray) -> None:
         """Atoms to unwrapped positions."""
@@ -33,12 +40,13 @@ class Landscape:
     def evaluate(self) -> tuple[float, np.ndarray]:
         """Energy and forces where the atoms are."""
         loop, system = self.loop, self.system
-        for fix in self.live:       # variables see the step of the iteration
+        if self.live or self.random:        # variables and temperatures see the step of the iteration
             loop.step = self.session.scene.step = system.step = self.step
+        for fix in self.live:
             self.session.moment.forget()
             fix.update(loop)
         loop.trial_step = self.step
-        result = loop.evaluate()
+        result, self.known = loop.result if self.known else loop.evaluate(), False
         self.step = self.next_step
         fixes = sum(f.scalar() for f in loop.fixes if f.thermo_energy)
         return result.potential + fixes, system.f

@@ -91,10 +91,14 @@ class LiveCoefficients(Fix):
                 term.packed.coeff[:] = use.style.pack(use.settings, use.coeff, term.packed.coeff.shape[1] - 1, None).coeff
 
 
-def live_coefficients(session: Session) -> list[Fix]:
-    """The fixes that a run needs beside the user's: for expressions with variables whose value changes, and for random numbers of pairs."""
+def live_coefficients(session: Session) -> list[LiveCoefficients]:
+    """What takes up values of variables in the force field, where they change during a run."""
     for name in fill(session, "pair"):
         if changes(session, name):
             raise InputError(f"pair_coeff lepton: the variable {name} changes during the run: an expression of pairs must stay the same")
-    live = [LiveCoefficients(session)] if any(changes(session, name) for name in (*fill(session), *scale(session))) else []
-    return live + pair_order(session)
+    return [LiveCoefficients(session)] if any(changes(session, name) for name in (*fill(session), *scale(session))) else []
+
+
+def own_fixes(session: Session) -> list[Fix]:
+    """The fixes that a run needs beside the user's: for expressions with variables whose value changes, and for random numbers of pairs."""
+    return [*live_coefficients(session), *pair_order(session)]

@@ -126,6 +126,8 @@ def force_field(interactions: Interactions) -> dict[str, Any]:
     names = ("settings", "coeff", "label", "modify", "special", "scale", "memory")
     out["uses"] = {category: [{"style": use.style.name, **{n: getattr(use, n) for n in names}} for use in uses]
                    for category, uses in interactions.uses.items()}
+    for use in out["uses"]["pair"]:         # what is left out of one run counts again in others, as in LAMMPS
+        use["modify"] = {name: value for name, value in use["modify"].items() if name != "compute"}
     # potential files are not kept, as in LAMMPS: the script gives the style (a sub-style's or a table's coefficients) again
     for use in out["uses"]["pair"]:
         style = find("pair", use["style"])

@@ -64,6 +64,8 @@ class Problem:
     box : object, optional
         If rows of `x0` behind those of the atoms are a box (cg and sd): ``start(x)`` is told of each line search, ``longest(direction)``
         gives its longest step, ``accept(iteration, x)`` whether the energy has another reference after it, `n` the number of atoms.
+    move : callable, optional
+        Told the velocities (n, 3) of damped dynamics before each evaluation, where forces depend on them.
     """
 
     x0: np.ndarray
@@ -74,6 +76,7 @@ class Problem:
     norm: float = 1.0
     shown: Callable[[int], bool] | None = None
     box: Any = None
+    move: Callable[[np.ndarray], None] | None = None
 
     @property
     def ftm2v(self) -> float:

@@ -53,6 +53,8 @@ class State:
         """Go to `x`; the energy there."""
         self.x = x
         self.evaluations += 1
+        if self.problem.move is not None:
+            self.problem.move(self.v)
         self._look()
         return self.energy
 

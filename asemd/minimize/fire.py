@@ -106,8 +106,7 @@ def step(state: State, kick: np.ndarray, mix: tuple[float, float] | None, at_res
     x = state.x + dt * v
     if o.integrator == "eulerexplicit":
         v = v + dt * kick * state.f
-    state.previous = state.energy
+    state.previous, state.v = state.energy, v
     state.evaluate(x)
     if o.integrator == "verlet":
-        v = v + 0.5 * dt * kick * state.f
-    state.v = v
+        state.v = v + 0.5 * dt * kick * state.f

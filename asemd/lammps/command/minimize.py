@@ -7,7 +7,8 @@ from asemd.errors import InputError
 from asemd.lammps import log, restart, setup_log
 from asemd.lammps.driver import Driver, Plan, check, memory
 from asemd.lammps.landscape import BoxLandscape, Landscape
-from asemd.minimize import WALLTIME, Problem, find
+from asemd.lammps.pair_order import pair_order
+from asemd.minimize import MAXITER, WALLTIME, Problem, find
 from asemd.moment import Progress
 from asemd.words import number, whole
 
@@ -51,7 +52,7 @@ class Minimization(Driver):
         session.close_loop()
         if scene.min_style in DAMPED:
             scene.system.v[:] = 0.0
-        fixes = [f for f in scene.fixes.values() if f.minimizes]
+        fixes = [*(f for f in scene.fixes.values() if f.minimizes), *pair_order(session)]
         for f in fixes:
             f.minimizing = True
         try:
@@ -116,7 +117,7 @@ class Minimization(Driver):
             return iteration == self.plan.steps or due(begin + iteration) or restart.due(session, begin + iteration)
 
         problem = Problem(landscape.x0, landscape, system.atom_masses(), scene.dt, loop.units, float(max(system.n, 1)) if norm else 1.0,
-                          shown, landscape if relax else None)
+                          shown, landscape if relax else None, landscape.move if scene.min_style in DAMPED else None)
 
         def look(iteration: int, x, v, energy, forces) -> bool | str:
             loop.step = loop._collected = scene.step = begin + iteration
@@ -145,6 +146,7 @@ class Minimization(Driver):
         if scene.min_style in DAMPED:
             system.v[:] = result.v
         landscape.step = begin + result.steps
+        landscape.known = landscape.random and result.criterion == MAXITER
         landscape(result.x)
         loop.step = loop._collected = scene.step = begin + result.steps
         told = session.last_thermo_step == scene.step       # by the last iteration's output

@@ -8,7 +8,7 @@ from asemd.lammps import log, setup_log
 from asemd.lammps.command.read_dump import read_request, take_snapshot
 from asemd.lammps.driver import Driver, Plan, check, memory
 from asemd.lammps.dump_read import frames
-from asemd.lammps.live_coefficients import live_coefficients
+from asemd.lammps.live_coefficients import own_fixes
 from asemd.moment import Progress
 from asemd.words import take, whole, yes_no
 
@@ -109,7 +109,7 @@ class Rerun(Driver):
         from asemd.loop import Loop
         session, scene = self.session, self.scene
         if self.loop is None or self.loop.system is not scene.system:
-            fixes = [*scene.fixes.values(), *live_coefficients(session)]
+            fixes = [*scene.fixes.values(), *own_fixes(session)]
             self.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=step)
             self.loop.warn = session.log.warn
         else:
