@@ -197,8 +197,8 @@ class ForceField(Calculator):
         check_finite(atoms)
         if "type" not in atoms.arrays:
             if self.like is not None:
-                raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements; "
-                                 "use atoms that asemd.read gave, atoms.set_array('type', ...), types=['C', ...] or calc.with_types(['C', ...])")
+                raise InputError("the atoms have no array 'type': a force field from a script goes by atom types, not by elements; use "
+                                 "atoms that asemd.read gave, atoms.set_array('type', ...), types=['C', ...] or calc.with_types(['C'])")
             types = types_by_element(self.arguments["pair"], self.types, atoms)
         system = System.from_ase(atoms, types=types, units=self.units, like=self.like)
         system.topology = self._topology_of(atoms)
