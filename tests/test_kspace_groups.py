@@ -88,6 +88,20 @@ def test_against_lammps(name, lammps):
     compare(name, CASES[name], lammps[name])
 
 
+@pytest.mark.parametrize("solver", [["kspace_style ewald/disp 1e-4"],
+                                    ["kspace_style pppm/disp 1e-4", "kspace_modify gewald/disp 0.4 mesh/disp 8 8 8"]])
+def test_solvers_follow_dispersion(solver):
+    """LAMMPS goes on with the old coefficients."""
+    def energies(epsilon, *commands):
+        lines = IONS.splitlines()
+        at = next(k for k, line in enumerate(lines) if line.startswith("pair_style"))
+        pair = ["pair_style lj/long/coul/long long long 5", f"pair_coeff * * {epsilon} 2.5", *solver, "kspace_modify gewald 0.35"]
+        lmp = ran([*lines[:at], *pair, *commands, "thermo_style custom elong evdwl", "fix 1 all nve", "run 0"])
+        return [lmp.get_thermo(k) for k in ("elong", "evdwl")]
+    adapted = energies(0.1, "variable e equal 0.2", "fix a all adapt 1 pair lj/long/coul/long epsilon * * v_e")
+    assert adapted == pytest.approx(energies(0.2), rel=1e-12)
+
+
 IONS = """units real
 atom_style charge
 atom_modify map array sort 0 0

@@ -94,6 +94,17 @@ def test_minimisations_are_those_of_lammps():
         assert_same(asemd(in_small_box(*case)), theirs[name], x=1e-10, v=1e-10)
 
 
+def test_two_dimensions():
+    texts = {}
+    for width in (9, 1.5):
+        text = FLUID.format(pair="dpd 1.0 1.5 34387", coeff="pair_coeff * * 25 4.5", more="fix 2 all enforce2d", size=width, steps=30)
+        text = text.replace("sc 0.8", "sq 0.8").replace("0 5 0 5", "0 9 -0.5 0.5").replace("0.2 0.2 0.2", "0.2 0.2 0")
+        texts[str(width)] = "dimension 2\n" + text
+    theirs = lammps(texts)
+    for name, text in texts.items():
+        assert_same(asemd(text), theirs[name], x=1e-10, v=1e-10)
+
+
 def test_momentum_is_conserved_and_the_temperature_comes():
     lmp = ran(script("dpd", 400).replace("create 1.0", "create 0.1").splitlines())
     v = np.array(lmp.gather_atoms("v", 1, 3)).reshape(-1, 3)

@@ -138,6 +138,7 @@ CASES = {
     "swap": ALLOY.format("types 2 3"),
     "swap and keep velocities": ALLOY.format("ke no types 2 3"),
     "semi-grand": ALLOY.format("semi-grand yes mu -0.2 0.3 types 2 3"),
+    "semi-grand, many": ALLOY.format("semi-grand yes mu -0.2 0.3 0.1 types 1 2 3").replace("region", "atom_modify sort 0 0\nregion"),
     "deposit": SURFACE.format("near 1.0 vz -1.0 -1.0", 63),
     "deposit local": SURFACE.format("local 0.5 1.0 1.2 vx -0.2 0.3 vz -2 -1 units box", 63),
     "deposit global": SURFACE.format("global 0.5 1.0 near 0.5 vz -1 -1 target 2 2 0 id next", 63),

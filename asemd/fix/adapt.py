@@ -292,6 +292,8 @@ def _in_place(e: Engine, interactions, system) -> bool:
         same = fresh.style is old.style and a.rows.shape == b.rows.shape and np.shape(a.constants) == np.shape(b.constants)
         if not same or np.abs(a.rows[old.cut_rows] - b.rows[old.cut_rows]).max(initial=0.0) or len(a.arrays):
             return False
+        if any(part.long and not part.charged for part in fresh.style.parts) and not np.array_equal(a.rows, b.rows, equal_nan=True):
+            return False        # of dispersion, which a solver has a part of
         if not all(t.fits(b) for t in e.terms if getattr(t, "owner", None) is old and hasattr(t, "fits")):
             return False
     for old, fresh in zip(e.pair_terms, new):

@@ -169,7 +169,8 @@ class AtomSwap(Fix):
             count(loop.engine)
         energy = self._energy(loop)
         exponent = (self.energy - energy + work) / (loop.units.boltz * self.temperature)
-        if self.random.uniform() < math.exp(min(exponent, 0.0)):
+        decides = self.random if self.mu is None else self.choice       # a process of its own decides there
+        if decides.uniform() < math.exp(min(exponent, 0.0)):
             self.energy = energy
             mass = loop.system.mass
             for row, kind in changes.items() if self.keep_kinetic and loop.system.rmass is None else ():

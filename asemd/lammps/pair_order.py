@@ -23,10 +23,10 @@ class PairOrder(ListOrder):
         """
         self.listed(loop)
         box, e = loop.system.box, loop.engine
-        if not (self.bins and self.newton) or box.triclinic or loop.system.dimension == 2 or not e.ortho:
+        if not (self.bins and self.newton) or box.triclinic or not e.ortho:
             return False
         local = np.argsort(self.place)                     # rows in LAMMPS's order
-        x, row, image = self._with_ghosts(self.x[local], e.reach, np.array(box.periodic, bool), self.high - self.low)
+        x, row, image = self._with_ghosts(self.x[local], e.reach, e.periodic, self.high - self.low)
         n = len(local)
         from scipy.spatial import cKDTree
         found = cKDTree(x[:n]).sparse_distance_matrix(cKDTree(x), e.reach * (1.0 + 1e-12), output_type="coo_matrix")
