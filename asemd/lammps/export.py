@@ -66,6 +66,8 @@ def commands(system: System, interactions: Interactions, settings: Settings | No
     out.append(f"read_data {quoted(os.fspath(data))}")
     for category in CATEGORIES:
         out += [f"{category}_coeff {' '.join(map(quoted, line))}" for line in interactions.coeff_lines(category)]
+    if not sized and any(use.style.many for use in interactions.uses["pair"]):      # whose files have masses, too
+        out += [f"mass {t} {m!r}" for t, m in enumerate(written.mass[1:].tolist(), 1)]
     out += [f"pair_modify {' '.join(line)}" for line in interactions.modify_lines()]
     if interactions.uses["pair"]:
         out.append(f"special_bonds {' '.join(interactions.special_line())}")
