@@ -6,6 +6,9 @@ along the first one. Small meshes, for which that would take longer than it save
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+
+import numpy as np
 
 from asemd.kernels.callback import Callback
 
@@ -44,7 +47,7 @@ class Transforms:
             return Callback(self._forward), None, None, Callback(self._backward), shares
         planes = slice(nx * k // self.parts, nx * (k + 1) // self.parts)
         rows = slice(ny * k // self.parts, ny * (k + 1) // self.parts)
-        return tuple(Callback(_with(f, s)) for f, s in ((self._forward_planes, planes), (self._forward_across, rows),
+        return tuple(Callback(partial(f, s)) for f, s in ((self._forward_planes, planes), (self._forward_across, rows),
                                                         (self._backward_across, rows), (self._backward_planes, planes))) + (shares,)
 
     def _forward(self) -> None:
@@ -75,13 +78,8 @@ class Transforms:
             field[planes] = fft.irfftn(wave[planes], s=field.shape[1:], axes=(1, 2))
 
 
-def _with(function: Callable, part: slice) -> Callable[[], None]:
-    return lambda: function(part)
-
-
 def _in_place(transform: Callable, wave) -> None:
     """Transform along the first of three directions; the library does it in place where it can."""
-    import numpy as np
     out = transform(wave, axis=-3, overwrite_x=True)
     if not np.may_share_memory(out, wave):
         wave[...] = out
