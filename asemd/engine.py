@@ -45,6 +45,8 @@ class Engine:
     settings : Settings
     box_moves : str
         Whether the box changes within a run: ``size`` (a box along the axes stays one), ``shape`` (it may be tilted), or empty.
+    solver : KSpace, optional
+        A long-range solver whose parameters stay.
 
     Attributes
     ----------
@@ -52,7 +54,7 @@ class Engine:
         ``cluster``, ``plain`` or ``none``: which neighbour list the scene needs; `why` says why.
     """
 
-    def __init__(self, system, interactions, settings: Settings | None = None, box_moves: str = ""):
+    def __init__(self, system, interactions, settings: Settings | None = None, box_moves: str = "", solver=None):
         self.system, self.interactions, self.settings, self.box_moves = system, interactions, settings or Settings(), box_moves
         self.threads = 1 if config.DISABLE_JIT else max(1, self.settings.threads)     # uncompiled threads cannot wait for each other
         self.builds = self.dangerous = 0
@@ -66,7 +68,7 @@ class Engine:
         self._bound = BoundKernels(0), BoundKernels(1)
         self.units = unit_styles.get(system.units)
         self.qqr2e, self.shares = interactions.coulomb_constant(self.units) / interactions.dielectric, None      # of `asemd.atom_shares`
-        self.update(system)
+        self.update(system, solver)
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
     def update(self, system, solver=None) -> None:
@@ -92,9 +94,8 @@ class Engine:
         self.changed = True      # loops look whether their kernels are still the right ones
         for k, t in enumerate(self.terms):
             t.index = k
-        self.acc = np.zeros((self.threads, max(1, len(self.terms)), 8))
+        self.acc, self.bad = (np.zeros((self.threads, max(1, len(self.terms)), m)) for m in (8, 4))
         self.farthest = np.zeros(self.threads)      # largest of `moved`, for each thread to read
-        self.bad = np.zeros((self.threads, max(1, len(self.terms)), 4))
         self._rows()
         self.list = (ClusterList(self.threads, self.reach, vector(s.precision == "mixed"), s.outdated or self.sparse)
                      if self.mode == "cluster" else PlainList(self.reach))
@@ -209,8 +210,7 @@ class Engine:
         self.ns, s = n, self.state
         s.row[:] = -1
         s.row[:n] = np.arange(n, dtype=np.int32)
-        s.x[:, :n] = self.system.x.T
-        s.v[:, :n] = self.system.v.T
+        s.x[:, :n], s.v[:, :n] = self.system.x.T, self.system.v.T
         self._offset, self.slot_of[:], self.held[:, :n] = None, np.arange(n), s.x[:, :n]
         if self.mode == "cluster":
             self.list.gaps = True

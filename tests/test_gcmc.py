@@ -14,7 +14,9 @@ import asemd.fix as fixes
 from asemd import relist
 from asemd.engine import Engine
 from asemd.errors import InputError
+from asemd.fix.gcmc_moves import Moves
 from asemd.kernels import trial_cells
+from asemd.lammps import Lammps
 from asemd.random import ParkMiller
 
 ATOMS = """
@@ -56,6 +58,9 @@ def molecules(fix, **other):
     return MOLECULES.format(**{"width": 16, "n": 30, "steps": 5, "first": "", "more": "", "fix": fix, **other})
 
 
+LONG = "lj/cut/{} 2.5 3.0\npair_coeff * * 1 1\npair_modify table 0"
+IONS = "set type 1 charge 0.3\nset type 1 type/fraction 2 0.5 8\nset type 2 charge -0.3\nkspace_style "
+LONG_WATER = "pair_style lj/cut/coul/long 7.0 7.0\npair_coeff * * 0.1 3\npair_modify table 0\nkspace_style pppm 1e-4"
 REGION, TILTED = "region s block 0.2 2 0.2 2 0.5 2.5", "prism 0 3 0 3 0 3 0.5 0.3 0.4"
 CASES = {
     "atoms": atoms(GCMC, steps=12),
@@ -83,6 +88,8 @@ CASES = {
     "molecules, turned far": molecules(MOVES + "tfac_insert 1.6667 maxangle 180 overlap_cutoff 1.5"),
     "molecules, full energy": molecules(MOVES + "full_energy intra_energy 0.1", more="fix 2 all nve\ntimestep 0.2"),
     "molecules, excluded": molecules(MOVES + "full_energy", more="neigh_modify exclude molecule/intra gas"),
+    "molecules, to the last one": molecules("gcmc 1 9 9 0 29494 400.0 -300.0 0.8 mol water", n=3),
+    "molecules, to the last one, full energy": molecules("gcmc 1 9 9 0 29494 400.0 -300.0 0.8 mol water full_energy", n=3),
     "mcmoves": molecules(MOVES + "mcmoves 0 1 3"),
     "mcmoves, atoms of molecules": molecules(MOVES + "mcmoves 2 1 1 full_energy", more="fix 2 all nve\ntimestep 0.2"),
     "mcmoves of atoms": atoms(GCMC + "mcmoves 3 0 0"),
@@ -92,6 +99,19 @@ CASES = {
                              pair="lj/cut/coul/dsf 0.2 2.5 3.0\npair_coeff * * 1 1"),
     "no charges among ions": atoms(GCMC, style="charge", pair="lj/cut/coul/long 2.5 3.0\npair_coeff * * 1 1", more="pair_modify table 0\n"
                                    "set type 1 type/fraction 2 0.5 8\nset type 2 charge 0.3\nkspace_style pppm 1e-4"),
+    **{f"ions, {name}": atoms(GCMC + "charge -0.2", style="charge", pair=LONG.format("coul/long"), more=IONS + name, steps=3)
+       for name in ("pppm 1e-4", "ewald 1e-4", "pppm/cg 1e-4")},
+    "ions, slab": atoms("gcmc 1 20 20 1 29494 2.0 -1.25 0.05 charge -0.2 region s", style="charge", pair=LONG.format("coul/long"), steps=3,
+                        boundary="boundary p p f", more=REGION + "\n" + IONS + "pppm 1e-4\nkspace_modify slab 3.0"),
+    "ions, tilted": atoms(GCMC + "charge -0.2", style="charge", pair=LONG.format("coul/long"), more=IONS + "pppm 1e-4", box=TILTED,
+                          steps=3),
+    "ions, small": atoms(GCMC + "charge -0.2", style="charge", pair=LONG.format("coul/long"), more=IONS + "ewald 1e-4", steps=3,
+                         box="block 0 2 0 2 0 1"),
+    "molecules, pppm": molecules(MOVES + "full_energy intra_energy 0.1", more=LONG_WATER + "\nfix 2 all nve\ntimestep 0.2"),
+    "mcmoves, pppm": molecules(MOVES + "mcmoves 2 1 1", more=LONG_WATER + "\nfix 2 all nve\ntimestep 0.2"),
+    "molecules, small, pppm": molecules(MOVES + "full_energy", more=LONG_WATER, width=9, n=6),
+    "widom, pppm": atoms(WIDOM + "charge -0.2", style="charge", pair=LONG.format("coul/long"), more=IONS + "pppm 1e-4"),
+    "widom, molecules, pppm": molecules("widom 1 20 0 29494 400.0 mol water intra_energy 0.1", more=LONG_WATER),
     "widom": atoms(WIDOM),
     "widom, tail": atoms("widom 2 50 1 29494 2.0", more="pair_modify tail yes"),
     "widom, tilted": atoms(WIDOM + "full_energy", box=TILTED),
@@ -292,10 +312,38 @@ def test_mistakes(line, said):
         asemd(atoms(line, more="region wide block 0 9 0 1 0 1", boundary="boundary p p f" if "wall" in line else "", steps=0))
 
 
-@pytest.mark.parametrize("fix, q", [(GCMC + "charge 0.1", 0.0), (WIDOM + "charge 0.1", 0.0), (GCMC, 0.2)])
-def test_charges_that_a_solver_has_a_part_of_are_refused(fix, q):
-    text = CASES["no charges among ions"].replace(GCMC, fix).replace("kspace_style", f"set type 1 charge {q}\nkspace_style")
-    with pytest.raises(InputError, match="part of kspace_style pppm, which the gas feels"):
+BOTH = "lj/long/coul/long long long 2.5\npair_coeff * * 1 1\npair_modify table 0 table/disp 0"
+SOLVED = {**{solver: atoms(GCMC + "charge -0.2", style="charge", pair=pair, more=IONS + solver, steps=2) for solver, pair in (
+    ("pppm/stagger 1e-4", LONG.format("coul/long")), ("ewald/disp 1e-4", BOTH),
+    ("pppm/disp 1e-4\nkspace_modify force/disp/real 1e-3 force/disp/kspace 1e-3", BOTH))},
+          "msm 1e-3": molecules(MOVES.replace("gcmc 2", "gcmc 1"), more=LONG_WATER.replace("long", "msm").replace("pppm", "msm"), steps=2)}
+
+
+@pytest.mark.parametrize("name", SOLVED)
+@pytest.mark.parametrize("threads", [1, 2])
+def test_energies_are_those_of_all_atoms(name, threads, monkeypatch, tmp_path):
+    """Trials lead to the energy that the atoms have afterwards, with solvers too whose sums LAMMPS forgets to renew."""
+    lmp, found, carry = Lammps(cmdargs=["-screen", "none", "-log", "none", "-threads", str(threads)]), [], Moves.carry_over
+    monkeypatch.setattr(Moves, "carry_over", lambda moves: (found.append(moves.waves.accepted), carry(moves)))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "water.mol").write_text(WATER)
+    lmp.commands_string(SOLVED[name])
+    assert len(found) == 2 and found[0] != pytest.approx(found[1], rel=1e-3)
+    assert found[1] == pytest.approx(lmp.session.loop.result.energy["elong"], rel=1e-10)
+
+
+def test_charges_on_sites_are_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "water.mol").write_text(WATER)
+    pair = "pair_style lj/cut/tip4p/cut 1 2 1 1 0.15 7.0\npair_coeff 1 1 0.15 3.1\npair_coeff * 2 0.0 1.0"
+    with pytest.raises(InputError, match="charges on sites of molecules"):
+        asemd(molecules(MOVES, more=pair))
+
+
+def test_solvers_of_more_than_charges_are_refused():
+    text = atoms(GCMC + "charge -0.2", style="hybrid charge dipole", pair="lj/cut/dipole/long 2.5 3.0\npair_coeff * * 1 1",
+                 more=IONS + "ewald/disp 1e-4")
+    with pytest.raises(InputError, match="part of kspace_style ewald/disp, which the gas feels"):
         asemd(text)
 
 

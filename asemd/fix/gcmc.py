@@ -14,7 +14,10 @@ In a script all is as LAMMPS does it: without ``full_energy`` only images of ato
 at least ``displace``), gas atoms of other types have the energy of the exchanged type, and inserted atoms have no charge once they are
 there; in a region the newest molecule is neither moved nor deleted; a tail correction follows a deletion late; single atoms of molecules
 (``mcmoves``) have no energy without ``full_energy``; new bodies of fix rigid/small (``rigid``) are put beside their atoms by the
-geometric centre of the template file, so that file should have it at the origin. Made in Python, the fix has none of these.
+geometric centre of the template file, so that file should have it at the origin, and the last of them is not deleted. Made in Python, the
+fix has none of these.
+
+If the gas feels a long-range solver, each attempt solves for all atoms anew, with the parameters that the solver has in this run.
 
 Molecules that fix rigid/small or fix shake holds are exchanged (not moved) with ``rigid`` or ``shake`` and the ID of that fix, which must
 name the same template (``mol``).

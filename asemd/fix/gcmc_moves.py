@@ -29,6 +29,7 @@ class Moves(Reservoir):
         self.born: dict[int, np.ndarray] = {}
         self.closed = self.energies.closed
         self.angle = math.radians(fix.max_angle)
+        self.last_stays = fix.as_lammps and fix.holder is not None and fix.holder[0] == "rigid"
         self.one_type = fix.as_lammps and not fix.full_energy and fix.molecule is None     # that of inserted atoms, whatever an atom is
 
     # ---- choosing
@@ -56,7 +57,7 @@ class Moves(Reservoir):
     def series(self) -> None:
         """All attempts of one time: compiled where single atoms move in a periodic box along the axes, or in a block of it."""
         fix, anywhere = self.fix, self.fix.region is None or self.fix.region.style == "block"
-        plain = fix.molecule is None and not fix.by_molecule and anywhere and not self.tail.on and not self.closed
+        plain = fix.molecule is None and not fix.by_molecule and anywhere and not (self.tail.on or self.waves.on or self.closed)
         alone = self.energies.own_terms or (self.energies.exact and self.energies.narrow)
         if plain and self.energies.aligned and not alone:
             self.compiled()
@@ -100,11 +101,15 @@ class Moves(Reservoir):
         else:
             (self.insert_atom if fix.molecule is None else self.insert_molecule)()
 
-    def moved(self, before: float, after: float, random) -> bool:
-        """Whether a move is accepted."""
-        after += self.tail.of_move()
-        good = after < ACCEPTABLE and random.uniform() < boltzmann(self.fix.beta * (before - after))
+    def moved(self, before: float, after: float, random, rows, at) -> bool:
+        """Whether a move of atoms to positions `at` is accepted."""
+        after += self.tail.of_move() + self.waves.of_move(rows, self.wrapped(at))
+        return self.decided(after < ACCEPTABLE and random.uniform() < boltzmann(self.fix.beta * (before - after)))
+
+    def decided(self, good: bool) -> bool:
+        """Whether an attempt was accepted; told to what goes with the whole system."""
         self.tail.decided(good)
+        self.waves.decided(good)
         return good
 
     # ---- atoms
@@ -127,7 +132,7 @@ class Moves(Reservoir):
         i = self.pick()
         before = self.atom_energy(i, a.x[i:i + 1])
         at = self.displaced(a.x[i], fix.other)
-        if self.moved(before, self.atom_energy(i, at[None]), self.decides):
+        if self.moved(before, self.atom_energy(i, at[None]), self.decides, [i], at[None]):
             a.place([i], at[None], a.image[i:i + 1])
             self.own.pop(int(a.molecule[i]), None)
             self.changed()
@@ -155,10 +160,8 @@ class Moves(Reservoir):
             return
         i = self.pick()
         energy = self.atom_energy(i, a.x[i:i + 1])
-        energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1])
-        good = self.decides.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume)
-        self.tail.decided(good)
-        if good:
+        energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1]) + self.waves.of_deletion([i])
+        if self.decided(self.decides.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume)):
             a.delete(i)
             self.changed()
             self.count[DELETION + 1] += 1
@@ -177,9 +180,9 @@ class Moves(Reservoir):
             v = [fix.other.gaussian() * fix.speed for _ in range(3)]
         energy = self.with_others(at, self.types, self.charges)
         energy += self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
-        good = energy < ACCEPTABLE and self.decides.uniform() < fix.activity * self.volume * boltzmann(-fix.beta * energy) / (n + 1)
-        self.tail.decided(good)
-        if good:
+        energy += self.waves.of_insertion(at, self.types, self.charges)
+        chance = fix.activity * self.volume / (n + 1)
+        if self.decided(energy < ACCEPTABLE and self.decides.uniform() < chance * boltzmann(-fix.beta * energy)):
             if not fix.full_energy:
                 v = [fix.other.gaussian() * fix.speed for _ in range(3)]
             a.add(x=at[0], type=fix.kind, q=self.kept_charge, v=v, id=int(a.id[:a.n].max(initial=0)) + 1, mass=self.system.mass[fix.kind])
@@ -212,7 +215,7 @@ class Moves(Reservoir):
                 shift = fix.displace * np.array(self.ball(fix.random))
         at = a.x[rows] + shift
         self.check_inside(at)
-        if self.moved(before, self.molecule_energy(rows, at, molecule), fix.random):
+        if self.moved(before, self.molecule_energy(rows, at, molecule), fix.random, rows, at):
             a.place(rows, at, a.image[rows])
             self.changed()
             self.count[TRANSLATION + 1] += 1
@@ -231,7 +234,7 @@ class Moves(Reservoir):
         after = self.molecule_energy(rows, self.wrapped(at), molecule)
         if fix.full_energy and self.energies.narrow:
             before, after = before + self.alone(self._part(rows)), after + self.alone(self._part(rows, at))
-        if self.moved(before, after, fix.random):
+        if self.moved(before, after, fix.random, rows, at):
             a.place(rows, at, np.zeros(at.shape, np.int32))
             self.changed()
             self.count[ROTATION + 1] += 1
@@ -240,17 +243,15 @@ class Moves(Reservoir):
         fix, a = self.fix, self.atoms
         self.count[DELETION] += 1
         n = len(self.gas)
-        if not n or n <= fix.least or n == self.size:
+        if not n or n <= fix.least or (n == self.size and self.last_stays):
             return
         molecule = int(a.molecule[self.pick()])
         rows = a.members(molecule)
         energy = self.molecule_energy(rows, a.x[rows], molecule)
         if fix.full_energy:
             energy += self.alone(self._part(rows), None if self.energies.narrow else molecule) - fix.intra_energy
-            energy += self.tail.of_deletion(a.type[rows])
-        good = fix.random.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume * self.size)
-        self.tail.decided(good)
-        if good:
+            energy += self.tail.of_deletion(a.type[rows]) + self.waves.of_deletion(rows)
+        if self.decided(fix.random.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume * self.size)):
             while len(rows):        # the last atom, maybe one of them, takes the place of the first
                 a.delete(int(rows[0]))
                 rows = a.members(molecule)
@@ -275,10 +276,9 @@ class Moves(Reservoir):
         energy = self.with_others(inside, self.types, self.charges)
         if fix.full_energy:
             energy += self.template_energy(at) - fix.intra_energy + self.tail.of_insertion(self.types)
-        good = energy < ACCEPTABLE and fix.random.uniform() < (
-            fix.activity * self.volume * self.size * boltzmann(-fix.beta * energy) / (n + self.size))
-        self.tail.decided(good)
-        if good:
+            energy += self.waves.of_insertion(inside, self.types, self.charges)
+        chance = fix.activity * self.volume * self.size / (n + self.size)
+        if self.decided(energy < ACCEPTABLE and fix.random.uniform() < chance * boltzmann(-fix.beta * energy)):
             if not fix.full_energy:
                 v = [fix.random.gaussian() * fix.speed for _ in range(3)]
             number, last = int(a.molecule[:a.n].max(initial=0)) + 1, int(a.id[:a.n].max(initial=0))

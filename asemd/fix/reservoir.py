@@ -1,6 +1,7 @@
 """What fixes share that insert atoms or molecules of an ideal gas: where they come from, places and orientations for them, checks."""
 from __future__ import annotations
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 
@@ -9,6 +10,7 @@ import numpy as np
 from asemd.engine import Engine, Settings
 from asemd.errors import InputError, nearest
 from asemd.fix.trial_atoms import Energies, TrialAtoms
+from asemd.fix.trial_waves import Waves, solver_of
 from asemd.kernels import own_energy
 from asemd.molecule import rotation, turned
 from asemd.words import bounds, take, whole
@@ -114,11 +116,7 @@ def check_scene(fix, loop) -> float:
     inter = loop.interactions
     uses = inter.uses["pair"]
     solver = loop.engine.solver
-    charged = (fix.charge or molecule is not None and molecule.q is not None and np.any(molecule.q)
-               or system.q is not None and system.q[gas].any())
-    if solver is not None and (charged and solver.coulomb or getattr(solver, "dispersion", None) is not None):
-        raise InputError(f"{what}: energies of trials do not have the part of kspace_style {solver.style}, which the gas feels: use pair "
-                         "styles that end at a cutoff, such as coul/dsf for charges")
+    solver_of(fix, loop)
     if not fix.full_energy and (not uses or solver is not None or inter.hybrid["pair"] or any(inter.modified(u, "tail") for u in uses)):
         fix.full_energy = True
         loop.warn(f"{what} takes energies of the whole system (full_energy), since there is a kspace_style, or the pair style is a "
@@ -172,6 +170,7 @@ class Reservoir:
         self.tilted = fix.region is None and known.tilted
         self.own: dict[int, float] = {}        # energies of molecules by themselves
         self.tail = Tail(self, fix)
+        self.waves = Waves(loop, solver_of(fix, loop), self.atoms)
         m = fix.molecule
         if m is None:
             self.types, self.charges = np.array([fix.kind]), np.array([fix.charge or 0.0])
@@ -238,10 +237,12 @@ class Reservoir:
         """Energy that the particle would have at a place, in a random orientation."""
         fix = self.fix
         if fix.molecule is None:
-            energy = self.with_others(self.wrapped(place[None]), self.types, self.charges)
+            at = self.wrapped(place[None])
+            energy = self.with_others(at, self.types, self.charges) + self.waves.of_insertion(at, self.types, self.charges)
             return energy + self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
         at, _ = self.molecule_at(place)
-        energy = self.with_others(self.wrapped(at), self.types, self.charges)
+        inside = self.wrapped(at)
+        energy = self.with_others(inside, self.types, self.charges) + self.waves.of_insertion(inside, self.types, self.charges)
         if fix.full_energy:
             energy += self.template_energy(at) - fix.intra_energy + self.tail.of_insertion(self.types)
         return energy
@@ -282,7 +283,10 @@ class Reservoir:
         rules = [rule for rule in s.exclude if rule[0] == "type"]
         if any(rule[0] == "molecule/intra" for rule in s.exclude):
             rules.append(("molecule/intra", np.ones(atoms.n, bool)))
-        engine = Engine(atoms, self.loop.interactions, Settings(skin=s.skin, exclude=rules))
+        solver = copy.copy(self.loop.engine.solver)     # pairs are as it has them; what it adds, `waves` knows
+        if solver is not None:
+            solver.modify = {**solver.modify, "compute": 0}
+        engine = Engine(atoms, self.loop.interactions, Settings(skin=s.skin, exclude=rules), solver=solver)
         energy = engine.compute().energy
         value = sum(e for name, e in energy.items() if name != "etail")
         if key is not None:

@@ -44,6 +44,8 @@ class Energies:
         if any(t.molecules == "same" for t in terms):
             raise InputError(f"{what}: pair_style hybrid/molecular is not supported")
         for t in terms:
+            if t.sites is not None:
+                raise InputError(f"{what}: pair style {t.style.name} has charges on sites of molecules, which trials do not have")
             if t.style.oriented:
                 raise InputError(f"{what}: pair style {t.style.name} depends on the orientation of atoms: use full_energy")
             if t.style.dielectric:

@@ -25,6 +25,8 @@ class Dielectric(KSpace):
 class DielectricTerm(KSpaceTerm):
     """Stands before the term of such a solver among the bases of a class."""
 
+    of_places = False
+
     def __init__(self, *arguments):
         super().__init__(*arguments)
         self.sets = None

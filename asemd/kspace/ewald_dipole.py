@@ -100,7 +100,7 @@ def pair_error(solver, mu2: float, g: float) -> float:
 class EwaldDipoleTerm(EwaldTerm):
     """The sum over waves, with torques; kernels read dipoles where they are, by row, for fixes may turn them."""
 
-    make_kernel = staticmethod(ewald_dipole.kernel)
+    make_kernel, of_places = staticmethod(ewald_dipole.kernel), False
 
     def prepare(self, engine):
         super().prepare(engine)

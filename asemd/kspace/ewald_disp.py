@@ -162,7 +162,7 @@ class WavesTerm(Waves):
 class DipoleWavesTerm(Waves):
     """The sum over waves of charges with dipoles; kernels read dipoles where they are, by row, for fixes may turn them."""
 
-    make_kernel = staticmethod(ewald_disp_dipole.kernel)
+    make_kernel, of_places = staticmethod(ewald_disp_dipole.kernel), False
 
     def count(self, engine):
         super().count(engine)

@@ -36,6 +36,8 @@ class PPPMTIP4P(PPPM):
 class ChargesOnSites(OnSites):
     """A mesh of charges on sites; before the class of the term that it is otherwise."""
 
+    of_places = False
+
     def __init__(self, solver, *arguments):
         super().__init__(solver, *arguments)
         self.sites = solver.sites

@@ -29,6 +29,7 @@ class KSpaceTerm(Term):
     """
 
     category = "kspace"
+    of_places = True            # its energy is one of places, charges and types, of nothing else that an atom has
     make_kernel: Callable[[int], Callable]
 
     def __init__(self, solver):
