@@ -61,6 +61,27 @@ def molecules(fix, **other):
 LONG = "lj/cut/{} 2.5 3.0\npair_coeff * * 1 1\npair_modify table 0"
 IONS = "set type 1 charge 0.3\nset type 1 type/fraction 2 0.5 8\nset type 2 charge -0.3\nkspace_style "
 LONG_WATER = "pair_style lj/cut/coul/long 7.0 7.0\npair_coeff * * 0.1 3\npair_modify table 0\nkspace_style pppm 1e-4"
+SITES = "pair_style lj/cut/tip4p/{} 1 2 1 1 0.15 7.0\npair_modify table 0\npair_coeff 1 1 0.15 3.1\npair_coeff * 2 0.0 1.0"
+METALS = """
+units metal
+lattice fcc 4.05
+region box block 0 3 0 3 0 3
+create_box 2 box
+create_atoms 1 box
+create_atoms 2 random 10 4711 NULL overlap 1.3 maxtry 2000
+mass 1 27
+mass 2 1.0
+{pair}
+{more}
+group gas type 2
+fix g gas {fix}
+fix 2 all nve
+timestep 0.0002
+run 2
+"""
+METAL = {"eam/alloy": "pair_style eam/alloy\npair_coeff * * NiAlH_jea.eam.alloy Al H",
+         "hybrid": "pair_style hybrid/overlay eam/alloy lj/cut 3.0\npair_coeff * * eam/alloy NiAlH_jea.eam.alloy Al H\n"
+                   "pair_coeff 2 2 lj/cut 0.01 2.0"}
 REGION, TILTED = "region s block 0.2 2 0.2 2 0.5 2.5", "prism 0 3 0 3 0 3 0.5 0.3 0.4"
 CASES = {
     "atoms": atoms(GCMC, steps=12),
@@ -112,6 +133,14 @@ CASES = {
     "molecules, small, pppm": molecules(MOVES + "full_energy", more=LONG_WATER, width=9, n=6),
     "widom, pppm": atoms(WIDOM + "charge -0.2", style="charge", pair=LONG.format("coul/long"), more=IONS + "pppm 1e-4"),
     "widom, molecules, pppm": molecules("widom 1 20 0 29494 400.0 mol water intra_energy 0.1", more=LONG_WATER),
+    **{f"{what}, {name}": METALS.format(fix=fix, pair=pair, more="") for name, pair in METAL.items() for what, fix in (
+        ("gcmc", "gcmc 1 15 6 2 29494 1200.0 -1.9 0.3 overlap_cutoff 0.8"), ("widom", "widom 1 6 2 29494 1200.0"))},
+    "hydrogen in a region": METALS.format(fix="gcmc 1 6 6 2 29494 1200.0 -1.9 0.5 region s", pair=METAL["eam/alloy"],
+                                          more="region s block 0.2 2.8 0.2 2.8 0.2 2.8"),
+    "molecules, tip4p": molecules(MOVES, more=SITES.format("cut") + "\nfix 2 all nve\ntimestep 0.2", n=9),
+    "molecules, tip4p and pppm": molecules(MOVES.replace("30 30", "9 9"), n=9,
+                                           more=SITES.format("long") + "\nkspace_style pppm/tip4p 1e-4"),
+    "widom, tip4p": molecules("widom 1 20 0 29494 400.0 mol water intra_energy 0.1", more=SITES.format("cut"), n=9),
     "widom": atoms(WIDOM),
     "widom, tail": atoms("widom 2 50 1 29494 2.0", more="pair_modify tail yes"),
     "widom, tilted": atoms(WIDOM + "full_energy", box=TILTED),
@@ -316,6 +345,8 @@ BOTH = "lj/long/coul/long long long 2.5\npair_coeff * * 1 1\npair_modify table 0
 SOLVED = {**{solver: atoms(GCMC + "charge -0.2", style="charge", pair=pair, more=IONS + solver, steps=2) for solver, pair in (
     ("pppm/stagger 1e-4", LONG.format("coul/long")), ("ewald/disp 1e-4", BOTH),
     ("pppm/disp 1e-4\nkspace_modify force/disp/real 1e-3 force/disp/kspace 1e-3", BOTH))},
+          "dipoles": atoms(GCMC + "charge -0.2", style="dipole", pair="lj/cut/dipole/long 2.5 3.0\npair_coeff * * 1 1",
+                           more="set group all dipole/random 7 0.3\n" + IONS + "ewald/disp 1e-4", steps=2),
           "msm 1e-3": molecules(MOVES.replace("gcmc 2", "gcmc 1"), more=LONG_WATER.replace("long", "msm").replace("pppm", "msm"), steps=2)}
 
 
@@ -324,27 +355,13 @@ SOLVED = {**{solver: atoms(GCMC + "charge -0.2", style="charge", pair=pair, more
 def test_energies_are_those_of_all_atoms(name, threads, monkeypatch, tmp_path):
     """Trials lead to the energy that the atoms have afterwards, with solvers too whose sums LAMMPS forgets to renew."""
     lmp, found, carry = Lammps(cmdargs=["-screen", "none", "-log", "none", "-threads", str(threads)]), [], Moves.carry_over
-    monkeypatch.setattr(Moves, "carry_over", lambda moves: (found.append(moves.waves.accepted), carry(moves)))
+    monkeypatch.setattr(Moves, "carry_over", lambda moves: (found.append(moves.rest.accepted), carry(moves)))
     monkeypatch.chdir(tmp_path)
     (tmp_path / "water.mol").write_text(WATER)
     lmp.commands_string(SOLVED[name])
     assert len(found) == 2 and found[0] != pytest.approx(found[1], rel=1e-3)
-    assert found[1] == pytest.approx(lmp.session.loop.result.energy["elong"], rel=1e-10)
-
-
-def test_charges_on_sites_are_refused(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "water.mol").write_text(WATER)
-    pair = "pair_style lj/cut/tip4p/cut 1 2 1 1 0.15 7.0\npair_coeff 1 1 0.15 3.1\npair_coeff * 2 0.0 1.0"
-    with pytest.raises(InputError, match="charges on sites of molecules"):
-        asemd(molecules(MOVES, more=pair))
-
-
-def test_solvers_of_more_than_charges_are_refused():
-    text = atoms(GCMC + "charge -0.2", style="hybrid charge dipole", pair="lj/cut/dipole/long 2.5 3.0\npair_coeff * * 1 1",
-                 more=IONS + "ewald/disp 1e-4")
-    with pytest.raises(InputError, match="part of kspace_style ewald/disp, which the gas feels"):
-        asemd(text)
+    energy = lmp.session.loop.result.energy
+    assert found[1] == pytest.approx(sum(energy.values()) if name == "dipoles" else energy["elong"], rel=1e-10)
 
 
 def test_single_draws_are_those_of_a_series():

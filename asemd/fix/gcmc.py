@@ -17,7 +17,8 @@ there; in a region the newest molecule is neither moved nor deleted; a tail corr
 geometric centre of the template file, so that file should have it at the origin, and the last of them is not deleted. Made in Python, the
 fix has none of these.
 
-If the gas feels a long-range solver, each attempt solves for all atoms anew, with the parameters that the solver has in this run.
+If the gas feels a long-range solver, each attempt solves for all atoms anew, with the parameters that the solver has in this run; with
+potentials of many bodies (eam), orientations, charges on sites (tip4p) or dielectrics it computes all energies anew.
 
 Molecules that fix rigid/small or fix shake holds are exchanged (not moved) with ``rigid`` or ``shake`` and the ID of that fix, which must
 name the same template (``mol``).

@@ -57,7 +57,7 @@ class Moves(Reservoir):
     def series(self) -> None:
         """All attempts of one time: compiled where single atoms move in a periodic box along the axes, or in a block of it."""
         fix, anywhere = self.fix, self.fix.region is None or self.fix.region.style == "block"
-        plain = fix.molecule is None and not fix.by_molecule and anywhere and not (self.tail.on or self.waves.on or self.closed)
+        plain = fix.molecule is None and not fix.by_molecule and anywhere and not (self.tail.on or self.rest.on or self.closed)
         alone = self.energies.own_terms or (self.energies.exact and self.energies.narrow)
         if plain and self.energies.aligned and not alone:
             self.compiled()
@@ -103,13 +103,13 @@ class Moves(Reservoir):
 
     def moved(self, before: float, after: float, random, rows, at) -> bool:
         """Whether a move of atoms to positions `at` is accepted."""
-        after += self.tail.of_move() + self.waves.of_move(rows, self.wrapped(at))
+        after += self.tail.of_move() + self.rest.of_move(rows, self.wrapped(at))
         return self.decided(after < ACCEPTABLE and random.uniform() < boltzmann(self.fix.beta * (before - after)))
 
     def decided(self, good: bool) -> bool:
         """Whether an attempt was accepted; told to what goes with the whole system."""
         self.tail.decided(good)
-        self.waves.decided(good)
+        self.rest.decided(good)
         return good
 
     # ---- atoms
@@ -160,7 +160,7 @@ class Moves(Reservoir):
             return
         i = self.pick()
         energy = self.atom_energy(i, a.x[i:i + 1])
-        energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1]) + self.waves.of_deletion([i])
+        energy += self.alone_atom(int(a.type[i]), float(a.q[i])) + self.tail.of_deletion(a.type[i:i + 1]) + self.rest.of_deletion([i])
         if self.decided(self.decides.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume)):
             a.delete(i)
             self.changed()
@@ -180,7 +180,7 @@ class Moves(Reservoir):
             v = [fix.other.gaussian() * fix.speed for _ in range(3)]
         energy = self.with_others(at, self.types, self.charges)
         energy += self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
-        energy += self.waves.of_insertion(at, self.types, self.charges)
+        energy += self.rest.of_insertion(at) if energy < ACCEPTABLE else 0.0
         chance = fix.activity * self.volume / (n + 1)
         if self.decided(energy < ACCEPTABLE and self.decides.uniform() < chance * boltzmann(-fix.beta * energy)):
             if not fix.full_energy:
@@ -250,7 +250,7 @@ class Moves(Reservoir):
         energy = self.molecule_energy(rows, a.x[rows], molecule)
         if fix.full_energy:
             energy += self.alone(self._part(rows), None if self.energies.narrow else molecule) - fix.intra_energy
-            energy += self.tail.of_deletion(a.type[rows]) + self.waves.of_deletion(rows)
+            energy += self.tail.of_deletion(a.type[rows]) + self.rest.of_deletion(rows)
         if self.decided(fix.random.uniform() < n * boltzmann(fix.beta * energy) / (fix.activity * self.volume * self.size)):
             while len(rows):        # the last atom, maybe one of them, takes the place of the first
                 a.delete(int(rows[0]))
@@ -276,13 +276,13 @@ class Moves(Reservoir):
         energy = self.with_others(inside, self.types, self.charges)
         if fix.full_energy:
             energy += self.template_energy(at) - fix.intra_energy + self.tail.of_insertion(self.types)
-            energy += self.waves.of_insertion(inside, self.types, self.charges)
+            energy += self.rest.of_insertion(inside, matrix) if energy < ACCEPTABLE else 0.0
         chance = fix.activity * self.volume * self.size / (n + self.size)
         if self.decided(energy < ACCEPTABLE and fix.random.uniform() < chance * boltzmann(-fix.beta * energy)):
             if not fix.full_energy:
                 v = [fix.random.gaussian() * fix.speed for _ in range(3)]
             number, last = int(a.molecule[:a.n].max(initial=0)) + 1, int(a.id[:a.n].max(initial=0))
-            if fix.full_energy and not self.energies.narrow:
+            if fix.full_energy and not (self.energies.narrow or fix.whole):
                 self.own[number] = self.own["template"]
             rows = [a.add(x=x, type=t, q=q, v=v, id=last + 1 + k, molecule=number, mass=m)
                     for k, (x, t, q, m) in enumerate(zip(at, self.types, self.charges, self._masses()))]
@@ -314,22 +314,26 @@ class Moves(Reservoir):
         return one
 
     # ---- the end
-    def make(self, new):
-        """New atoms as a system, molecule by molecule."""
+    def newcomers(self, new, x=None):
+        """New atoms as a system, in the order of their ids, so molecule by molecule; at positions x (n, 3) of all copies."""
         a, fix = self.atoms, self.fix
+        new = new[np.argsort(a.id[new])]
         if fix.molecule is None:
             atoms = self.new_atoms(a.type[new], a.q[new], a.x[new].copy())
         else:
-            new = new[np.argsort(a.id[new])]
-            numbers = np.unique(a.molecule[new])
-            places = np.array([self.unwrapped(new[a.molecule[new] == k]) for k in numbers])
+            numbers = a.molecule[new[::self.size]]
+            places = self.unwrapped(new).reshape(len(numbers), self.size, 3)
             atoms = fix.molecule.copies(places, self.system, 0, [self.born[int(k)] for k in numbers])
-            new = np.concatenate([new[a.molecule[new] == k] for k in numbers])
-            atoms.molecule[:] = a.molecule[new]
-        atoms.id[:], atoms.x[:], atoms.image[:], atoms.v[:] = a.id[new], a.x[new], a.image[new], a.v[new]
+            atoms.mass, atoms.molecule[:] = self.system.mass, a.molecule[new]
+        atoms.id[:], atoms.x[:], atoms.image[:], atoms.v[:] = a.id[new], (a.x if x is None else x)[new], a.image[new], a.v[new]
+        return atoms
+
+    def make(self, new):
+        """New atoms as a system, as fixes that hold molecules want them."""
+        atoms, fix = self.newcomers(new), self.fix
         if fix.holds is not None:
             off = fix.molecule.x.mean(axis=0) if fix.as_lammps else np.zeros(3)     # LAMMPS puts bodies beside their atoms by this much
-            turns = [self.born[int(k)] for k in numbers]
+            turns = [self.born[int(k)] for k in atoms.molecule[::self.size]]
             fix.holds.take_in(self.system, atoms, fix.molecule, turns, np.array([-turn @ off for turn in turns]))
         return atoms
 

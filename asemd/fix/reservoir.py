@@ -10,7 +10,8 @@ import numpy as np
 from asemd.engine import Engine, Settings
 from asemd.errors import InputError, nearest
 from asemd.fix.trial_atoms import Energies, TrialAtoms
-from asemd.fix.trial_waves import Waves, solver_of
+from asemd.fix.trial_waves import Waves
+from asemd.fix.trial_whole import Whole, needs_whole
 from asemd.kernels import own_energy
 from asemd.molecule import rotation, turned
 from asemd.words import bounds, take, whole
@@ -115,12 +116,12 @@ def check_scene(fix, loop) -> float:
         loop.warn(f"{what} takes single atoms, but atoms of group {fix.group} belong to molecules")
     inter = loop.interactions
     uses = inter.uses["pair"]
-    solver = loop.engine.solver
-    solver_of(fix, loop)
-    if not fix.full_energy and (not uses or solver is not None or inter.hybrid["pair"] or any(inter.modified(u, "tail") for u in uses)):
+    fix.whole = needs_whole(fix, loop)
+    if not fix.full_energy and (not uses or fix.whole or loop.engine.solver is not None or inter.hybrid["pair"]
+                                or any(inter.modified(u, "tail") for u in uses)):
         fix.full_energy = True
         loop.warn(f"{what} takes energies of the whole system (full_energy), since there is a kspace_style, or the pair style is a "
-                  "hybrid, has a tail or is none")
+                  "hybrid, has a tail, is none or no sum over pairs of atoms")
     if fix.full_energy:
         _check_full(fix, loop, gas)
     if molecule is None:
@@ -160,7 +161,7 @@ class Reservoir:
 
     def __init__(self, fix, loop):
         self.fix, self.loop, self.system, self.box = fix, loop, loop.system, loop.system.box
-        self.energies = Energies.of_loop(loop, fix.full_energy or not fix.as_lammps, fix.overlap, fix.what)
+        self.energies = Energies.of_loop(loop, fix.full_energy or not fix.as_lammps, fix.overlap, fix.what, not fix.whole)
         self.energies.see(self.box)
         known = self.energies
         self.edges = known.edges if known.aligned and not known.closed else None
@@ -170,7 +171,6 @@ class Reservoir:
         self.tilted = fix.region is None and known.tilted
         self.own: dict[int, float] = {}        # energies of molecules by themselves
         self.tail = Tail(self, fix)
-        self.waves = Waves(loop, solver_of(fix, loop), self.atoms)
         m = fix.molecule
         if m is None:
             self.types, self.charges = np.array([fix.kind]), np.array([fix.charge or 0.0])
@@ -180,6 +180,7 @@ class Reservoir:
             com = m.com if m.com is not None else (weights[:, None] * m.x).sum(axis=0) / weights.sum()
             self.template, self.types = m.x - com, np.asarray(m.type, np.int64)
             self.charges = np.zeros(m.natoms) if m.q is None else np.asarray(m.q, float)
+        self.rest = Whole(self) if fix.whole else Waves(self)      # of the energy: what is no sum over pairs
 
     def three(self) -> list[float]:
         uniform = self.fix.random.uniform
@@ -238,11 +239,11 @@ class Reservoir:
         fix = self.fix
         if fix.molecule is None:
             at = self.wrapped(place[None])
-            energy = self.with_others(at, self.types, self.charges) + self.waves.of_insertion(at, self.types, self.charges)
+            energy = self.with_others(at, self.types, self.charges) + self.rest.of_insertion(at)
             return energy + self.alone_atom(fix.kind, float(self.charges[0])) + self.tail.of_insertion(self.types)
-        at, _ = self.molecule_at(place)
+        at, matrix = self.molecule_at(place)
         inside = self.wrapped(at)
-        energy = self.with_others(inside, self.types, self.charges) + self.waves.of_insertion(inside, self.types, self.charges)
+        energy = self.with_others(inside, self.types, self.charges) + self.rest.of_insertion(inside, matrix)
         if fix.full_energy:
             energy += self.template_energy(at) - fix.intra_energy + self.tail.of_insertion(self.types)
         return energy
@@ -258,9 +259,17 @@ class Reservoir:
         return System(box=self.box, x=x, type=types, id=np.arange(1, len(types) + 1), units=system.units, dimension=3, mass=system.mass,
                       counts=dict(system.counts), **own)
 
+    def particle(self, at, matrix=None):
+        """What is inserted, as a system, at positions (m, 3) in the box, turned by a matrix."""
+        if self.fix.molecule is None:
+            return self.new_atoms(self.types, self.charges, np.array(at))
+        one = self.fix.molecule.copies(np.array(at)[None], self.system, 0, [np.eye(3) if matrix is None else matrix])
+        one.mass = self.system.mass
+        return one
+
     def alone_atom(self, kind: int, charge: float) -> float:
         """Energy of an atom with its own images, and of its charge by itself, as far as they count."""
-        if not self.energies.exact:
+        if not self.energies.exact or self.fix.whole:
             return 0.0
         if not self.energies.narrow:
             return sum(float(t.factor[0] * own_energy.alone(charge, t.numbers[kind])) for t in self.energies.own_terms)
@@ -276,14 +285,16 @@ class Reservoir:
         return self.own["template"]
 
     def alone(self, atoms, key=None) -> float:
-        """Energy of some atoms by themselves, bonds and images included; remembered by `key`."""
+        """Energy of some atoms by themselves, bonds and images included; remembered by `key`. None that `rest` has."""
+        if self.fix.whole:
+            return 0.0
         if key is not None and key in self.own:
             return self.own[key]
         s = self.loop.settings
         rules = [rule for rule in s.exclude if rule[0] == "type"]
         if any(rule[0] == "molecule/intra" for rule in s.exclude):
             rules.append(("molecule/intra", np.ones(atoms.n, bool)))
-        solver = copy.copy(self.loop.engine.solver)     # pairs are as it has them; what it adds, `waves` knows
+        solver = copy.copy(self.loop.engine.solver)     # pairs are as it has them; what it adds, `rest` knows
         if solver is not None:
             solver.modify = {**solver.modify, "compute": 0}
         engine = Engine(atoms, self.loop.interactions, Settings(skin=s.skin, exclude=rules), solver=solver)

@@ -33,27 +33,18 @@ class Energies:
         full_energy, only images that its list would know: those within cutoff and skin of the box.
     overlap : float
         Positions nearer to an atom are refused.
+    pairs : bool
+        Whether pairs have energies, or positions that are too near are all that is looked for.
     """
 
-    def __init__(self, loop, exact: bool, overlap: float, what: str):
+    def __init__(self, loop, exact: bool, overlap: float, what: str, pairs: bool = True):
         system, engine, units = loop.system, loop.engine, loop.units
         n = system.counts["ntypes"]
         terms = engine.pair_terms if exact else [t for t in loop.interactions.pair_terms(n, units) if t.style.parts]
+        terms = terms if pairs else []
         if any(np.ndim(t.use.factor) > 0 for t in terms):
             raise InputError(f"{what}: a pair style whose factor differs from atom to atom has no energy")
-        if any(t.molecules == "same" for t in terms):
-            raise InputError(f"{what}: pair_style hybrid/molecular is not supported")
-        for t in terms:
-            if t.sites is not None:
-                raise InputError(f"{what}: pair style {t.style.name} has charges on sites of molecules, which trials do not have")
-            if t.style.oriented:
-                raise InputError(f"{what}: pair style {t.style.name} depends on the orientation of atoms: use full_energy")
-            if t.style.dielectric:
-                raise InputError(f"{what}: pair style {t.style.name} depends on dielectric constants of atoms: use full_energy")
-        if engine.many_terms:
-            raise InputError(f"{what}: pair style {engine.many_terms[0].style.name} is a many-body potential, in which "
-                             "an atom has no energy of pairs")
-        self.own_terms = [t for t in engine.terms if isinstance(t, OwnTerm)] if exact else []
+        self.own_terms = [t for t in engine.terms if isinstance(t, OwnTerm)] if exact and pairs else []
         self.module = trial.kernel(tuple(t.style for t in terms))
         one = np.ones(5)
         self.tables = tuple((t.tables.rows, t.tables.constants, t.tables.arrays, np.array([w[0] for w in t.weights(one, one)]))
@@ -68,12 +59,12 @@ class Energies:
         self.seen = b""
 
     @classmethod
-    def of_loop(cls, loop, exact: bool, overlap: float, what: str) -> Energies:
+    def of_loop(cls, loop, exact: bool, overlap: float, what: str, pairs: bool = True) -> Energies:
         """Those of a loop, made anew only where its coefficients are others."""
-        known, terms = _known.setdefault(loop, {}), loop.engine.pair_terms
-        if known.get((exact, overlap), (None, None))[0] is not terms:
-            known[exact, overlap] = terms, cls(loop, exact, overlap, what)
-        return known[exact, overlap][1]
+        known, terms, key = _known.setdefault(loop, {}), loop.engine.pair_terms, (exact, overlap, pairs)
+        if known.get(key, (None, None))[0] is not terms:
+            known[key] = terms, cls(loop, exact, overlap, what, pairs)
+        return known[key][1]
 
     def see(self, box) -> None:
         """Take the present box."""

@@ -6,32 +6,18 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from asemd.errors import InputError
-from asemd.fix.trial_atoms import TrialAtoms
 from asemd.kernels.hooks import bound
 from asemd.kernels.state import aligned
-from asemd.kspace.term import KSpaceTerm
 
 
-def solver_of(fix, loop):
-    """The solver of a loop if the gas of a fix feels it, else None.
-
-    Raises
-    ------
-    InputError
-        Its energy needs more of an atom than place, charge and type.
-    """
+def felt(fix, loop) -> bool:
+    """Whether the gas of a fix feels the long-range solver of a loop."""
     solver, system, molecule = loop.engine.solver, loop.system, fix.molecule
     if solver is None:
-        return None
+        return False
     charged = (fix.charge or molecule is not None and molecule.q is not None and np.any(molecule.q)
-               or system.q is not None and system.q[loop.groups[fix.group]].any())
-    if not (charged and solver.coulomb) and getattr(solver, "dispersion", None) is None:
-        return None
-    if not all(t.of_places for t in loop.engine.terms if isinstance(t, KSpaceTerm)):
-        raise InputError(f"{fix.what}: energies of trials do not have the part of kspace_style {solver.style}, which the gas feels: use "
-                         "one of charges alone, such as pppm or ewald")
-    return solver
+               or system.q is not None and system.q[loop.groups[fix.group]].any() or "mu" in system.extra)
+    return bool(charged and solver.coulomb) or getattr(solver, "dispersion", None) is not None
 
 
 class Waves:
@@ -39,17 +25,16 @@ class Waves:
 
     Parameters
     ----------
-    loop : asemd.loop.Loop
-    solver : KSpace or None
-        Which keeps its parameters; without one all changes are 0.
-    atoms : TrialAtoms
+    reservoir : asemd.fix.reservoir.Reservoir
+        The solver keeps its parameters; without one that the gas feels all changes are 0.
     """
 
-    def __init__(self, loop, solver, atoms: TrialAtoms):
-        self.on, self.atoms = solver is not None, atoms
-        if solver is None:
+    def __init__(self, reservoir):
+        self.reservoir, self.atoms, loop = reservoir, reservoir.atoms, reservoir.loop
+        self.on = felt(reservoir.fix, loop)
+        if not self.on:
             return
-        self.solver = copy.copy(solver)
+        self.solver = copy.copy(loop.engine.solver)
         e = self.engine = SimpleNamespace(**vars(loop.engine))       # with other atoms and no terms but those of the solver
         e.terms = self.solver.terms(e)
         for k, t in enumerate(e.terms):
@@ -98,9 +83,10 @@ class Waves:
         x[rows] = at
         return self._change(x, types, q)
 
-    def of_insertion(self, at, types, q) -> float:
-        """Change with more atoms, at positions (m, 3)."""
-        return self._change(*(np.concatenate(both) for both in zip(self._without(), (at, types, q)))) if self.on else 0.0
+    def of_insertion(self, at, matrix=None) -> float:
+        """Change with one more particle, at positions (m, 3); `matrix`, by which it is turned, tells nothing more."""
+        r = self.reservoir
+        return self._change(*(np.concatenate(both) for both in zip(self._without(), (at, r.types, r.charges)))) if self.on else 0.0
 
     def of_deletion(self, rows) -> float:
         """What a deletion gains: the negative change."""
@@ -112,4 +98,4 @@ class Waves:
             self.accepted = self.trial
 
 
-__all__ = ["Waves", "solver_of"]
+__all__ = ["Waves", "felt"]
