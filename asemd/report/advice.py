@@ -43,7 +43,7 @@ def objections(point: Point, script: Point, force: float = FORCE) -> list[str]:
     out = []
     if math.isfinite(script.relative_fluctuation) and not math.isfinite(point.relative_fluctuation):
         out.append("its run was cut short by the budget")
-    if point.force_error > max(force, 1.05 * _finite(script.force_error)):
+    if point.force_error > max(force, 1.05 * _finite(script.force_error), 1.05 * point.given_error):
         out.append(f"force error {point.force_error:.2g}")
     if point.dangerous > script.dangerous:
         out.append(f"{point.dangerous} dangerous list builds")
@@ -75,7 +75,7 @@ def errors(point: Point, script: Point) -> tuple[float, ...]:
 
     What was not measured counts as infinitely wrong.
     """
-    out = [max(_known(point.force_error), FORCE)]
+    out = [FORCE if point.force_error <= 1.05 * point.given_error else max(_known(point.force_error), FORCE)]
     for name, least in (("relative_fluctuation", 0.0), ("drift", DRIFT), ("temperature_offset", 0.0)):
         same = name in point.ties or point is script
         value = getattr(script if same else point, name)

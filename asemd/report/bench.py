@@ -66,6 +66,7 @@ class Bench:
         nve.prepare(self.shifted)
         self.frames = [scene.system.x.copy()]
         self.references: dict[str, Reference] = {}
+        self.given: dict[int, float] = {}   # relative force errors of the script's settings, by reference
         self.shares: list[float] = []       # processor time by wall time of runs with one thread
         self.busy = False                   # other work on the machine: processor time counts
         self.forced = self._forced()
@@ -237,8 +238,21 @@ class Bench:
             squares[0] += float(((found.forces - force) ** 2).sum())
             squares[1] += float((force * force).sum())
         point.energy_error, point.pressure_error = max(energies), max(pressures)
+        if any(not self.knobs[name].model and self.knobs[name].reference(self.scene) is not None for name in settings):
+            point.given_error = self._given_error(reference)
         if math.isnan(point.force_error) and squares[1] > 0.0:
             point.force_error = math.sqrt(squares[0] / squares[1])
+
+
+    def _given_error(self, reference: Reference) -> float:
+        """What the script's settings miss of better forces, relative; at the first frame."""
+        if id(reference) not in self.given:
+            scene = self.trial({}, "", shifted=False)
+            engine, exact = Engine(scene.system, scene.interactions, scene.settings()), reference.at(self.frames[0]).forces
+            engine.move(self.frames[0])
+            d = engine.collect().forces - exact
+            self.given[id(reference)] = math.sqrt(float((d * d).sum()) / max(float((exact * exact).sum()), 1e-300))
+        return self.given[id(reference)]
 
 
 def virial_pressure(system, result) -> float:

@@ -48,6 +48,8 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 from asemd.errors import InputError, InputWarning
+from asemd.kspace import KSpace
+from asemd.registry import class_of
 from asemd.scene import Scene
 
 
@@ -178,7 +180,8 @@ def all_knobs(scene: Scene) -> list[Knob]:
 def owners(scene: Scene) -> list:
     """What may bring knobs: styles in use and fixes, long-range solvers among them."""
     styles = [use.style for uses in scene.interactions.uses.values() for use in uses]
-    return [*styles, *scene.fixes.values(), *filter(None, [getattr(scene, "kspace", None)])]
+    solver = scene.interactions.kspace.split()[0]
+    return [*styles, *scene.fixes.values(), *([] if solver == "none" else [class_of("kspace", solver, KSpace)])]
 
 
 def adopt(cls: type) -> Knob:

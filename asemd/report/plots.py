@@ -92,8 +92,14 @@ def pictures(report: Report) -> list[Picture]:
             noise = advice.SIGMA * math.sqrt(2.0) * float(np.median([e for e in found if math.isfinite(e)] or [0.0]))
             tie = (max(value - noise, LEAST), value + noise) if noise > 0.0 else None
         out.append(Picture(name, title, time_label(report), ylabel.format(drift=drift_unit(report.units)), lines, tie,
-                           None if own else _spot(report.script, metric), None if own else _spot(report.best, metric)))
+                           None if own else _spot(report.script, metric, report), None if own else _spot(report.best, metric, report)))
     return out
+
+
+def _error(p: Point, metric: str, report: Report) -> float:
+    """An error of a point. Of forces it holds what the script's settings miss of better ones, so that all points can be compared."""
+    missed = max((q.given_error for q in report.points), default=0.0) if metric == "force_error" and p.given_error == 0.0 else 0.0
+    return math.hypot(getattr(p, metric), missed)
 
 
 def _axis(metric: str) -> str:
@@ -106,10 +112,10 @@ def time_label(report: Report) -> str:
     return f"{'processor' if report.busy else 'wall'} time of {span_word(report.units, '1 ns')} / s"
 
 
-def _spot(p: Point | None, metric: str) -> tuple[float, float] | None:
+def _spot(p: Point | None, metric: str, report: Report) -> tuple[float, float] | None:
     if p is None or p.failed or not math.isfinite(getattr(p, metric)):
         return None
-    return p.seconds_per_span, max(abs(getattr(p, metric)), LEAST)
+    return p.seconds_per_span, max(_error(p, metric, report), LEAST)
 
 
 def _line(curve: Curve, metric: str, report: Report) -> Line | None:
@@ -124,7 +130,7 @@ def _line(curve: Curve, metric: str, report: Report) -> Line | None:
     for p in points:
         scale = p.seconds_per_span / p.seconds_per_step
         line.x.append(p.seconds_per_span)
-        line.y.append(max(abs(getattr(p, metric)), LEAST))
+        line.y.append(max(_error(p, metric, report), LEAST))
         line.low.append(p.quartiles[0] * scale)
         line.high.append(p.quartiles[1] * scale)
         line.noise.append(getattr(p, advice.NOISE.get(metric, ""), 0.0))

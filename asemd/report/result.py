@@ -43,6 +43,8 @@ class Point:
     force_error : float
         Root mean square of the difference to the reference forces, divided by that of the reference forces; at places of the run, with the
         lists of the run.
+    given_error : float
+        The same of the script's settings, where the reference is better than these.
     energy_error, pressure_error : float
         Largest difference to the reference: energy per atom, pressure, in units of the scene; nan without a periodic box.
     drift, drift_error, fluctuation, fluctuation_error, relative_fluctuation, relative_fluctuation_error
@@ -86,6 +88,7 @@ class Point:
     run_seconds: float = 0.0
     fixes: str = "nve"
     force_error: float = math.nan
+    given_error: float = 0.0
     energy_error: float = math.nan
     pressure_error: float = math.nan
     drift: float = math.nan
