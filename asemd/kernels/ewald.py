@@ -13,6 +13,7 @@ from functools import cache
 import numpy as np
 
 from asemd.kernels.generate import Builder
+from asemd.kernels.matrix import invert
 from asemd.kernels.threads import barrier
 
 ENERGY = PER_ATOM = False
@@ -57,7 +58,11 @@ def choose(vectors, given, g, q2, natoms, accuracy, numbers, most):
         most[0, 1] = max(1, int(abs(xy) * u + length[1] * v))
         most[0, 2] = max(1, int(abs(xz) * u + abs(yz) * v + length[2] * w))
     top = max(most[0, 0], most[0, 1], most[0, 2])
-    turn = 2.0 * math.pi * np.linalg.inv(vectors)
+    turn = np.empty((3, 3))
+    invert(vectors, turn)
+    for a in range(3):
+        for d in range(3):
+            turn[a, d] *= 2.0 * math.pi
     m = 0
     for n0 in range(top + 1):
         for n1 in range(-top, top + 1):
@@ -264,11 +269,11 @@ def is_same(vectors, stretch, held):
 
 
 def stretched(vectors, stretch, out, inverse):
-    """The box with its third vector times `stretch`, or if that is negative with the others times minus that; and its inverse."""
+    """The box with its third vector times `stretch`, or if that is negative with the others times minus that; its inverse and volume."""
     for a in range(3):
         for d in range(3):
             out[a, d] = vectors[a, d] * (max(stretch, 1.0) if a == 2 else max(-stretch, 1.0))
-    inverse[:] = np.linalg.inv(out)
+    return abs(invert(out, inverse))
 
 
 def renew(box, stretch, given, g, strength, natoms, accuracy, room, most, waves, held, inverse, top):
@@ -328,6 +333,7 @@ def ewald(meeting, tid, x, f, q, lo, hi, box, origin, room, given, most, all_wav
 def chooser():
     """`choose`, compiled."""
     b = Builder("waves of an Ewald sum")
+    b.function(invert)
     for f in (error, edges, choose):
         b.function(f, fast=True)
     return b.build().choose
@@ -341,6 +347,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
+    b.function(invert)
     for f in (error, edges, choose, weigh, phases, first_two, structure, fields, shares, is_same, slab, wire):
         b.function(f, fast=True)
     b.function(stretched)

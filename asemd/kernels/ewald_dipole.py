@@ -11,6 +11,7 @@ import numpy as np
 
 from asemd.kernels.ewald import choose, edges, first_two, is_same, phases, renew, stretched, weigh
 from asemd.kernels.generate import Builder
+from asemd.kernels.matrix import invert
 from asemd.kernels.threads import barrier
 
 ENERGY = PER_ATOM = False
@@ -194,6 +195,7 @@ def ewald_dipole(meeting, tid, x, f, q, lo, hi, box, origin, mu, row, torque, ro
 def chooser():
     """`choose` with the estimate for dipoles, compiled."""
     b = Builder("waves of an Ewald sum of dipoles")
+    b.function(invert)
     for f in (error, edges, choose):
         b.function(f, fast=True)
     return b.build().choose
@@ -207,6 +209,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
+    b.function(invert)
     for f in (error, size, edges, choose, weigh, phases, first_two, polarisation, dipole_fields, is_same, dipole_slab):
         b.function(f, fast=True)
     b.function(stretched)

@@ -8,6 +8,7 @@ import numpy as np
 
 from asemd.kernels.ewald import BLOCK, edges, fields, first_two, is_same, phases, shares, slab, stretched, structure, weigh
 from asemd.kernels.generate import Builder
+from asemd.kernels.matrix import invert
 from asemd.kernels.threads import barrier
 
 ENERGY = PER_ATOM = False
@@ -35,7 +36,11 @@ def choose(vectors, g, q2, b2, m2, natoms, accuracy, numbers):
             n += 1
         top = max(top, n)
         reach = max(reach, 1.00001 * (2.0 * math.pi * n / length[d]) ** 2)
-    turn = 2.0 * math.pi * np.linalg.inv(vectors)
+    turn = np.empty((3, 3))
+    invert(vectors, turn)
+    for a in range(3):
+        for d in range(3):
+            turn[a, d] *= 2.0 * math.pi
     m = 0
     for n0 in range(top + 1):
         for n1 in range(-top, top + 1):
@@ -140,6 +145,7 @@ def sums_over_waves(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, 
 def chooser():
     """`choose`, compiled."""
     b = Builder("waves of an Ewald sum with dispersion")
+    b.function(invert)
     for f in (error, edges, choose):
         b.function(f, fast=True)
     return b.build().choose
@@ -153,6 +159,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
+    b.function(invert)
     for f in (error, edges, choose, weigh, weigh_dispersion, phases, first_two, structure, fields, shares, is_same, slab):
         b.function(f, fast=True)
     b.function(stretched)

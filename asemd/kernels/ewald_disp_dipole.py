@@ -13,6 +13,7 @@ import numpy as np
 from asemd.kernels.ewald import BLOCK, edges, first_two, is_same, phases, stretched, weigh
 from asemd.kernels.ewald_disp import choose, error
 from asemd.kernels.generate import Builder
+from asemd.kernels.matrix import invert
 from asemd.kernels.threads import barrier
 
 ENERGY = PER_ATOM = False
@@ -197,6 +198,7 @@ def kernel(level: int):
     b.constant("BLOCK", BLOCK)
     b.constant("ENERGY", level > 0)
     b.constant("PER_ATOM", level > 1)
+    b.function(invert)
     for f in (error, edges, choose, weigh, phases, first_two, is_same, take, both, act, take_slab_off):
         b.function(f, fast=True)
     b.function(stretched)

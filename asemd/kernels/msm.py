@@ -11,7 +11,9 @@ from functools import cache
 import numpy as np
 
 from asemd.kernels.callback import call_back
+from asemd.kernels.ewald import stretched
 from asemd.kernels.generate import Builder
+from asemd.kernels.matrix import invert
 from asemd.kernels.threads import barrier
 
 ORDER = 10
@@ -104,8 +106,7 @@ def msm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, periodic, pieces, w
     own, scale, qsqsum, least = constants[0], constants[1], constants[3], constants[6]
     first, last = density.shape[0] * tid // meeting.nth, density.shape[0] * (tid + 1) // meeting.nth
     if tid == 0:
-        held[:] = box
-        inverse[:] = np.linalg.inv(held)
+        stretched(box, 1.0, held, inverse)
     barrier(meeting)
     spread(x, q, least, lo, hi, origin, inverse, numbers, periodic, pieces, wrap, base, weight, brick[tid])
     barrier(meeting)
@@ -137,5 +138,7 @@ def kernel(level: int, order: int):
         b.constant(name, value)
     for f in (weights, spread, gather, gather_shares):
         b.function(f, fast=True)
+    b.function(invert)
+    b.function(stretched)
     b.function(msm)
     return b.build().msm

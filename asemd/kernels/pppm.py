@@ -19,6 +19,7 @@ from asemd.kernels.callback import call_back
 from asemd.kernels.ewald import is_same, slab, stretched, wire
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import FOUR_PI, denominator, folded, influence, make_green, opposite, sinc_power
+from asemd.kernels.matrix import invert
 from asemd.kernels.stencil import SUMS, WIDE, collect, deposit, weigh
 from asemd.kernels.threads import barrier
 
@@ -228,8 +229,7 @@ def pppm(meeting, tid, x, f, q, lo, hi, box, origin, numbers, pieces, gfb, wrap,
     barrier(meeting)
     if not same:
         if tid == 0:
-            stretched(box, stretch, held[:3], inverse)
-            held[3, 0] = abs(np.linalg.det(held[:3]))
+            held[3, 0] = stretched(box, stretch, held[:3], inverse)
             if AD:
                 for d in range(3):
                     lengths[d] = held[d, d]
@@ -323,6 +323,7 @@ def kernel(level: int, order: int, ad: bool, staggered: bool = False):
     for f in (sinc_power, influence, folded, opposite, make_green, spread, add_bricks, multiply, shape, mean_shape, energies,
               multiply_shares, interleave, gather, gather_shares, is_same, slab, wire, *(pppm_ad.FUNCTIONS if ad else ())):
         b.function(f, fast=True)
+    b.function(invert)
     b.function(stretched)
     b.function(pppm)
     return b.build().pppm

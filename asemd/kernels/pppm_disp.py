@@ -14,6 +14,7 @@ from asemd.kernels.callback import call_back
 from asemd.kernels.ewald import is_same, slab, stretched
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import denominator, folded, opposite
+from asemd.kernels.matrix import invert
 from asemd.kernels.pppm import add_bricks, gather, gather_shares, interleave, multiply, spread
 from asemd.kernels.pppm_ad import gather_ad, own_force, power
 from asemd.kernels.threads import barrier
@@ -124,8 +125,7 @@ def mesh_forces(meeting, tid, x, f, q, lo, hi, box, origin, types, factors, sign
     barrier(meeting)
     if not same:
         if tid == 0:
-            stretched(box, stretch, held[:3], inverse)
-            held[3, 0] = abs(np.linalg.det(held[:3]))
+            held[3, 0] = stretched(box, stretch, held[:3], inverse)
             for d in range(3):
                 lengths[d] = held[d, d]
         barrier(meeting)
@@ -268,6 +268,7 @@ def kernel(level: int, order: int, ad: bool):
               spread, add_bricks, multiply, interleave, gather, gather_shares, is_same, slab,
               *((pppm_ad.overlaps, own_force, gather_ad) if ad else ())):
         b.function(f, fast=True)
+    b.function(invert)
     b.function(stretched)
     b.function(mesh_forces)
     return b.build().mesh_forces
