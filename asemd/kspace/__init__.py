@@ -44,9 +44,9 @@ class KSpace(ABC):
     ----------
     g_ewald : float
         Splitting parameter, 1/distance, after `prepare`.
-    n, qsum, qsqsum, q2, prd, volume
-        After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths and volume of the
-        box, its third vector stretched for slabs, the others for wires.
+    n, qsum, qsqsum, q2, prd, upright, volume
+        After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths, vectors (in LAMMPS's
+        frame) and volume of the box, its third vector stretched for slabs, the others for wires.
     skin : float
         Of the neighbour list.
     """
@@ -168,11 +168,9 @@ class KSpace(ABC):
         self.cutoff, self.scale = float(cutoff), interactions.coulomb_constant(units) / interactions.dielectric
         self.count(system)
         self.factor = interactions.kspace_factor
-        a, b, c = system.box.cell
-        lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
-        lengths[2] = abs(np.linalg.det(system.box.cell)) / (lengths[0] * lengths[1])
-        self.inner = lengths.copy()                   # without the empty volume of slabs and wires
-        self.prd = lengths * self.stretch
+        upright = system.box.to_lammps()[0].cell
+        self.inner = np.diag(upright).copy()          # without the empty volume of slabs and wires
+        self.prd, self.upright = self.inner * self.stretch, upright * self.stretch[:, None]
         self.volume = float(self.prd.prod())
         two_charges = interactions.coulomb_constant(units) * units.qelectron**2 / units.angstrom**2
         self.two_charges = two_charges
@@ -184,6 +182,10 @@ class KSpace(ABC):
             self.choose(system)
         except ArithmeticError:
             raise self.impossible(self.q2) from None
+
+    def tilted(self, mesh) -> np.ndarray:
+        """Mesh points (3,) along the vectors of a tilted box, from those along x, y and z; not rounded to whole numbers."""
+        return (np.abs(self.upright) * (np.asarray(mesh) / self.prd)).sum(axis=1)       # a product of matrices may have other last bits
 
     def count(self, system) -> None:
         """Take the sums over atoms that there are now, as LAMMPS does within a run; parameters stay."""

@@ -102,11 +102,10 @@ class MSM(KSpace):
         taylor = [math.prod(-0.5 - m for m in range(k)) / math.factorial(k) for k in range(degree + 1)]
         self.smooth = [sum(taylor[k] * math.comb(k, n) * (-1.0) ** (k - n) for k in range(n, degree + 1)) for n in range(6)]
         self.periodic = np.array(system.box.periodic, bool)
-        upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell
         given, adjust = self.modify["mesh"], self.modify["cutoff/adjust"]
         mesh = np.array(given if any(given) else self.cheapest() if adjust else self.fine_enough(), float)
         if self._tilted(system) and not any(given):
-            mesh = (np.abs(upright) @ (mesh / self.prd)).astype(int)
+            mesh = self.tilted(mesh).astype(int)
         self.mesh = tuple(2 ** round(math.log2(max(n, 1))) for n in mesh)
         if any(given) and self.mesh != tuple(given):
             warnings.warn("Number of MSM mesh points changed to be a multiple of 2", InputWarning, stacklevel=2)
@@ -121,7 +120,7 @@ class MSM(KSpace):
             warnings.warn("MSM mesh too small, increasing to 2 points in each direction", InputWarning, stacklevel=2)
             self.mesh = (2, 2, 2)
         if self._tilted(system):
-            self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
+            self.spacing = 1.0 / np.linalg.solve(self.upright, np.array(self.mesh, float))
 
     def cheapest(self) -> list[int]:
         """The grid for which the estimated work is least, whatever the cutoff then is."""
