@@ -88,7 +88,11 @@ class PairTerm:
             cut = self.style.cutoffs(c, self.use.settings)[0]
             pairs = float(count[i]) * float(count[j]) * (1.0 if i == j else 2.0)
             if cut > 0.0 and pairs and (types is None or i in types or j in types):
-                e, p = self.style.tail(c, cut)
+                try:
+                    e, p = self.style.tail(c, cut)
+                except ZeroDivisionError:
+                    raise InputError(f"pair_modify tail yes: the energy of pair style {self.style.name} beyond the cutoff of types {i} {j} "
+                                     "is infinite, for an exponent is 3") from None
                 energy, pressure = energy + pairs * e, pressure + pairs * p
         volume = system.box.volume
         return energy / volume, pressure / volume**2 * units.nktv2p

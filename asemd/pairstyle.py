@@ -361,14 +361,7 @@ def power_tail(terms, cut: float) -> tuple[float, float]:
     ----------
     terms : sequence of (float, float)
         Factor c and exponent n > 3 of each c / r^n.
-
-    Raises
-    ------
-    InputError
-        An exponent is 3: the integrals are infinite.
     """
-    if any(n == 3.0 for _, n in terms):
-        raise InputError("pair_modify tail yes: the energy beyond the cutoff of an exponent of 3 is infinite, use tail no")
     energy = [2.0 * math.pi * c / ((n - 3.0) * cut ** (n - 3.0)) for c, n in terms]
     return sum(energy), sum(n * e / 3.0 for e, (_, n) in zip(energy, terms))
 

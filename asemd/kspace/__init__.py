@@ -58,6 +58,7 @@ class KSpace(ABC):
     takes_wire = False
     nozforce = 2.0              # what kernels are told of ``slab nozforce``: no force along z
     ew2d = 0.0                  # and of ``slab ew2d``: no correction of a slab, as for solvers of electrodes, which make their own
+    adds = True                 # it has energy and forces
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
@@ -261,6 +262,10 @@ class KSpace(ABC):
     def terms(self, engine) -> list:
         """The `asemd.term.Term` of this solver, or several."""
 
+    def serves(self, use) -> bool:
+        """Whether that pair style may stand beside the solver."""
+        return self.flag in use.style.works_with(use.settings)
+
     def take(self, uses, interactions, system) -> float:
         """Look at the pair styles that leave their long-range part to this solver; returns the cutoff of that part.
 
@@ -309,10 +314,10 @@ def solve(system, interactions, units, skin: float, kept: KSpace | None = None) 
         return None
     name, *words = interactions.kspace.split()
     solver = class_of("kspace", name, KSpace).from_words(words, interactions.kspace_modify)
-    mine = [use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings)]
+    mine = [use for use in interactions.uses["pair"] if solver.serves(use)]
     if not mine:
         raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as {solver.partner}")
-    twice = [use.label for use in interactions.uses["pair"] if CUT.search(use.style.name)]
+    twice = [use.label for use in interactions.uses["pair"] if solver.adds and CUT.search(use.style.name)]
     if twice:
         long = "coul/msm" if solver.flag == "msm" else "coul/long"
         warnings.warn(f"pair style {twice[0]} has all of the Coulomb energy of its pairs, of which kspace_style {name} has a part too: "
