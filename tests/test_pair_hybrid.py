@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from both import asemd, lines_of
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
 
@@ -188,3 +188,33 @@ def test_molecules_are_needed():
     with pytest.raises(InputError, match="molecule numbers"):
         asemd("region b block 0 8 0 8 0 8\ncreate_box 1 b\nmass 1 1\npair_style hybrid/molecular lj/cut 3 lj/cut 3\n"
               "pair_coeff 1 1 lj/cut 1 1 1\npair_coeff 1 1 lj/cut 2 1 1\nrun 0")
+
+
+SUB_STYLES = """
+variable zero equal 0
+variable atoms atom 0.1*x
+variable step equal step
+compute p all pair lj/cut
+compute q all pair coul/cut epair
+compute r all pair lj/cut ecoul
+variable p equal c_p
+variable q equal c_q
+variable r equal c_r
+thermo_style custom c_p c_q c_r
+run 1
+"""
+
+
+def test_energies_of_sub_styles_are_those_without_their_factors():
+    factors = [("0.5", "2"), ("0", "-1"), ("v_zero", "v_step"), ("v_atoms", "1"), ("1", "v_atoms")]
+    scripts = [chain() + SUB_STYLES.replace("compute p", f"pair_style hybrid/scaled {a} lj/cut 6 {b} coul/cut 5\n{COEFF}compute p")
+               for a, b in factors]
+    theirs = ask("answer = []\nfor s in given['scripts']:\n    lmp = ran(s)\n    answer.append([lmp.extract_variable(v) for v in 'pqr'])\n"
+                 "    lmp.close()", scripts=scripts)
+    for script, want in zip(scripts, theirs, strict=True):
+        assert [ran(script).extract_variable(v) for v in "pqr"] == pytest.approx(want, rel=1e-11)
+    both = chain() + SUB_STYLES.replace("pair lj/cut", "pair lj/cut/coul/cut").replace(
+        "compute p", "pair_style hybrid/scaled 0 lj/cut/coul/cut 6 1 coul/cut 5\npair_coeff * * lj/cut/coul/cut 0.1 2\n"
+                     "pair_coeff * * coul/cut\ncompute p")
+    with pytest.raises(InputError, match="there is epair only"):
+        ran(both)
