@@ -51,10 +51,10 @@ class PairTerm:
         """Whether there is no factor."""
         return not isinstance(self.use.scale, str) and self.use.scale == 1.0
 
-    def weights(self, lj: np.ndarray, coul: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The weights of kinds of pairs, (5,) each, as they are for this style."""
+    def weights(self, lj: np.ndarray, coul: np.ndarray, keep: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """The weights of kinds of pairs, (5,) each, as they are for this style; `keep (5,)`: the kinds in the list, if not by weights."""
         if self.style.all_or_nothing:
-            lj = coul = ((lj != 0.0) | (coul != 0.0)).astype(float)
+            lj = coul = ((lj != 0.0) | (coul != 0.0) if keep is None else keep).astype(float)
         out = []
         for name, weight in (("lj", lj), ("coul", coul)):
             weight = weight.copy()

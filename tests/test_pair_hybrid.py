@@ -218,3 +218,24 @@ def test_energies_of_sub_styles_are_those_without_their_factors():
                      "pair_coeff * * coul/cut\ncompute p")
     with pytest.raises(InputError, match="there is epair only"):
         ran(both)
+
+
+def test_special_pairs_of_zbl_beside_a_solver():
+    script = chain() + ("special_bonds lj/coul 0 0 0.5\npair_style hybrid/overlay zbl 3 4 coul/long 6\npair_coeff * * zbl 6 6\n"
+                        "pair_coeff * * coul/long\npair_modify table 0\nkspace_style ewald 1e-4\ncompute p all pair zbl\n"
+                        "compute g all group/group all\nvariable p equal c_p\nvariable g equal c_g\nthermo_style custom c_p c_g\nrun 1")
+    script = script.replace("pair_coeff * * zbl 6 6", "pair_coeff 1 1 zbl 6 6\npair_coeff 2 2 zbl 8 8")
+    theirs = ask("lmp = ran(given['lines'])\nanswer = [lmp.extract_variable(v) for v in 'pg'], list(lmp.gather_atoms('f', 1, 3))",
+                 lines=script)
+    lmp = ran(script)
+    assert [lmp.extract_variable(v) for v in "pg"] == pytest.approx(theirs[0], rel=1e-10)
+    assert list(lmp.gather_atoms("f", 1, 3)) == pytest.approx(theirs[1], rel=1e-9, abs=1e-9 * max(theirs[1]))
+
+
+def test_shifted_forces_of_special_pairs_with_a_factor():
+    script = chain() + ("special_bonds lj 0.3 0.0 0.5 coul 1 1 1\npair_style hybrid/scaled 0.5 lj/sf 6 2 coul/cut 5\n"
+                        "pair_coeff * * lj/sf 0.1 2.5\npair_coeff * * coul/cut\ncompute e all pe/atom pair\ncompute s all reduce sum c_e\n"
+                        "variable s equal c_s\nvariable e equal evdwl\nthermo_style custom evdwl c_s\nrun 1")
+    theirs = ask("lmp = ran(given['lines'])\nanswer = [lmp.extract_variable(v) for v in 'se']", lines=script)
+    lmp = ran(script, "-compat", "lammps")
+    assert [lmp.extract_variable(v) for v in "se"] == pytest.approx(theirs, rel=1e-11)

@@ -211,7 +211,7 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         if np.ndim(term.use.factor) > 0:
             raise InputError(f"pair style {term.label} has a factor for each atom, so that its pairs have no energy: leave it out")
         code = np.ascontiguousarray(pairs.kind, np.int32)
-        lj, coul = term.weights(rules.weight_lj, rules.weight_coul)
+        lj, coul = term.weights(rules.weight_lj, rules.weight_coul, rules.keep)
         f, e, bad, rows_of_tables = np.zeros((3, 2 * m)), np.zeros(2 * m), np.zeros(4), term.tables.rows
         if beyond and len(engine.interactions.uses["pair"]) == 1:
             rows_of_tables = rows_of_tables.copy()
