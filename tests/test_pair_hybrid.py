@@ -239,3 +239,39 @@ def test_shifted_forces_of_special_pairs_with_a_factor():
     theirs = ask("lmp = ran(given['lines'])\nanswer = [lmp.extract_variable(v) for v in 'se']", lines=script)
     lmp = ran(script, "-compat", "lammps")
     assert [lmp.extract_variable(v) for v in "se"] == pytest.approx(theirs, rel=1e-11)
+
+
+BONDED = """units real
+atom_style full
+region b block 0 12 0 12 0 12
+create_box 2 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4
+create_atoms 1 single 5 5 5
+create_atoms 2 single 6 5 5
+create_atoms 1 single 7.9 5.2 5.1
+create_atoms 2 single 8.3 6.0 5.2
+mass * 10
+set type 1 charge 0.4
+set type 2 charge -0.4
+bond_style harmonic
+bond_coeff 1 10 1
+special_bonds lj/coul 0 0 1
+create_bonds single/bond 1 1 2
+create_bonds single/bond 1 3 4
+variable r equal 0.4+0.1*step
+pair_style hybrid/scaled v_r {}
+pair_coeff * * lj/cut 0.1 2
+fix 1 all nve
+thermo_style custom step pe evdwl
+run 4
+"""
+
+
+def test_own_energies_and_hydrogen_bonds_follow_a_factor():
+    scripts = [BONDED.format(words).replace("fix 1", f"pair_coeff {coeff}\nfix 1") for words, coeff in (
+        ("coul/dsf 0.2 6 1.0 lj/cut 6", "* * coul/dsf"), ("coul/wolf 0.2 6 1.0 lj/cut 6", "* * coul/wolf"),
+        ("hbond/dreiding/lj 4 6 7 90 1.0 lj/cut 6", "1 1 hbond/dreiding/lj 2 i 4.0 2.75"))]
+    theirs = ask("answer = []\nfor s in given['scripts']:\n    lmp = ran(s)\n"
+                 "    answer.append([lmp.get_thermo('pe'), *lmp.gather_atoms('f', 1, 3)])\n    lmp.close()", scripts=scripts)
+    for script, want in zip(scripts, theirs, strict=True):
+        lmp = ran(script, "-compat", "lammps")
+        assert [lmp.get_thermo("pe"), *lmp.gather_atoms("f", 1, 3)] == pytest.approx(want, rel=1e-9)
