@@ -51,10 +51,10 @@ class PairTerm:
         """Whether there is no factor."""
         return not isinstance(self.use.scale, str) and self.use.scale == 1.0
 
-    def weights(self, lj: np.ndarray, coul: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The weights of kinds of pairs, (5,) each, as they are for this style."""
+    def weights(self, lj: np.ndarray, coul: np.ndarray, keep: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """The weights of kinds of pairs, (5,) each, as they are for this style; `keep (5,)`: the kinds in the list, if not by weights."""
         if self.style.all_or_nothing:
-            lj = coul = ((lj != 0.0) | (coul != 0.0)).astype(float)
+            lj = coul = ((lj != 0.0) | (coul != 0.0) if keep is None else keep).astype(float)
         out = []
         for name, weight in (("lj", lj), ("coul", coul)):
             weight = weight.copy()
@@ -88,7 +88,11 @@ class PairTerm:
             cut = self.style.cutoffs(c, self.use.settings)[0]
             pairs = float(count[i]) * float(count[j]) * (1.0 if i == j else 2.0)
             if cut > 0.0 and pairs and (types is None or i in types or j in types):
-                e, p = self.style.tail(c, cut)
+                try:
+                    e, p = self.style.tail(c, cut)
+                except ZeroDivisionError:
+                    raise InputError(f"pair_modify tail yes: the energy of pair style {self.style.name} beyond the cutoff of types {i} {j} "
+                                     "is infinite, for an exponent is 3") from None
                 energy, pressure = energy + pairs * e, pressure + pairs * p
         volume = system.box.volume
         return energy / volume, pressure / volume**2 * units.nktv2p

@@ -257,7 +257,7 @@ class PairListTerm(Term):
             found = (*engine.plain, engine.plain_shifts) if self.pairs == "all" else (*engine.special, engine.close_shifts)
             self.i, self.j, self.code, self.shifts = found
             rules = engine.exclusions
-            self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul)
+            self.lj, self.coul = self.owner.weights(rules.weight_lj, rules.weight_coul, rules.keep)
             if self.sized:
                 self.radii = np.zeros(engine.state.x.shape[1])
                 self.take_radii(engine)
@@ -296,7 +296,8 @@ class PairListTerm(Term):
             row = engine.state.row
             self.factor[row >= 0] = self.owner.use.factor[row[row >= 0]]
         elif self.owner is not None:
-            self.lj[:], self.coul[:] = self.owner.weights(engine.exclusions.weight_lj, engine.exclusions.weight_coul)
+            rules = engine.exclusions
+            self.lj[:], self.coul[:] = self.owner.weights(rules.weight_lj, rules.weight_coul, rules.keep)
 
     def arguments(self, engine, tid):
         s, m, nth = engine.state, len(self.i), engine.threads

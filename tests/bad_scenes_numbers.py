@@ -75,7 +75,7 @@ numbers("Coulomb table", f"{LONG.replace('long 5', 'long 5 1e150')}\npair_modify
 
 # ---- formulas without a value
 for style, coeff, words in [
-        ("mie/cut 5", "1 1 12 -1", "mie/cut, types 1 1;gamR = 12, gamA = -1;cut = 5"), ("mie/cut 5", "1 1 12 0", "no value;gamA = 0"),
+        ("mie/cut 5", "1 1 12 -1", "mie/cut, types 1 1;gamR = 12, gamA = -1;cut = 5"), ("mie/cut 5", "1 1 0 6", "no value;gamR = 0"),
         ("morse/soft 2 0.9 5", "1 1 1e300 1", "morse/soft;no value;r0 = 1e\\+300"),
         ("lj/charmmfsw/coul/charmmfsh 1e-320 5", "0.1 3", "lj/charmmfsw/coul/charmmfsh;too small")]:
     numbers(f"{style} {coeff}", f"pair_style {style}\npair_coeff * * {coeff}", words, "run 0")

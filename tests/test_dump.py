@@ -216,7 +216,7 @@ def test_speed(tmp_path):
     ("dump d all atom 0 F", "positive"), ("dump d all xyz 1 F.%", "per processor"), ("dump d all xyz 1 F.bin", "bin"),
     ("dump d all dcdd 1 F", "dump style"), ("dump d nope atom 1 F", "unknown group"), ("dump_modify a sort 7", "5 columns"),
     ("dump_modify a srot id", "did you mean sort"), ("dump_modify a scale maybe", "yes or no"),
-    ("dump_modify a every v_x", "undefined variable"), ("dump_modify a every 0", "positive"),
+    ("dump_modify a every 0", "positive"),
     ("dump_modify c format line %d", "1 formats for 2"), ('dump_modify a format line "%d %d %d %d %d"', "does not fit"),
     ("dump_modify c format float %d", "float"), ("dump_modify c format 9 %g", "2 columns"),
     ("dump_modify a format float %g", "only line and none"), ("dump_modify c format line %d,%s", "1 formats for 2"),

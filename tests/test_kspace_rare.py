@@ -38,6 +38,10 @@ CASES = {
     **{f"{style}, factors of 7, 11 and 13, {words}": on_mesh(style, f"mesh 7 11 13 gewald 0.4 diff {words}")
        for style in ("pppm", "pppm/cg", "pppm/stagger") for words in ("ik", "ad")},
     "pppm, factors of 7, 11 and 13, triclinic": on_mesh("pppm", "mesh 7 11 13 gewald 0.4", box=PRISM),
+    **{f"pppm, no tilt along z, {z}": case("kspace_style pppm 1e-4", box=f"prism 0 10 0 11 {z} 2 0 0")
+       for z in ("-2.2 10.2", "0 11.4", "-1.1 13.3")},
+    "msm, no tilt along z": case("kspace_style msm 1e-4", "kspace_modify pressure/scalar no", box="prism 0 10 0 11 -0.8 13.4 2 0 0",
+                                 pairs=["pair_style coul/msm 6", *CHARGED[1:]]),
     "pppm, factors of 7, 11 and 13, no gewald": on_mesh("pppm", "mesh 7 11 13"),
     **{f"{style}, mesh {mesh}, {words}": on_mesh(style, f"mesh {mesh} gewald 0.4 {words}")
        for style, mesh, words in (("pppm", "3 2 2", "order 7"), ("pppm", "1 2 9", "order 7 diff ad"), ("pppm", "1 1 1", "order 5"),

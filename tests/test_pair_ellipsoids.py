@@ -65,6 +65,8 @@ CASES = {
                   + "pair_coeff 1 3 1 0.5 0 0 0 0 0 0\npair_coeff 2 3 1 0.5 0 0 0 1 2 3"),
     "resquared, points": (ROUND, "pair_style resquared 4\n" + POINTS + "pair_modify shift yes"),
     "ylz": (LONG, "pair_style ylz 3.5\npair_coeff * * 1.0 1.0 4 3 0.1 2.9\npair_coeff 1 2 0.8 1.4 3 2.5 -0.2 3.1\nspecial_bonds lj 1 1 1"),
+    "ylz, zeta": (LONG, "pair_style ylz 3.5\npair_coeff * * 1.0 1.0 3.8 3 0.1 2.9\npair_coeff 1 2 0.8 1.4 0.4 2.5 -0.2 3.1\n"
+                        "pair_coeff 2 2 0.8 1.4 3.5 2.5 -0.2 3.1"),
 }
 
 
@@ -89,7 +91,7 @@ def test_like_lammps(theirs, name):
 
 @pytest.mark.part(4)
 @pytest.mark.parametrize("name", ["gayberne", "gayberne, depths", "gayberne, mu", "gayberne, all long", "resquared", "resquared, points",
-                                  "ylz"])
+                                  "ylz", "ylz, zeta"])
 def test_forces_and_torques_are_the_gradient(name):
     session = ours(script(name))
     engine, h, system = session.loop.engine, 1e-4, session.scene.system

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from both import asemd, lines_of
-from wheel import ask
+from wheel import ask, ran
 
 from asemd.errors import InputError
 
@@ -188,3 +188,90 @@ def test_molecules_are_needed():
     with pytest.raises(InputError, match="molecule numbers"):
         asemd("region b block 0 8 0 8 0 8\ncreate_box 1 b\nmass 1 1\npair_style hybrid/molecular lj/cut 3 lj/cut 3\n"
               "pair_coeff 1 1 lj/cut 1 1 1\npair_coeff 1 1 lj/cut 2 1 1\nrun 0")
+
+
+SUB_STYLES = """
+variable zero equal 0
+variable atoms atom 0.1*x
+variable step equal step
+compute p all pair lj/cut
+compute q all pair coul/cut epair
+compute r all pair lj/cut ecoul
+variable p equal c_p
+variable q equal c_q
+variable r equal c_r
+thermo_style custom c_p c_q c_r
+run 1
+"""
+
+
+def test_energies_of_sub_styles_are_those_without_their_factors():
+    factors = [("0.5", "2"), ("0", "-1"), ("v_zero", "v_step"), ("v_atoms", "1"), ("1", "v_atoms")]
+    scripts = [chain() + SUB_STYLES.replace("compute p", f"pair_style hybrid/scaled {a} lj/cut 6 {b} coul/cut 5\n{COEFF}compute p")
+               for a, b in factors]
+    theirs = ask("answer = []\nfor s in given['scripts']:\n    lmp = ran(s)\n    answer.append([lmp.extract_variable(v) for v in 'pqr'])\n"
+                 "    lmp.close()", scripts=scripts)
+    for script, want in zip(scripts, theirs, strict=True):
+        assert [ran(script).extract_variable(v) for v in "pqr"] == pytest.approx(want, rel=1e-11)
+    both = chain() + SUB_STYLES.replace("pair lj/cut", "pair lj/cut/coul/cut").replace(
+        "compute p", "pair_style hybrid/scaled 0 lj/cut/coul/cut 6 1 coul/cut 5\npair_coeff * * lj/cut/coul/cut 0.1 2\n"
+                     "pair_coeff * * coul/cut\ncompute p")
+    with pytest.raises(InputError, match="there is epair only"):
+        ran(both)
+
+
+def test_special_pairs_of_zbl_beside_a_solver():
+    script = chain() + ("special_bonds lj/coul 0 0 0.5\npair_style hybrid/overlay zbl 3 4 coul/long 6\npair_coeff * * zbl 6 6\n"
+                        "pair_coeff * * coul/long\npair_modify table 0\nkspace_style ewald 1e-4\ncompute p all pair zbl\n"
+                        "compute g all group/group all\nvariable p equal c_p\nvariable g equal c_g\nthermo_style custom c_p c_g\nrun 1")
+    script = script.replace("pair_coeff * * zbl 6 6", "pair_coeff 1 1 zbl 6 6\npair_coeff 2 2 zbl 8 8")
+    theirs = ask("lmp = ran(given['lines'])\nanswer = [lmp.extract_variable(v) for v in 'pg'], list(lmp.gather_atoms('f', 1, 3))",
+                 lines=script)
+    lmp = ran(script)
+    assert [lmp.extract_variable(v) for v in "pg"] == pytest.approx(theirs[0], rel=1e-10)
+    assert list(lmp.gather_atoms("f", 1, 3)) == pytest.approx(theirs[1], rel=1e-9, abs=1e-9 * max(theirs[1]))
+
+
+def test_shifted_forces_of_special_pairs_with_a_factor():
+    script = chain() + ("special_bonds lj 0.3 0.0 0.5 coul 1 1 1\npair_style hybrid/scaled 0.5 lj/sf 6 2 coul/cut 5\n"
+                        "pair_coeff * * lj/sf 0.1 2.5\npair_coeff * * coul/cut\ncompute e all pe/atom pair\ncompute s all reduce sum c_e\n"
+                        "variable s equal c_s\nvariable e equal evdwl\nthermo_style custom evdwl c_s\nrun 1")
+    theirs = ask("lmp = ran(given['lines'])\nanswer = [lmp.extract_variable(v) for v in 'se']", lines=script)
+    lmp = ran(script, "-compat", "lammps")
+    assert [lmp.extract_variable(v) for v in "se"] == pytest.approx(theirs, rel=1e-11)
+
+
+BONDED = """units real
+atom_style full
+region b block 0 12 0 12 0 12
+create_box 2 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4
+create_atoms 1 single 5 5 5
+create_atoms 2 single 6 5 5
+create_atoms 1 single 7.9 5.2 5.1
+create_atoms 2 single 8.3 6.0 5.2
+mass * 10
+set type 1 charge 0.4
+set type 2 charge -0.4
+bond_style harmonic
+bond_coeff 1 10 1
+special_bonds lj/coul 0 0 1
+create_bonds single/bond 1 1 2
+create_bonds single/bond 1 3 4
+variable r equal 0.4+0.1*step
+pair_style hybrid/scaled v_r {}
+pair_coeff * * lj/cut 0.1 2
+fix 1 all nve
+thermo_style custom step pe evdwl
+run 4
+"""
+
+
+def test_own_energies_and_hydrogen_bonds_follow_a_factor():
+    scripts = [BONDED.format(words).replace("fix 1", f"pair_coeff {coeff}\nfix 1") for words, coeff in (
+        ("coul/dsf 0.2 6 1.0 lj/cut 6", "* * coul/dsf"), ("coul/wolf 0.2 6 1.0 lj/cut 6", "* * coul/wolf"),
+        ("hbond/dreiding/lj 4 6 7 90 1.0 lj/cut 6", "1 1 hbond/dreiding/lj 2 i 4.0 2.75"))]
+    theirs = ask("answer = []\nfor s in given['scripts']:\n    lmp = ran(s)\n"
+                 "    answer.append([lmp.get_thermo('pe'), *lmp.gather_atoms('f', 1, 3)])\n    lmp.close()", scripts=scripts)
+    for script, want in zip(scripts, theirs, strict=True):
+        lmp = ran(script, "-compat", "lammps")
+        assert [lmp.get_thermo("pe"), *lmp.gather_atoms("f", 1, 3)] == pytest.approx(want, rel=1e-9)

@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from test_manybody import uncompiled
-from wheel import ask
+from wheel import ask, ran
 
 from asemd import style
 
@@ -110,3 +111,41 @@ def test_tail_of_idle_styles():
     for name in given:
         assert np.allclose(ours[name], theirs[name], rtol=1e-12, atol=1e-12), (name, ours[name], theirs[name])
         assert ours[name][2] < 0.0
+
+
+IDLE = """
+region b block 0 9 0 9 0 9
+create_box 2 b
+create_atoms 1 single 1 1 1
+create_atoms 1 single 2 2 2
+create_atoms 2 single 2.2 3 2
+create_atoms 2 single 4 3 2.5
+mass * 1
+set type 1 charge 0.5
+set type 2 charge -0.5
+{pairs}
+group a id 1 2
+group b id 3 4
+compute g a group/group b
+compute l all pair/local eng force
+compute s all reduce sum c_l[1] c_l[2] inputs local
+thermo_style custom c_g c_s[*]
+run 0
+"""
+READ = """
+def values(lmp):
+    lmp.command("variable s1 equal c_s[1]"), lmp.command("variable s2 equal c_s[2]"), lmp.command("variable g equal c_g")
+    return [lmp.extract_variable(v) for v in ("g", "s1", "s2")]
+"""
+
+
+def test_pairs_of_idle_styles():
+    overlay = "pair_style hybrid/overlay lj/cut 4 coul/cut 5\npair_coeff * * lj/cut 1 1\npair_coeff * * coul/cut\n"
+    scripts = ["atom_style charge" + IDLE.format(pairs=pairs) for pairs in (
+        "pair_style lj/cut/coul/cut 4\npair_coeff * * 1 1\npair_modify compute no", overlay + "pair_modify pair lj/cut compute no",
+        overlay + "pair_modify pair coul/cut compute no\nneigh_modify exclude type 1 1")]
+    theirs = ask(READ + 'answer = [values(ran(s)) for s in given["scripts"]]', scripts=scripts)
+    found = {}
+    exec(READ, found)
+    for script, want in zip(scripts, theirs, strict=True):
+        assert found["values"](ran(script)) == pytest.approx(want, rel=1e-12)

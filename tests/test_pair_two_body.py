@@ -20,7 +20,8 @@ CASES = [
     ("lj/class2", "10.0", "0.1 3.0", "0.25 2.1 8.0", FAR), ("lj/expand", "10.0", "0.1 3.0 -0.5", "0.25 2.1 0.75 8.0", FAR),
     ("lj/gromacs", "8.0 10.0", "0.1 3.0", "0.25 2.1 6.0 9.5", FAR), ("lj/smooth", "8.0 10.0", "0.1 3.0", "0.25 2.1 6.0 9.5", FAR),
     ("lj/smooth/linear", "10.0", "0.1 3.0", "0.25 2.1 8.0", FAR), ("lj/sf", "10.0", "0.1 3.0", "0.25 2.1 8.0", FAR),
-    ("mie/cut", "10.0", "0.1 3.0 12.0 6.0", "0.25 2.1 14.5 6.5 8.0", FAR), ("nm/cut", "10.0", "0.1 3.0 8.0 6.0", None, FAR),
+    ("mie/cut", "10.0", "0.1 3.0 12.0 6.0", "0.25 2.1 14.5 6.5 8.0", FAR),
+    ("mie/cut", "10.0", "0.1 3.0 12.0 0.0", "0.25 2.1 14.5 6.5 8.0", FAR), ("nm/cut", "10.0", "0.1 3.0 8.0 6.0", None, FAR),
     ("nm/cut", "10.0", "0.1 3.0 9.5 5.5 9.0", None, FAR), ("born", "10.0", "6.08 0.317 2.34 24.18 11.51 9.0", None, FAR),
     ("yukawa", "0.3 10.0", "10.0", "30.0 8.0", FAR), ("lj/cut/soft", "2.0 0.5 10.0", "0.1 3.0 0.6", "0.25 2.1 0.6 8.0", FAR),
     ("lj/class2/soft", "2.0 0.5 10.0", "0.1 3.0 0.6", "0.25 2.1 0.6 8.0", FAR),
@@ -190,3 +191,9 @@ if __name__ == "__main__":
     for library in sorted(Path(sys.prefix, "lib").glob("libmpi.so.*")):
         ctypes.CDLL(str(library), mode=ctypes.RTLD_GLOBAL)
     Path(sys.argv[2]).write_text(json.dumps(tails_of_wheel(json.loads(Path(sys.argv[1]).read_text()))))
+
+
+def test_no_tail_of_an_infinite_integral():
+    with pytest.raises(InputError, match="mie/cut beyond the cutoff of types 1 1 is infinite"):
+        ran("region b block 0 9 0 9 0 9\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\nmass 1 1\npair_style mie/cut 2\n"
+            "pair_coeff * * 1 1 3 1\npair_modify tail yes\nrun 0")

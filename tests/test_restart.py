@@ -216,7 +216,8 @@ def test_file_of_lammps(here):
 @pytest.mark.parametrize(("text", "words"), [
     ("restart", "restart needs"), ("restart 10", "needs the name of one file"), ("restart 0 a", "turns restart files off"),
     ("restart -5 a", "must be positive"), ("restart 10 a b c", "got 3"), ("restart 10 a fileper 2", "needs a file name with %"),
-    ("restart v_x a", "x"), ("write_restart", "write_restart needs"), ("write_restart a fils 2", "unknown keyword"),
+    ("restart v_x a\nrun 0", "restart: undefined variable x"),
+    ("write_restart", "write_restart needs"), ("write_restart a fils 2", "unknown keyword"),
     ("write_restart nowhere/a", "cannot write restart file nowhere/a: No such file or directory; restart files written before are whole"),
     ("read_restart r", "defined already"), ("clear\nread_restart", "read_restart needs"), ("clear\nread_restart a b", "takes one file"),
     ("clear\nread_restart none", "cannot open none: No such file"), ("clear\nread_restart none.*", "no such file with a step"),

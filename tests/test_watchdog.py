@@ -351,3 +351,9 @@ def test_switched_off(tmp_path):
     with ran(MELT.format(n=3, dt=0.004) + "run 10", "-watchdog", "no") as lmp:
         dog = lmp.session.loop.watchdog
         assert not dog.on and not dog.frames and dog.seconds == 0.0
+
+
+def test_atoms_of_which_all_pairs_are_excluded_may_fly():
+    lmp = ran("region b block 0 9 0 9 0 9\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\ncreate_atoms 1 single 2 2 2\nmass 1 1\n"
+              "velocity all create 1 4711\npair_style lj/cut 2\npair_coeff * * 1 1\nneigh_modify exclude type 1 1\nfix 1 all nve\nrun 3")
+    assert lmp.get_thermo("pe") == 0.0

@@ -27,7 +27,7 @@ def interaction(case, i: int, j: int, kind: int = 0, qq: float = 0.0) -> Callabl
     pieces = []
     rules = case.engine.exclusions
     for term in tabled(case):
-        weights = term.weights(rules.weight_lj, rules.weight_coul)
+        weights = term.weights(rules.weight_lj, rules.weight_coul, rules.keep)
         weight, coulomb, whole = float(weights[0][kind]), float(weights[1][kind]), float(weights[1][0])
         if weight == coulomb == 0.0 or term.molecules == ("other" if kind else "same"):
             continue

@@ -18,7 +18,7 @@ from asemd.kernels.hooks import bound
 from asemd.kernels.rows import extent
 from asemd.kernels.state import cell_arrays
 from asemd.neighbor import BinCell, PlainList, kernels
-from asemd.pairing import complete
+from asemd.pairing import complete, make_terms
 
 
 @dataclass
@@ -205,15 +205,15 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         q[:] = (state.system.q if charges is None else charges)[rows]
     first, second = np.arange(m, dtype=np.int32), np.arange(m, 2 * m, dtype=np.int32)
     rules = engine.exclusions
-    for term in engine.pair_terms if terms is None else terms:
+    for term in acting(engine) if terms is None else terms:
         if only is not None and not only(term):
             continue
         if np.ndim(term.use.factor) > 0:
             raise InputError(f"pair style {term.label} has a factor for each atom, so that its pairs have no energy: leave it out")
         code = np.ascontiguousarray(pairs.kind, np.int32)
-        lj, coul = term.weights(rules.weight_lj, rules.weight_coul)
+        lj, coul = term.weights(rules.weight_lj, rules.weight_coul, rules.keep)
         f, e, bad, rows_of_tables = np.zeros((3, 2 * m)), np.zeros(2 * m), np.zeros(4), term.tables.rows
-        if beyond and len(engine.pair_terms) == 1:
+        if beyond and len(engine.interactions.uses["pair"]) == 1:
             rows_of_tables = rows_of_tables.copy()
             rows_of_tables[term.cut_rows] = np.inf
         chosen = slice(None)
@@ -227,6 +227,14 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         energy += e[:m] + e[m:]
         force += f[:, :m].T
     return energy, force
+
+
+def acting(engine) -> list:
+    """The terms of the pair styles, those of ``pair_modify compute no`` too: as in LAMMPS, their pairs have energies and forces."""
+    inter = engine.interactions
+    if all(inter.modified(use, "compute") for use in inter.uses["pair"]):
+        return engine.pair_terms
+    return [t for t in make_terms(inter, engine.system.counts["ntypes"], engine.units, idle=True) if t.style.parts]
 
 
 def all_of(engine) -> list:

@@ -172,7 +172,7 @@ def _pairs(state, mask: np.ndarray):
         p = found
         if term.molecules:
             p = p.take((rules.molecule[p.i] == rules.molecule[p.j]) == (term.molecules == "same"))
-        lj, coul = term.weights(rules.weight_lj, rules.weight_coul)
+        lj, coul = term.weights(rules.weight_lj, rules.weight_coul, rules.keep)
         qq = np.zeros(len(p.i)) if system.q is None else engine.qqr2e * system.q[p.i] * system.q[p.j]
         for m, a, b in of_pairs(term.style, term.style.parts, term.tables, system.type[p.i], system.type[p.j], qq, p.r2,
                                 (lj[p.kind], coul[p.kind]), whole=coul[0]):

@@ -58,7 +58,8 @@ class FEP(Perturbed):
         if not self.pair and not self.charge:
             raise InputError("compute fep needs at least one of pair, atom")
         for *_, delta in [*self.pair, *self.charge]:
-            if isinstance(delta, str) and (variables is None or variables.find(delta[2:]).style != "equal"):
+            later = isinstance(delta, str) and variables is not None and delta[2:] not in variables.table      # it may come before the run
+            if isinstance(delta, str) and not later and (variables is None or variables.find(delta[2:]).style != "equal"):
                 raise InputError(f"compute fep: variable {delta[2:]} must have the style equal")
 
     def __getstate__(self):

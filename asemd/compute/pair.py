@@ -8,10 +8,12 @@ Source: LAMMPS manual, compute pair. Units: energy.
 """
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import half
+from asemd.compute._pairs import force_cutoff, half, interactions
 from asemd.errors import InputError, nearest
 from asemd.registry import find, plain_name
 from asemd.words import choice, take, whole
@@ -20,7 +22,7 @@ PARTS = {"epair": ("evdwl", "ecoul"), "evdwl": ("evdwl",), "ecoul": ("ecoul",)}
 
 
 class Pair(Compute):
-    """Energy of a pair style.
+    """Energy of a pair style; of a sub-style of hybrid/scaled without its factor.
 
     Parameters
     ----------
@@ -107,4 +109,27 @@ class Pair(Compute):
         sums = engine.acc.sum(axis=0)
         mine = [t.index for t in engine.terms if getattr(getattr(t, "owner", None), "use", None) is use]
         columns = [("evdwl", "ecoul").index(key) for key in PARTS[self.part]]
-        return float(sums[mine][:, columns].sum())
+        if np.ndim(use.factor) == 0 and use.factor != 0.0:
+            return float(sums[mine][:, columns].sum() / use.factor)
+        return self._without_factor(state, use)
+
+    def _without_factor(self, state, use) -> float:
+        """The energy of a sub-style of hybrid/scaled that has none in the run.
+
+        Raises
+        ------
+        InputError
+            One part is asked for of a style that has both.
+        """
+        terms = []
+        for term in state.engine.pair_terms:
+            if term.use is use:
+                terms.append(copy.copy(term))
+                terms[-1].use = copy.copy(use)
+                terms[-1].use.factor = 1.0
+        kinds = {("evdwl", "ecoul")[part.charged] for term in terms for part in term.style.parts}
+        if len(kinds) > 1 and self.part != "epair":
+            raise InputError(f"compute pair {self.name} {self.part}: with a factor of 0 or one for each atom there is epair only")
+        if not kinds & set(PARTS[self.part]):
+            return 0.0
+        return float(interactions(state, half(state, force_cutoff(state, "compute pair")), terms=terms)[0].sum())

@@ -53,7 +53,8 @@ class TI(Compute):
             for word in (f, slope):
                 if not word.startswith("v_"):
                     raise InputError(f"compute ti: expected a variable v_name, got {word!r}")
-                if variables is None or variables.find(word[2:]).style != "equal":
+                later = variables is not None and word[2:] not in variables.table      # it may come before the run
+                if not later and (variables is None or variables.find(word[2:]).style != "equal"):
                     raise InputError(f"compute ti: variable {word[2:]} must have the style equal")
 
     def __getstate__(self):

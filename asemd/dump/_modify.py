@@ -84,7 +84,6 @@ class Modify:
 
     def _modify_every(self, values, what, session):
         if values[0].startswith("v_"):
-            session.variables.find(values[0][2:])
             self.schedule.variable, self.schedule.interval, self.schedule.timed = values[0][2:], 0.0, False
             return
         every = whole(values[0], what)
@@ -94,7 +93,6 @@ class Modify:
 
     def _modify_every_time(self, values, what, session):
         if values[0].startswith("v_"):
-            session.variables.find(values[0][2:])
             self.schedule.variable, self.schedule.interval, self.schedule.timed = values[0][2:], 0.0, True
             return
         interval = number(values[0], what)

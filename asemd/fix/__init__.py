@@ -114,6 +114,8 @@ class Fix:
         Its attributes that are computes, which a script reaches as ``ID_name`` (see `own_computes`) while the fix is there.
     id : str
         Set by the session.
+    awaited : tuple of str
+        Names of the variables that it goes by, which are looked up when a run begins; set by the session.
     """
 
     style: ClassVar[str] = ""
@@ -136,6 +138,7 @@ class Fix:
     inner: ClassVar[type | None] = None
     every: int = 1
     id: str = ""
+    awaited: tuple[str, ...] = ()
     thermo_energy: bool = False
     thermo_virial: bool = False
     minimizing: bool = False

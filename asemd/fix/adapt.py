@@ -105,30 +105,34 @@ class Adapt(Fix):
         options = {k: yes_no(v[0], f"{what} {k}") for k, v in sampled.keywords(left, OPTIONS, what).items()}
         fix = cls(group, every, **given, **options)
         fix.words = list(words)
-        fix._check(session.scene.interactions)
+        fix._check(session.scene.interactions, True)
         return fix
 
     @staticmethod
     def _variable(word: str, session, atoms: bool = False) -> Formula:
         if not word.startswith("v_"):
             raise InputError(f"fix adapt: the value must be a variable v_name, got {word!r}")
-        style = session.variables.find(word[2:]).style
-        if style not in (("equal", "internal", "python", "atom") if atoms else ("equal", "internal", "python")):
-            raise InputError(f"fix adapt: variable {word[2:]} has style {style}, it must be equal{' or atom' * atoms}")
-        return Formula(word[2:], session)
+        found = Formula(word[2:], session)
+        if word[2:] in session.variables.table:
+            _check_style(found, atoms)
+        return found
 
     def to_lammps(self) -> list[str]:
         if not hasattr(self, "words"):
             raise InputError("fix adapt: Python functions cannot be written as a script")
         return self.words
 
-    def _check(self, interactions) -> None:
-        """Refuse styles and coefficients that are not there."""
-        for style, name, *_ in self.pair:
-            uses_of(interactions, "pair", style, name, "fix adapt")
-        for category, given in self.bonded.items():
-            for style, name, *_ in given:
-                uses_of(interactions, category, style, name, "fix adapt")
+    def _check(self, interactions, early: bool = False) -> None:
+        """Refuse styles and coefficients that are not there, and variables of other styles; `early`: not what may come yet."""
+        for category, given in {"pair": self.pair, **self.bonded}.items():
+            for style, name, *_, value in given:
+                if interactions.uses[category] or not early:
+                    uses_of(interactions, category, style, name, "fix adapt")
+                if not early:
+                    _check_style(value)
+        if not early:
+            for value, atoms in ((self.charge, True), (self.diameter, True), (self.kspace, False)):
+                _check_style(value, atoms)
 
     # ---- hooks
     def next_step(self, step: int) -> int:
@@ -246,6 +250,14 @@ class Adapt(Fix):
         if coefficients and not _in_place(e, loop.interactions, loop.system):
             retie(loop, afresh=True)
             loop._make_module()
+
+
+def _check_style(value, atoms: bool = False) -> None:
+    """Refuse variables whose values are no numbers; with `atoms` one for each atom serves, too."""
+    if isinstance(value, Formula):
+        style = value.session.variables.find(value.name).style
+        if style not in ("equal", "internal", "python", *("atom",) * atoms):
+            raise InputError(f"fix adapt: variable {value.name} has style {style}, it must be equal{' or atom' * atoms}")
 
 
 def _learn_radii(interactions, system) -> bool:

@@ -17,7 +17,7 @@ import numpy as np
 from asemd.errors import InputError
 from asemd.fix import hook
 from asemd.fix.forcing import Forcing, tally, unwrapped
-from asemd.fix.formula import Value, read, write
+from asemd.fix.formula import Formula, Value, read, write
 from asemd.kernels.threads import reduce_sum
 from asemd.result import COMPONENTS
 
@@ -71,7 +71,7 @@ class EField(Forcing):
 
         def atom_style(word, what):
             value = read(word, what, session)
-            if not callable(value) or session.variables.find(value.name).style not in ("atom", "atomfile"):
+            if not callable(value) or (value.name in session.variables.table and not per_atom(value)):
                 raise InputError(f"{what}: needs a variable of style atom, v_name, got {word!r}")
             return value
         options = cls.read_keywords(words[3:], {"region": None, "energy": atom_style, "potential": atom_style}, session)
@@ -89,6 +89,9 @@ class EField(Forcing):
         charged, dipoles = system.q is not None, has_dipoles(system)
         if not charged and not dipoles:
             raise InputError("Fix efield requires atom attribute q or mu: use an atom style with charges or dipoles")
+        for value in (self.energy, self.potential):
+            if isinstance(value, Formula) and not per_atom(value):
+                raise InputError(f"fix {self.id} (style {self.style}): variable {value.name} must be of style atom")
         return [loop.units.qe2f, dipoles, self.constant, bool(self.energy) + 2.0 * bool(self.potential)]
 
     def uses_atoms(self) -> bool:
@@ -159,6 +162,11 @@ class EField(Forcing):
         force = state.units.qe2f * np.where(acts, system.q, 0.0)[:, None] * np.array(self.values)
         r = system.box.unwrap(self.places(system), system.image)
         return np.stack([force[:, i] * r[:, j] for i, j in COMPONENTS], axis=1)
+
+
+def per_atom(value: Formula) -> bool:
+    """Whether the variable has a value for each atom."""
+    return value.session.variables.find(value.name).style in ("atom", "atomfile")
 
 
 def has_dipoles(system) -> bool:

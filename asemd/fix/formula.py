@@ -27,11 +27,14 @@ class Formula:
     Raises
     ------
     InputError
-        No variable of that name.
+        No variable of that name; while a fix is being defined that is told when a run begins, as in LAMMPS.
     """
 
     def __init__(self, name: str, session):
-        session.variables.find(name)
+        if getattr(session, "awaited", None) is None:
+            session.variables.find(name)
+        else:
+            session.awaited.append(name)
         self.name, self.session = name, session
 
     def __call__(self, loop: Loop) -> float | np.ndarray:

@@ -283,10 +283,11 @@ def paste_one(b: Builder, style, parts, piece: str = "", apart: bool = False) ->
                 if twin is not None:
                     args.insert(1, core)
                     name = b.function(twin, f"near_{name}")
-            lines += [f"    if {w} != 0.0 and r2 < rows[{row}, ti, tj]:",
+            counted = "whole" if style.unweighted else w
+            lines += [f"    if {counted} != 0.0 and r2 < rows[{row}, ti, tj]:",
                       f"        e{k}, d{k} = {name}({', '.join(args)})",
                       f"        {force} += {w} * {slope}",
-                      f"        {'ec' if part.charged else 'ev'} += {1.0 if style.unweighted else w} * (e{k} - rows[{row + 1}, ti, tj])"]
+                      f"        {'ec' if part.charged else 'ev'} += {counted} * (e{k} - rows[{row + 1}, ti, tj])"]
         row += 2 + len(part.rows)
         constant += len(part.constants)
         array += len(part.arrays)

@@ -44,9 +44,9 @@ class KSpace(ABC):
     ----------
     g_ewald : float
         Splitting parameter, 1/distance, after `prepare`.
-    n, qsum, qsqsum, q2, prd, volume
-        After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths and volume of the
-        box, its third vector stretched for slabs, the others for wires.
+    n, qsum, qsqsum, q2, prd, upright, volume
+        After `prepare`: atoms, sum of charges and of their squares, the latter in energy times distance, edge lengths, vectors (in LAMMPS's
+        frame) and volume of the box, its third vector stretched for slabs, the others for wires.
     skin : float
         Of the neighbour list.
     """
@@ -58,6 +58,7 @@ class KSpace(ABC):
     takes_wire = False
     nozforce = 2.0              # what kernels are told of ``slab nozforce``: no force along z
     ew2d = 0.0                  # and of ``slab ew2d``: no correction of a slab, as for solvers of electrodes, which make their own
+    adds = True                 # it has energy and forces
     groups = False              # compute group/group can ask for the interaction of two groups
     least = 0.0                 # charges not above are passed over
     coulomb = True              # a pair style leaves it the Coulomb interaction
@@ -168,11 +169,9 @@ class KSpace(ABC):
         self.cutoff, self.scale = float(cutoff), interactions.coulomb_constant(units) / interactions.dielectric
         self.count(system)
         self.factor = interactions.kspace_factor
-        a, b, c = system.box.cell
-        lengths = np.array([np.linalg.norm(a), np.linalg.norm(np.cross(a, b)) / np.linalg.norm(a), 1.0])
-        lengths[2] = abs(np.linalg.det(system.box.cell)) / (lengths[0] * lengths[1])
-        self.inner = lengths.copy()                   # without the empty volume of slabs and wires
-        self.prd = lengths * self.stretch
+        upright = system.box.to_lammps()[0].cell
+        self.inner = np.diag(upright).copy()          # without the empty volume of slabs and wires
+        self.prd, self.upright = self.inner * self.stretch, upright * self.stretch[:, None]
         self.volume = float(self.prd.prod())
         two_charges = interactions.coulomb_constant(units) * units.qelectron**2 / units.angstrom**2
         self.two_charges = two_charges
@@ -184,6 +183,10 @@ class KSpace(ABC):
             self.choose(system)
         except ArithmeticError:
             raise self.impossible(self.q2) from None
+
+    def tilted(self, mesh) -> np.ndarray:
+        """Mesh points (3,) along the vectors of a tilted box, from those along x, y and z; not rounded to whole numbers."""
+        return (np.abs(self.upright) * (np.asarray(mesh) / self.prd)).sum(axis=1)       # a product of matrices may have other last bits
 
     def count(self, system) -> None:
         """Take the sums over atoms that there are now, as LAMMPS does within a run; parameters stay."""
@@ -259,6 +262,10 @@ class KSpace(ABC):
     def terms(self, engine) -> list:
         """The `asemd.term.Term` of this solver, or several."""
 
+    def serves(self, use) -> bool:
+        """Whether that pair style may stand beside the solver."""
+        return self.flag in use.style.works_with(use.settings)
+
     def take(self, uses, interactions, system) -> float:
         """Look at the pair styles that leave their long-range part to this solver; returns the cutoff of that part.
 
@@ -307,10 +314,10 @@ def solve(system, interactions, units, skin: float, kept: KSpace | None = None) 
         return None
     name, *words = interactions.kspace.split()
     solver = class_of("kspace", name, KSpace).from_words(words, interactions.kspace_modify)
-    mine = [use for use in interactions.uses["pair"] if solver.flag in use.style.works_with(use.settings)]
+    mine = [use for use in interactions.uses["pair"] if solver.serves(use)]
     if not mine:
         raise InputError(f"kspace_style {name} needs a pair style that leaves it the long-range part, such as {solver.partner}")
-    twice = [use.label for use in interactions.uses["pair"] if CUT.search(use.style.name)]
+    twice = [use.label for use in interactions.uses["pair"] if solver.adds and CUT.search(use.style.name)]
     if twice:
         long = "coul/msm" if solver.flag == "msm" else "coul/long"
         warnings.warn(f"pair style {twice[0]} has all of the Coulomb energy of its pairs, of which kspace_style {name} has a part too: "

@@ -35,6 +35,18 @@ BOUNDS = {4: (9.0, 1 / 6, 0.39189561), 6: (825.0, 1 / 30, 0.150829428), 8: (1300
           10: (34096545.0, 1 / 630, 0.013520855)}
 
 
+def smoothed(order: int) -> list[float]:
+    """Coefficients of the Taylor polynomial of 1/sqrt(u) around 1 in powers of u, of half the degree of the order."""
+    degree = order // 2
+    taylor = [math.prod(-0.5 - m for m in range(k)) / math.factorial(k) for k in range(degree + 1)]
+    return [sum(taylor[k] * math.comb(k, n) * (-1.0) ** (k - n) for k in range(n, degree + 1)) for n in range(6)]
+
+
+def of_pairs(smooth: list[float], cutoff: float) -> dict[str, float]:
+    """What pair styles take of these coefficients."""
+    return {f"smooth{n}": c / cutoff ** (2 * n + 1) for n, c in enumerate(smooth)}
+
+
 @cache
 def pieces(order: int) -> list[Polynomial]:
     """Weights of the points around a charge, as polynomials of its place between the two in the middle: linear blends of the two
@@ -97,16 +109,12 @@ class MSM(KSpace):
             raise InputError(f"kspace_style {self.style}: order must be 4, 6, 8 or 10, not {self.order}")
         if not self.cutoff ** (self.order - 1) > 0.0:
             raise self.impossible(self.q2)
-        # the Taylor polynomial of 1/sqrt(u) around 1 in powers of u
-        degree = self.order // 2
-        taylor = [math.prod(-0.5 - m for m in range(k)) / math.factorial(k) for k in range(degree + 1)]
-        self.smooth = [sum(taylor[k] * math.comb(k, n) * (-1.0) ** (k - n) for k in range(n, degree + 1)) for n in range(6)]
+        self.smooth = smoothed(self.order)
         self.periodic = np.array(system.box.periodic, bool)
-        upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell
         given, adjust = self.modify["mesh"], self.modify["cutoff/adjust"]
         mesh = np.array(given if any(given) else self.cheapest() if adjust else self.fine_enough(), float)
         if self._tilted(system) and not any(given):
-            mesh = (np.abs(upright) @ (mesh / self.prd)).astype(int)
+            mesh = self.tilted(mesh).astype(int)
         self.mesh = tuple(2 ** round(math.log2(max(n, 1))) for n in mesh)
         if any(given) and self.mesh != tuple(given):
             warnings.warn("Number of MSM mesh points changed to be a multiple of 2", InputWarning, stacklevel=2)
@@ -121,7 +129,7 @@ class MSM(KSpace):
             warnings.warn("MSM mesh too small, increasing to 2 points in each direction", InputWarning, stacklevel=2)
             self.mesh = (2, 2, 2)
         if self._tilted(system):
-            self.spacing = 1.0 / np.linalg.solve(upright, np.array(self.mesh, float))
+            self.spacing = 1.0 / np.linalg.solve(self.upright, np.array(self.mesh, float))
 
     def cheapest(self) -> list[int]:
         """The grid for which the estimated work is least, whatever the cutoff then is."""
@@ -155,7 +163,7 @@ class MSM(KSpace):
 
     @property
     def constants(self):
-        return {f"smooth{n}": c / self.cutoff ** (2 * n + 1) for n, c in enumerate(self.smooth)}
+        return of_pairs(self.smooth, self.cutoff)
 
     @property
     def own(self) -> float:

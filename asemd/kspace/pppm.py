@@ -72,7 +72,6 @@ class PPPM(KSpace):
         self.ad = self.modify["diff"] == "ad"
         if self.ad and self._tilted(system):
             raise InputError(f"kspace_style {self.style}: kspace_modify diff ad needs a box that is not triclinic")
-        self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell * self.stretch[:, None]
         self.settle_mesh(system)
 
     def settle_mesh(self, system) -> None:
@@ -90,7 +89,7 @@ class PPPM(KSpace):
         if not any(mesh):
             mesh = self.fine_enough_ad() if self.ad else self.fine_enough()
             if self._tilted(system):
-                mesh = [int(m) + 1 for m in np.abs(self.upright) @ (np.array(mesh) / self.prd)]
+                mesh = [int(m) + 1 for m in self.tilted(mesh)]
         if self.is_too_large(mesh):
             raise self.too_large(mesh)
         self.mesh = tuple(map(with_small_factors, mesh))

@@ -63,7 +63,6 @@ class PPPMDisp(PPPM):
         for name, order in (("order", self.order), ("order/disp", self.order6)):
             if not 2 <= order <= 7:
                 raise InputError(f"kspace_style {self.style}: {name} must be 2 to 7, not {order}")
-        self.upright = (system.box if system.box.is_lammps_frame else system.box.to_lammps()[0]).cell * self.stretch[:, None]
         if self.coulomb:
             self.settle_mesh(system)
         if self.dispersion:

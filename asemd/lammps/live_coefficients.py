@@ -12,7 +12,9 @@ from asemd.expression_style import ExpressionStyle, fill_variables
 from asemd.fix import Fix
 from asemd.formula import CONSTANTS
 from asemd.formula_functions import MATH
+from asemd.hydrogen_bond_term import HydrogenBondTerm
 from asemd.lammps.pair_order import pair_order
+from asemd.own_term import OwnTerm
 from asemd.term import FactorTerm, PairListTerm
 
 if TYPE_CHECKING:
@@ -81,7 +83,7 @@ class LiveCoefficients(Fix):
         fill(self.session)
         scale(self.session)
         for term in loop.engine.terms:
-            if isinstance(term, (PairListTerm, FactorTerm)):
+            if isinstance(term, (PairListTerm, FactorTerm, OwnTerm, HydrogenBondTerm)):
                 term.scale(loop.engine)
             use = getattr(term, "use", None)
             if use is not None and isinstance(use.style, ExpressionStyle):

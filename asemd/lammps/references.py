@@ -1,4 +1,4 @@
-"""Computes that computes, fixes and thermo output go by, looked up by their IDs when a run begins: one may be gone, or made anew."""
+"""Computes and variables that others go by, looked up by their names when a run begins: one may be gone, or made anew."""
 from __future__ import annotations
 
 import re
@@ -13,9 +13,10 @@ def renew(session) -> None:
     Raises
     ------
     InputError
-        There is none any more, or another kind of it.
+        There is none any more, or another kind of it; there is no variable of a name that a fix or output goes by.
     """
     scene = session.scene
+    look_up(session)
     for kind, table in (("fix", scene.fixes), ("compute", scene.computes)):
         for owner in table.values():
             for name, held in list(vars(owner).items()):
@@ -29,6 +30,27 @@ def renew(session) -> None:
         id = getattr(scene.thermo, keyword)
         if id not in scene.computes:
             raise InputError(f"thermo_modify {keyword} {id}: there is no compute {id} any more{nearest(id, scene.computes)}")
+
+
+def look_up(session) -> None:
+    """Whether the variables are there that fixes, thermo output, dumps and restart files go by.
+
+    Raises
+    ------
+    InputError
+        One is not, or has no number.
+    """
+    scene = session.scene
+    named = [(f"fix {f.id}", f"fix {f.id} (style {f.style})", name) for f in scene.fixes.values() for name in f.awaited]
+    named += [("thermo", "thermo", scene.thermo.every)] if isinstance(scene.thermo.every, str) else []
+    named += [(f"dump {d.id}", f"dump {d.id}", d.schedule.variable) for d in scene.dumps.values() if d.schedule.variable]
+    named += [("restart", "restart", s.every) for s in scene.restarts.values() if isinstance(s.every, str)]
+    for key, what, name in named:
+        try:
+            if session.variables.find(name).style != "equal" and key == "restart":
+                raise InputError(f"variable {name} must have style equal")
+        except InputError as e:
+            raise InputError(f"{what}: {e.message}", session.places.get(key)) from None
 
 
 def _replace(session, kind: str, owner, name: str, held: Compute) -> None:

@@ -99,6 +99,7 @@ class Session:
         self.precision_told = ""        # what was said of styles that mixed precision leaves as they are
         self.later: list[str] = []              # lines of the set-up of a run that come after that
         self.partners_told: Any = None          # see asemd.lammps.setup_log.partners_per_atom
+        self.awaited: list[str] | None = None       # variables that the fix which is being defined goes by
         self.places: dict[str, Where] = {}      # "fix ID" -> where it was defined
         self.moment = Moment(self.scene, None, self.variables.number, Progress())
 

@@ -13,9 +13,9 @@ from asemd.pairstyle import pair, power_tail
 
 
 def derived(c, settings):
-    """The factor of both powers."""
+    """The factor of both powers; the limit where m is 0."""
     n, m = c["gamR"], c["gamA"]
-    return {"front": n / (n - m) * (n / m) ** (m / (n - m)) * c["epsilon"]}
+    return {"front": (n / (n - m) * (n / m) ** (m / (n - m)) if m else 1.0) * c["epsilon"]}
 
 
 def tail(c, cut):

@@ -7,6 +7,8 @@ $2^{1/6}\sigma$, rc the cutoff, and with beta, the sine of the angle that curves
 $$\varphi = 1 + \mu (a - 1), \quad a = (n_i \times \hat r)\cdot(n_j \times \hat r) + \beta (n_i - n_j)\cdot\hat r - \beta^2, \quad
     \vec r = \vec x_i - \vec x_j$$
 
+2 zeta is cut off to a whole number, and is 2 at least, as in LAMMPS's energy.
+
 Source: H. Yuan, C. Huang, J. Li, G. Lykotrafitis, S. Zhang, Phys. Rev. E 82, 011905 (2010); LAMMPS manual, pair_style ylz.
 """
 from __future__ import annotations
@@ -22,7 +24,7 @@ from asemd.style import register
 
 
 def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
-    epsilon, zeta, mu, beta = rows[2, ti, tj], rows[5, ti, tj], rows[6, ti, tj], rows[7, ti, tj]
+    epsilon, mu, beta = rows[2, ti, tj], rows[7, ti, tj], rows[8, ti, tj]
     r, cut, near = r2**0.5, rows[0, ti, tj]**0.5, 1.122462048309373 * rows[3, ti, tj]
     x, y, z = d[0] / r, d[1] / r, d[2] / r
     ax, ay, az = first[3, 6], first[3, 7], first[3, 8]
@@ -35,9 +37,10 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     else:
         rate = 0.5 * math.pi / (cut - near)
         cosine = math.cos(rate * (r - near))
-        by_phi = -epsilon * cosine ** (2.0 * zeta)
+        power = cosine ** (rows[5, ti, tj] - 1.0)
+        by_phi = -epsilon * cosine * power
         energy = by_phi * phi
-        slope = 2.0 * zeta * epsilon * cosine ** (2.0 * zeta - 1.0) * math.sin(rate * (r - near)) * rate * phi
+        slope = rows[6, ti, tj] * epsilon * power * math.sin(rate * (r - near)) * rate * phi
     k = by_phi * mu
     gx, gy, gz = (beta - e) * ax - (beta + c) * bx, (beta - e) * ay - (beta + c) * by, (beta - e) * az - (beta + c) * bz
     along = slope - k * (gx * x + gy * y + gz * z) / r
@@ -62,9 +65,10 @@ class YLZ(OrientedPair):
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, False)
-        more = np.zeros((4, ntypes + 1, ntypes + 1))
+        more = np.zeros((5, ntypes + 1, ntypes + 1))
         for (i, j), c in filled.items():
-            more[:, i, j] = more[:, j, i] = [1.0, c["zeta"], c["mu"], c["beta"]]
+            power = max(2.0, math.trunc(2.0 * c["zeta"]))
+            more[:, i, j] = more[:, j, i] = [1.0, power, power if self.exact else 2.0 * c["zeta"], c["mu"], c["beta"]]
         return replace(tables, rows=np.concatenate([tables.rows, more]), arrays=(np.zeros((ntypes + 1, 9)),))
 
 

@@ -3,7 +3,7 @@ $$\phi(x) = 0.18175 e^{-3.19980 x} + 0.50986 e^{-0.94229 x} + 0.28022 e^{-0.4029
 
 Screened repulsion of nuclei in collisions; Zi and Zj are the atomic numbers. S takes energy, force and its derivative to zero between inner
 and outer, as in lj/gromacs. Pairs of unlike types follow from the numbers of both. Special pairs whose weight (special_bonds)
-is not 0 count in full, as in LAMMPS.
+is not 0 count in full, and where charges have a long-range solver those of weight 0, too, as in LAMMPS.
 Ziegler, Biersack and Littmark, The Stopping and Range of Ions in Matter (1985).
 """
 from __future__ import annotations

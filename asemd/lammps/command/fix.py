@@ -22,9 +22,12 @@ def run(session, args):
         raise InputError(f"fix {id} exists with style {old.style}: unfix it before it becomes {style}")
     if old is not None:
         old.detach(scene.system)
-    session.defining = id
-    new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
-    new.id = id
+    session.defining, session.awaited = id, []
+    try:
+        new = catalog.load("fix", style).from_lammps(group, list(args[3:]), session)
+    finally:
+        awaited, session.awaited = session.awaited, None
+    new.id, new.awaited = id, tuple(awaited)
     scene.add_fix(new)
     restart.restore_fix(session, new)
     session.remember(f"fix {id}")

@@ -17,9 +17,8 @@ def run(session, args):
         session.scene.restarts.clear()
         return
     if every.startswith("v_"):
-        if session.variables.find(every[2:]).style != "equal":
-            raise InputError(f"restart: variable {every[2:]} must have style equal")
         steps = every[2:]
+        session.remember("restart")
     else:
         steps = whole(every, "restart: every N")
         if steps < 1:

@@ -8,8 +8,8 @@ from asemd.words import exactly, whole
 def run(session, args):
     word = exactly(args, 1, "thermo")[0]
     if word.startswith("v_"):
-        session.variables.find(word[2:])
         session.scene.thermo.every = word[2:]
+        session.remember("thermo")
         return
     every = whole(word, "thermo")
     if every < 0:
