@@ -10,7 +10,7 @@ import numpy as np
 from asemd import atom_shares, hook_order, population
 from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
-from asemd.fix import NEVER, Fix
+from asemd.fix import NEVER, Fix, first_forces
 from asemd.interrupt import Interrupt
 from asemd.kernels import relist
 from asemd.kernels import timeloop as tl
@@ -97,7 +97,7 @@ class Loop:
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
         self._wanted = needs
-        self.first_shares()
+        first_forces.settle(self)
         self._set_up_fixes()
         self._collect().take_shares(self._first)
         e.timings, e.builds, e.dangerous = dict.fromkeys(e.timings, 0.0), 0, 0
