@@ -1,11 +1,12 @@
 """Arguments of fixes that may be a number or a variable (``v_name``)."""
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from asemd.fix import Fix
 from asemd.words import number
 
 if TYPE_CHECKING:
@@ -20,18 +21,12 @@ class Formula:
     Parameters
     ----------
     name : str
-        Name of the variable.
+        Name of the variable, which must be there when a run begins: see `names_of`.
     session
         Its ``variables`` evaluate it; its ``moment`` is what they see of computes.
-
-    Raises
-    ------
-    InputError
-        No variable of that name.
     """
 
     def __init__(self, name: str, session):
-        session.variables.find(name)
         self.name, self.session = name, session
 
     def __call__(self, loop: Loop) -> float | np.ndarray:
@@ -51,6 +46,20 @@ class Formula:
 def read(word: str, what: str, session) -> float | Formula:
     """A word of a script: a number, or ``v_name``."""
     return Formula(word[2:], session) if word.startswith("v_") else number(word, what)
+
+
+def names_of(value) -> Iterator[str]:
+    """The variables among the arguments of a fix, or in a value of them."""
+    if isinstance(value, Formula):
+        yield value.name
+    elif isinstance(value, Fix):
+        for part in vars(value).values():
+            yield from names_of(part)
+    elif isinstance(value, (list, tuple)):
+        for part in value:
+            yield from names_of(part)
+    elif isinstance(value, dict):
+        yield from names_of(list(value.values()))
 
 
 def write(value: float | Formula | None) -> str:

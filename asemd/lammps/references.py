@@ -1,10 +1,11 @@
-"""Computes that computes, fixes and thermo output go by, looked up by their IDs when a run begins: one may be gone, or made anew."""
+"""Computes and variables that computes, fixes and thermo output go by, looked up when a run begins: one may be gone, or made anew."""
 from __future__ import annotations
 
 import re
 
 from asemd.compute import Compute
 from asemd.errors import InputError, nearest
+from asemd.fix.formula import names_of
 
 
 def renew(session) -> None:
@@ -13,9 +14,14 @@ def renew(session) -> None:
     Raises
     ------
     InputError
-        There is none any more, or another kind of it.
+        There is none any more, or another kind of it; a variable that a fix goes by is not defined.
     """
     scene = session.scene
+    for id, fix in scene.fixes.items():
+        for name in names_of(fix):
+            if name not in session.variables.table:
+                raise InputError(f"fix {id} (style {fix.style}): undefined variable {name}{nearest(name, session.variables.table)}",
+                                 session.places.get(f"fix {id}"))
     for kind, table in (("fix", scene.fixes), ("compute", scene.computes)):
         for owner in table.values():
             for name, held in list(vars(owner).items()):
