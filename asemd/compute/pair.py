@@ -10,10 +10,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from asemd.atom_shares import Room
 from asemd.compute import Compute
 from asemd.compute._pairs import half
 from asemd.errors import InputError, nearest
+from asemd.kernels.hooks import bound
 from asemd.registry import find, plain_name
+from asemd.term import FactorTerm
 from asemd.words import choice, take, whole
 
 PARTS = {"epair": ("evdwl", "ecoul"), "evdwl": ("evdwl",), "ecoul": ("ecoul",)}
@@ -99,12 +102,38 @@ class Pair(Compute):
         return np.array([float((pairs.r2 < within[kind[pairs.i], kind[pairs.j]]).sum())])
 
     def scalar(self, state) -> float:
-        """The energy, without the tail correction."""
+        """The energy, without the tail correction and the factors of ``hybrid/scaled``."""
         engine = state.engine
         use = self.chosen(engine.interactions)
         if use is None:
             return float(sum(state.result.energy[key] for key in PARTS[self.part]))
-        sums = engine.acc.sum(axis=0)
-        mine = [t.index for t in engine.terms if getattr(getattr(t, "owner", None), "use", None) is use]
         columns = [("evdwl", "ecoul").index(key) for key in PARTS[self.part]]
-        return float(sums[mine][:, columns].sum())
+        mine = [t for t in engine.terms if getattr(getattr(t, "owner", None), "use", None) is use]
+        return float(sum(_own_sums(engine, t)[columns].sum() for t in mine))
+
+
+def _own_sums(engine, term) -> np.ndarray:
+    """(8,) the energies of a term of the last evaluation, without its factor."""
+    factor, sums = term.owner.use.factor, engine.acc[:, term.index].sum(axis=0)
+    if term.owner.is_plain or np.ndim(factor) > 0:
+        return sums
+    if isinstance(term, FactorTerm):
+        return term.own_acc.sum(axis=0)
+    return sums / factor if factor != 0.0 else _without_factor(engine, term)
+
+
+def _without_factor(engine, term) -> np.ndarray:
+    """Energies of a term whose factor is 0: once more with another one, into arrays that nobody reads."""
+    use, kept = term.owner.use, (engine.buffers, engine.acc, engine.atom_energy, engine.atom_virial)
+    engine.buffers, engine.acc, engine.atom_energy, engine.atom_virial = Room(engine).columns(engine)
+    use.factor = 1.0
+    try:
+        term.scale(engine)
+        kernel = term.kernel(True, False)
+        for tid in range(engine.threads):
+            bound(kernel, term.arguments(engine, tid), 1)()
+        return engine.acc[:, term.index].sum(axis=0)
+    finally:
+        engine.buffers, engine.acc, engine.atom_energy, engine.atom_virial = kept
+        use.factor = 0.0
+        term.scale(engine)
