@@ -20,7 +20,7 @@ NEVER = 2.0**63 - 1024     # the step that no run reaches
 class Clock:
     """Steps and timestep that ``ramp``, ``stagger`` and their relatives look at.
 
-    Outside a run, ``ramp`` has its first value.
+    Outside a run, ``ramp`` has its first value, and the time of ``vdisplace`` and its relatives begins at step 0.
     """
 
     step: int = 0
@@ -182,14 +182,13 @@ def _logfreq3(c: Clock, x: float, y: float, z: float) -> float:
     _require(x > 0 and y > 1 and z - x + 1 >= y, "logfreq3", "x > 0, y > 1 and at least y steps from x to z")
     if c.step < x:
         return float(x)
-    if c.step >= z:
+    if c.step > z:
         raise InputError(f"logfreq3({x},{y},{z}) has no step after {c.step}")
-    near = int((y - 1) * math.log(c.step / x) / math.log(z / x))
-    for k in range(max(1, near - 1), y):
-        step = math.ceil(x * (z / x) ** (k / (y - 1)) - 1e-9)
-        if step > c.step:
-            return float(min(step, z))
-    return float(z)
+    exact, step, factor = float(x), x, (z / x) ** (1.0 / (y - 1))
+    while step <= c.step:
+        exact, step = exact * factor, step + 1
+        step = max(step, math.ceil(exact))
+    return float(step if c.step == z else min(step, z))
 
 
 def _stride(c: Clock, x: float, y: float, z: float) -> float:
@@ -224,7 +223,7 @@ def _wave(omega: float, function: Callable[[float], float]) -> float:
 
 
 def _elapsed(c: Clock) -> float:
-    return (c.step - c.begin) * c.dt
+    return (c.step - (c.begin if c.running else 0)) * c.dt
 
 
 STEP: dict[str, tuple[int, Callable[..., float]]] = {

@@ -7,10 +7,10 @@ import warnings
 
 import numpy as np
 
-from asemd import atom_shares, population
+from asemd import atom_shares, hook_order, population
 from asemd.engine import Engine, Result, Settings, Snapshot
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
-from asemd.fix import NEVER, Fix
+from asemd.fix import NEVER, Fix, first_forces
 from asemd.interrupt import Interrupt
 from asemd.kernels import relist
 from asemd.kernels import timeloop as tl
@@ -97,7 +97,7 @@ class Loop:
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
         self._wanted = needs
-        self.first_shares()
+        first_forces.settle(self)
         self._set_up_fixes()
         self._collect().take_shares(self._first)
         e.timings, e.builds, e.dangerous = dict.fromkeys(e.timings, 0.0), 0, 0
@@ -134,9 +134,9 @@ class Loop:
 
     def _sort_hooks(self) -> None:
         """Which fixes act in Python, and when; which of them want a virial."""
-        self._in_python = [f for f, kinds in zip(self.fixes, self._kinds)
-                           if f.follows or any(not kinds.get(name, True) for name in IN_A_STEP)]
+        self._in_python = [f for f, own in zip(self.fixes, self._kinds) if f.follows or any(not own.get(name, True) for name in IN_A_STEP)]
         self._ends = [n for n, kinds in enumerate(self._kinds) if not kinds.get("end_of_step", True)]
+        self._mixed = hook_order.before_compiled(self.fixes, self._kinds)
         self._about_lists = [f for f, kinds in zip(self.fixes, self._kinds) if any(name in kinds for name in ABOUT_LISTS)]
         self._compiled = not (self._in_python or any("post_neighbor" in kinds for kinds in self._kinds))
         self._virial_every = math.gcd(*(f.virial_every for f in self.fixes))
@@ -144,7 +144,7 @@ class Loop:
 
     def _next_whole(self, step: int) -> int:
         """The next step after `step` that is made by Python, hook by hook."""
-        return min((f.next_step(step) for f in self._in_python), default=NEVER)
+        return min(hook_order.next_mixed(self._mixed, step), *(f.next_step(step) for f in self._in_python), NEVER)
 
     def _next_end(self, step: int) -> int:
         """The next step after `step` with an `end_of_step` in Python."""

@@ -41,6 +41,20 @@ fix y4 all ave/time 5 2 10 c_thermo_press v_vv mode vector file y3.yaml
 fix fa all ave/time 10 2 20 f_a[*] f_d[1] file fa.txt
 thermo_style custom step temp f_a[1] f_a[2] f_c f_d[1] f_b[1] f_y2[1][2] f_y3[3]
 """,
+    "before what acts at the end of steps": """
+variable l equal lx
+variable mean atom vx*vx
+fix p1 all print 2 "$(c_t:%.8f) $l" file p1.txt screen no
+fix a all ave/time 1 4 5 c_t v_l c_thermo_press file a1.txt
+fix c all ave/atom 3 2 15 vx
+fix v all vector 3 c_t
+fix r all temp/rescale 3 1.0 1.0 0.01 0.5
+fix b all temp/berendsen 1.0 1.0 0.5
+fix p2 all print 2 "$(c_t:%.8f) $l" file p2.txt screen no
+fix d all deform 2 x erate 0.1
+fix p3 all print 2 "$(c_t:%.8f) $l" file p3.txt screen no
+thermo_style custom step temp f_a[1] f_a[2] f_a[3] lx
+""",
     "vector and print": """
 fix p all print 10 "step $(step) T $(c_t:%.8f)" file p.txt screen no
 fix p2 all print 10 "step $(step) pe $(c_pe:%.8f)" append p3.txt title hello

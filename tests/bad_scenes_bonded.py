@@ -42,7 +42,7 @@ line("dump local columns of different lengths",
      "compute b all bond/local dist\ncompute a all angle/local theta\ndump d all local 1 f c_b c_a",
      "3 c_b;2 c_a", at=RUN)
 line("dump local sorted by id", "compute b all bond/local dist\ndump d all local 1 f c_b\ndump_modify d sort id", "sort;id|ID")
-line("local values in thermo output", "compute b all bond/local dist\nthermo_style custom step c_b[1]", "bond/local", at=None)
+line("local values in thermo output", "compute b all bond/local dist\nthermo_style custom step c_b[1]", "bond/local")
 line("turned off bonds still need coefficients", "delete_bonds all bond 1\nbond_style hybrid harmonic", "bond;type 1", at=RUN)
 
 ADDED = CASES[START:]

@@ -69,6 +69,8 @@ RELAX = {
     "relax tri": (["change_box all triclinic", "fix 1 all box/relax tri 1000.0 vmax 0.001"], ["f_1", *BOX]),
     "relax stress": (["change_box all triclinic xy final 1.0 xz final -0.5", "min_modify norm max",
                       "fix 1 all box/relax x 1000.0 y 500.0 xy 200.0 scalexz no vmax 0.001 nreset 3"], ["f_1", *BOX]),
+    "relax plane": (["fix 1 all box/relax x 1000.0 y 1000.0 couple xy vmax 0.002"], ["f_1", *BOX]),
+    "relax 2d couple": (["fix 1 all box/relax x 1000.0 y 1000.0 couple xy vmax 0.001", "fix 2 all enforce2d"], ["f_1", *BOX]),
     "relax 2d": (["fix 1 all box/relax iso 1000.0 vmax 0.001", "fix 2 all enforce2d"], ["f_1", *BOX]),
 }
 

@@ -57,7 +57,10 @@ SCENES = {
     "layer": "units lj\ndimension 2\natom_style atomic" + COMMON.format(lattice="hex 0.9", box="block 0 8 0 5 -0.25 0.25", z="0.0"),
     "tilted": "units lj\natom_style atomic" + COMMON.format(lattice="bcc 1.1", box="prism 0 5 0 5 0 5 1.2 0.7 -1.1", z="0.05"),
     "molecules": GAS,
+    "charges": GAS + "pair_style lj/cut/coul/long 2.0 2.5\npair_coeff 1 1 1.0 0.7\npair_coeff 2 2 0.5 0.6\npair_modify table 0\n"
+               "kspace_style ewald 1e-4",
 }
+SOLVED = ("centroid", "half heat/flux")       # which LAMMPS does not have of long-range solvers
 # words of the compute -> its values: G global array, V vector, S scalar, A or B per atom, L or M local, one or several columns
 EVERYWHERE = {
     "all rdf 30 * * 1 2": "G", "half rdf 20 1*2 2": "G", "all rdf 25 1 1 cutoff 3.1": "G",
@@ -121,7 +124,14 @@ HELPERS = ["variable f equal 0.7", "variable g equal 1.3", "variable s equal -0.
            "variable r atom 0.3+0.15*(type==2)+0.05*sin(x)",
            "velocity all create 1.3 87287",
            "compute ke all ke/atom", "compute pe all pe/atom",
-           "compute stress all stress/atom NULL virial", "compute centroid all centroid/stress/atom NULL virial"]
+           "compute stress all stress/atom NULL virial"]
+CENTROID = "compute centroid all centroid/stress/atom NULL virial"
+
+
+def computes_of(name: str) -> dict[str, str]:
+    """Words and kinds of values of the computes for a scene."""
+    return {words: kind for words, kind in (EVERYWHERE | HERE.get(name, {})).items()
+            if name != "charges" or not any(word in words for word in SOLVED)}
 
 
 def rows(values: np.ndarray) -> np.ndarray:
@@ -133,8 +143,8 @@ def rows(values: np.ndarray) -> np.ndarray:
 def prepare(name: str) -> tuple[list[str], dict[str, str]]:
     """The lines of a scene with its computes, up to the forces, and the kinds of values by ID."""
     lines, computes, columns, dumped, local = [line for line in SCENES[name].splitlines() if line], {}, [], [], []
-    lines += HELPERS
-    for k, (words, kind) in enumerate((EVERYWHERE | HERE[name]).items()):
+    lines += [*HELPERS, *[CENTROID] * (name != "charges")]
+    for k, (words, kind) in enumerate(computes_of(name).items()):
         lines.append(f"compute c{k} {words}")
         computes[f"c{k}"] = kind
         if kind in "AB":
@@ -211,7 +221,7 @@ def test_like_lammps(name, theirs):
     lines, computes = prepare(name)
     lmp = ran(lines)
     order = np.argsort(lmp.scene.system.id)
-    for (id, kind), words in zip(computes.items(), EVERYWHERE | HERE[name], strict=True):
+    for (id, kind), words in zip(computes.items(), computes_of(name), strict=True):
         value, expected = lmp.extract_compute(id, 0 if kind in "SVG" else 2 if kind in "LM" else 1, "SVG".find(kind)), theirs[name][id]
         if kind in "LM":
             value, expected = rows(value), rows(expected)

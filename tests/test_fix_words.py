@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from wheel import ran
 
 import asemd.compute
 import asemd.fix
@@ -70,7 +71,7 @@ def test_compute_round_trip(line, session):
     ("baoab -1 1 1 1", "negative"), ("langevin 1 1 1 1 omega yes gjf vhalf", "does not go with gjf"),
     ("langevin 1 1 1 1 angmom -3.3", "must not be negative"), ("langevin 1 1 1 1 angmom yes", "number"),
     ("langevin -1 1 1 1", "negative"), ("langevin 1 1 1 1 talli yes", "did you mean tally"), ("langevin 1 1 1 1 scale 1", "2 values"),
-    ("langevin 1 1 1 1 tally maybe", "yes or no"), ("langevin v_b 1 1 1", "undefined variable b"), ("temp/rescale 0 1 1 1 1", "at least 1"),
+    ("langevin 1 1 1 1 tally maybe", "yes or no"), ("temp/rescale 0 1 1 1 1", "at least 1"),
     ("temp/rescale 1 1 1 1 2", "fraction"), ("temp/rescale 1 1 1", "needs N"), ("temp/berendsen 1 1", "needs"),
     ("temp/csvr 1 1 1", "needs Tstart"), ("temp/csld 1 1 1 0", "seed"), ("temp/csvr 1 1 0 1", "damping"),
     ("temp/berendsen 1 x 1", "number"), ("setforce 1 1", "needs fx fy fz"), ("setforce 1 1 1 regoin box", "did you mean region"),
@@ -133,3 +134,17 @@ def test_compute_modify():
                            (["dynamic", "2"], "yes or no")):
         with pytest.raises(InputError, match=message):
             temp.modify(words, None)
+
+
+@pytest.mark.parametrize("line", [
+    "langevin v_late 1 1 77", "setforce v_late 0 0", "indent 1.0 sphere v_late 0 0 1.0", "adapt 1 pair lj/cut epsilon 1 1 v_late",
+    "heat 1 v_late", "spring/self v_late", "deform 1 x variable v_late v_late",
+    "wall/lj126 zlo -3.0 v_late 1 1", "gravity v_late vector 0 0 1",
+])
+def test_variables_may_be_defined_later(line):
+    """Before the run, as in LAMMPS; an error names the fix."""
+    text = f"boundary p p {'f' if 'wall' in line else 'p'}\nregion b block 0 5 0 5 0 5\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\n" \
+           f"create_atoms 1 single 2 1 1\nmass 1 1\nvelocity all create 1 77\npair_style lj/cut 1.5\npair_coeff 1 1 1 1\nfix 2 all {line}\n"
+    with pytest.raises(InputError, match=rf"undefined variable late .*fix 2 all {line.split()[0]}"):
+        ran(text + "run 0")
+    ran(text + "variable late equal 0.5\nrun 2")

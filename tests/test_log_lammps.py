@@ -260,6 +260,12 @@ pair_coeff * * lj/cut 0.1 2
 pair_coeff 1 1 soft 1
 pair_coeff 2 2 soft 1
 run 0
+pair_style hybrid/overlay lj/cut 4 eam
+pair_coeff * * lj/cut 0.1 2
+pair_coeff 1 1 eam Cu_u3.eam
+pair_coeff 2 2 eam Cu_u3.eam
+pair_coeff 1 2 none
+run 0
 special_bonds fene
 create_bonds many all all 1 0.1 0.2
 clear

@@ -130,6 +130,28 @@ def test_large_systems_move_like_lammps(name):
     assert session.loop.engine.mode == "cluster" and session.loop.engine.expanded == (name == "by atom")
 
 
+@pytest.mark.parametrize("name", ["off", "special and scaled", "starting"])
+@pytest.mark.parametrize("size", ["", "\nreplicate 3 3 3"])
+def test_energy_of_a_sub_style_has_no_factor(name, size):
+    """As thermodynamic integration takes it, at a factor of 0 too."""
+    cases = CASES | {"starting": "variable up equal 0.25*step\npair_style hybrid/scaled v_up lj/cut 6 1 coul/cut 5\n" + COEFF}
+    computes = "\ncompute a all pair lj/cut\ncompute b all pair coul/cut ecoul\nthermo_style custom step c_a c_b\nrun 0"
+    script = chain() + VARIABLES + cases[name] + size + computes
+    session = asemd(script)
+    theirs = ask("""
+lmp, answer = ran(given["lines"]), []
+for run in ("run 0", "run 3"):
+    lmp.command(run)
+    answer += [lmp.last_thermo()[c] for c in ("c_a", "c_b")]
+""", lines=lines_of(script))
+    ours = []
+    for run in ("run 0", "run 3"):
+        session.execute(run)
+        ours += [session.variables.evaluate(c) for c in ("c_a", "c_b")]
+    np.testing.assert_allclose(ours, theirs, rtol=1e-9)
+    assert all(ours)
+
+
 def test_factors_that_follow_positions_see_atoms_inside_the_box():
     """Runs that follow one another begin with atoms inside the periodic box, and so do their factors."""
     text = ("variable p atom 0.3+0.05*x\npair_style hybrid/scaled v_p lj/cut 6 1 coul/cut 5\n" + COEFF

@@ -102,6 +102,18 @@ def test_against_lammps(theirs, case):
         np.testing.assert_allclose(np.array(got), want, rtol=1e-11, atol=1e-10 * np.abs(want).max(), err_msg=text)
 
 
+@pytest.mark.parametrize("style", ["lj/cut/tip4p/cut {} 0.125 4.5 5.0", "lj/long/tip4p/long cut long {} 0.15 4.5",
+                                   "hybrid/overlay lj/cut 4.5 tip4p/cut {} 0.15 5.0"])
+def test_type_labels(style):
+    """They stand for the types of oxygen, hydrogen, bond and angle."""
+    found = []
+    for words in ("OW HW OW-HW HW-OW-HW", "2 1 3 1"):
+        lmp = wheel.ran("atom_style full\nregion b block 0 9 0 9 0 9\ncreate_box 2 b bond/types 3 angle/types 1\nlabelmap atom 2 OW 1 HW\n"
+                        f"labelmap bond 3 OW-HW\nlabelmap angle 1 HW-OW-HW\npair_style {style.format(words)}")
+        found.append([(use.style.name, use.settings) for use in lmp.scene.interactions.uses["pair"]])
+    assert found[0] == found[1]
+
+
 @pytest.mark.parametrize("more", [("kspace_style pppm/tip4p 1e-3", "kspace_modify gewald 0.4 mesh 7 9 11"), MESHES[:2]])
 def test_shares_of_the_mesh_alone(tmp_path, more):
     """Virials without energies, and energies of charges that do not add up to 0 in a box that moves."""

@@ -57,6 +57,9 @@ CASES = {
 }
 RERUNS = {
     "all": "rerun {folder}/melt.scaled dump x y z vx vy vz",
+    "start": "variable r equal ramp(0,1)\nthermo_style custom step pe press v_r elapsed elaplong\n"
+             "rerun {folder}/melt.scaled start 10 stop 40 dump x y z",
+    "first": "thermo_style custom step pe press vol elapsed elaplong\nrerun {folder}/melt.scaled first 5 every 10 dump x y z",
     "some": "rerun {folder}/melt.scaled first 10 last 30 every 20 dump x y z vx vy vz box yes",
     "skipped": "rerun {folder}/melt.scaled skip 2 start 0 stop 100 dump x y z",
     "twice": "rerun {folder}/melt.scaled {folder}/melt.scaled post yes dump x y z",
@@ -146,7 +149,7 @@ def test_write_dump(tmp_path):
     ("read_dump {folder}/tilted.scaled 20 x y z", "triclinic"), ("rerun {folder}/melt.scaled x y z", "keyword dump"),
     ("rerun dump x y z", "needs a dump file"), ("rerun {folder}/melt.scaled first 100 dump x y z", "no snapshot"),
     ("rerun {folder}/melt.scaled first 10 last 5 dump x y z", "after last"), ("rerun {folder}/melt.scaled skip 0 dump x", "negative or 0"),
-    ("rerun {folder}/melt.scaled start 10 dump x", "enclose"), ("write_dump all custom", "3 values"),
+    ("rerun {folder}/melt.scaled stop 10 dump x y z", "snapshot 20 is beyond stop 10"), ("write_dump all custom", "3 values"),
     ("write_dump non custom f x", "unknown group"), ("write_dump all custm f x", "custm"), ("write_dump all atom f modify", "dump_modify"),
 ])
 def test_mistakes(folder, line, message):

@@ -93,6 +93,9 @@ PLAIN = [
     "variable y equal $(2+3)+1\nprint '${y}'", "print a b", "print", "print a bogus x", "print a screen maybe", "print a file", "jump",
     "next", "variable", "variable v", "variable v bogus 1", "variable v-x equal 1", "variable v delete 3", "variable v loop 3 1",
     "variable v loop 0", "variable v loop -1 3\nprint $v", "variable v loop 2 4 pad\nprint $v", "variable v internal a",
+    "variable i index 7\nprint \"q='$i' r=$i\"", "variable i index 7\nprint 'a \"$(1+1)\" ${i}'",
+    'variable i index 7\nprint """a \'$i\' $i"""', "variable i index 7\nshell touch 'zz$i' zy$i\nprint '$(is_file(zz7)+2*is_file(zy7))'",
+    "variable i index 7\nif \"'$i' == 7\" then 'print yes'",
     "variable v index a\nvariable v string b", "variable v string a\nvariable v index b\nprint $v", "variable v equal 1 + 2\nprint $v",
 ]
 

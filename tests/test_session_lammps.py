@@ -30,6 +30,9 @@ SCRIPTS = {
                      "thermo_style custom step temp pe v_r v_d elapsed elaplong nbuild\n"
                      "run 10 start 0 stop 40\nrun 10 start 0 stop 40 pre no\n"
                      "run 20 every 10 'print \"$(v_r)\"'\nrun 20 start 0 stop 80 every 10 NULL\n",
+    "between runs": BASE + "variable e equal logfreq3(1,25,1000)\nvariable d equal vdisplace(0,1)+swiggle(0,1,0.1)\nthermo v_e\n"
+                           "thermo_style custom step v_e v_d\nrun 20\nrun 5\nvariable c equal ${d}\n"
+                           "thermo 1\nthermo_style custom step v_e v_c v_d\nrun 5\n",
     "elements": BASE + "group g id 1:9\ndisplace_atoms all random 0.1 0.1 0.1 7\nfix s g setforce 0 NULL 0.5\nthermo 5\n"
                        "thermo_style custom step f_s[*]\nrun 5\n",
     "loop": BASE + "variable a loop 3\nlabel top\nvariable e equal $a*0.001\ntimestep ${e}\nrun 2\nnext a\njump SELF top\n",

@@ -209,3 +209,13 @@ def test_scripts_for_lammps(data):
     assert session.loop.fixes[-1].constraint_error(session.loop) < 1e-13
     with pytest.raises(InputError, match="settle of fix s"):
         convert._of_lammps(session.scene)
+
+
+def test_type_labels(data):
+    """They stand for the types of bonds, angles and atoms."""
+    found = []
+    for words in ("b OH a HOH t C1", "b 1 a 1 t 2"):
+        labels = "labelmap bond 1 OH", "labelmap angle 1 HOH", "labelmap atom 2 C1"
+        lmp = start(data / "data.water", *labels, f"fix s all shake 1e-4 20 0 {words}")
+        found.append(lmp.scene.fixes["s"].to_lammps())
+    assert found[0] == found[1]

@@ -11,6 +11,7 @@ PLAIN = ["run 0", "run 60", "run 40"]
 SHORT, THREE = ["run 0", "run 30", "run 20"], "run_style respa 3 2 2 bond 1 angle 2 pair 3"
 HALF = "region half block 0 6.5 INF INF INF INF"
 ENERGIES = ("temp", "pe", "ebond", "eangle")      # LAMMPS counts half of the virial of springs
+ADAPT = ["variable e equal 0.5+0.01*step", "fix a all adapt 1 pair lj/cut/coul/cut epsilon 1 3 v_e"]
 CASES = {
     "all kinds": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}"], PLAIN),
     "loose": ([NVE, f"fix s all shake 1e-3 5 0 {ALL}", "timestep 2"], PLAIN),
@@ -42,6 +43,8 @@ CASES = {
     "three levels, rattle": ([NVE, f"fix s all rattle 1e-6 100 0 {ALL}", "fix_modify s virial no", THREE], SHORT),
     "levels, ehex": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}", "fix h all ehex 3 0.05 constrain", THREE], SHORT),
     "tilted": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}"], ["run 40"]),
+    "adapt": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}", *ADAPT], ["run 0", "run 20"]),
+    "levels, adapt": ([NVE, f"fix s all shake 1e-6 100 0 {ALL}", *ADAPT, THREE], ["run 0", *SHORT]),
 }
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import pytest
 from both import asemd
+from wheel import ask, ran
 
 from asemd.errors import InputError, InputWarning
 
@@ -78,3 +79,48 @@ def test_momentum_of_no_atoms():
         with pytest.raises(InputError, match="fix 2 .style momentum.: group none has no atoms"):
             asemd(scene + f"fix 2 none momentum 1 linear 1 1 1\n{action}")
     asemd(scene + "group d dynamic all every 1 var no\nfix 2 d momentum 1 linear 1 1 1\nrun 1")
+
+
+MELT = """
+lattice fcc 0.8442
+region b block 0 3 0 3 0 3
+create_box 1 b
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.44 87287 loop geom
+pair_style lj/cut 2.5
+pair_coeff 1 1 1.0 1.0
+neigh_modify delay 50 every 50
+fix 1 all nve
+fix 2 all balance 5 1.05 shift xyz 10 1.05 weight group 1 all 1.0
+"""
+ASKED = """
+l = start()
+l.commands_string(given["text"])
+answer = {"x": list(l.gather_atoms("x", 1, 3)), "image": list(l.gather_atoms("image", 0, 3)),
+          "row": [l.last_thermo()[name] for name in ("f_2", "f_2[1]", "f_2[2]", "f_2[3]")]}
+"""
+
+
+@pytest.mark.parametrize("words", ["1.1 shift xyz 10 1.05 out f", "1.0 x uniform y 0.5 0.7 z 0.2", "1.1 rcb weight group 1 all 1 sort no",
+                                   "1.1 rcb weight time 0.5 weight neigh 0.5 weight var x weight store w"])
+def test_balance(words):
+    asemd(BOX + f"balance {words}")
+
+
+@pytest.mark.parametrize("command", [
+    "balance 1.05 shift xx 2 1.0", "balance 1.05 rcb wait 1", "balance 1.05 rcb weight time x", "fix 1 all balance 5 0.5 rcb",
+    "fix 1 all balance -1 1.5 rcb", "fix 1 all balance 1 1.5 shift x 0 1.0", "fix 1 all balance 1 1.5 rcb weight group 2 all",
+])
+def test_wrong_balance(command):
+    with pytest.raises(InputError, match="balance"):
+        asemd(BOX + command)
+
+
+def test_fix_balance_asks_for_lists():
+    """Its outputs, and lists on its steps: atoms that left the box are wrapped then."""
+    script = MELT + "thermo_style custom step f_2 f_2[1] f_2[2] f_2[3]\nrun 13\nrun 9"
+    theirs, ours = ask(ASKED, text=script), ran(script)
+    assert list(ours.gather_atoms("image", 0, 3)) == theirs["image"]
+    assert list(ours.gather_atoms("x", 1, 3)) == pytest.approx(theirs["x"], rel=1e-9, abs=1e-9)
+    assert [ours.last_thermo()[name] for name in ("f_2", "f_2[1]", "f_2[2]", "f_2[3]")] == theirs["row"] == [0.0, 108.0, 0.0, 0.0]

@@ -111,8 +111,10 @@ pair_coeff 1 1 1.0 1.0
 compute s all stress/atom NULL
 compute sum all reduce sum c_s[*]
 compute some all slice 1 5 2 c_thermo_press
-thermo_style custom step c_sum[*] c_some[*]
+compute n all count/type atom
+compute h all voronoi/atom edge_histo 1
+thermo_style custom step c_sum[*] c_some[*] c_n[*] c_h[*]
 fix 1 all nve
 run 0""")
     header = next(line for line in (tmp_path / "log").read_text().splitlines() if line.split()[:1] == ["Step"])
-    assert header.split() == ["Step", *(f"c_sum[{k}]" for k in range(1, 7)), "c_some[1]", "c_some[2]"]
+    assert header.split() == ["Step", *(f"c_sum[{k}]" for k in range(1, 7)), "c_some[1]", "c_some[2]", "c_n[1]", "c_h[1]", "c_h[2]"]

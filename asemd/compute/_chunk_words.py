@@ -69,8 +69,6 @@ def read(words: list[str], session) -> Settings:
     if bins:
         if system.box.triclinic and out.units != "reduced":
             raise InputError(f"{WHAT}: bins in a triclinic box need units reduced")
-        if out.units == "lattice" and scene.lattice is None:
-            raise InputError(f"{WHAT}: units lattice, which is the default, needs the lattice command; or give units box or reduced")
         out.bins = _bins(out, scene)
     return out
 
@@ -112,8 +110,8 @@ def _options(out: Settings, session) -> None:
 
 
 def _bins(out: Settings, scene):
-    """The bins, whose lengths are in lattice spacings, or as they are."""
-    scale = scene.lattice.spacings if out.units == "lattice" else np.ones(3)
+    """The bins, whose lengths are in lattice spacings, 1 without a lattice, or as they are."""
+    scale = scene.lattice.spacings if out.units == "lattice" and scene.lattice is not None else np.ones(3)
     what, words = f"{WHAT} {out.style}", out.words
 
     def end(word: str, k: int, names) -> str | float:

@@ -1,7 +1,8 @@
 """Pairs of atoms near each other at the present positions, as the neighbour list of the pair style has them.
 
-Partners whose weights of ``special_bonds`` are all zero and pairs that ``neigh_modify exclude`` forbids are not among them. The engine's
-list serves where it reaches far enough; otherwise one is made.
+Pairs that ``neigh_modify exclude`` forbids are not among them, nor are partners whose weights of ``special_bonds`` are all zero, but for
+those that the list has on behalf of a long-range solver: see `ordinary`. The engine's list serves where it reaches far enough; otherwise
+one is made.
 """
 from __future__ import annotations
 
@@ -49,6 +50,14 @@ class Half:
     def around(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """The neighbours of each of n atoms, see `asemd.kernels.surroundings.surroundings`."""
         return loops.surroundings(n, self.i, self.j, self.d, self.r2)
+
+
+def ordinary(state, code: np.ndarray) -> np.ndarray:
+    """Which pairs, by their ``code`` or ``kind``, are there without a long-range solver, too."""
+    if state.engine is None:
+        return np.ones(len(code), bool)
+    rules = state.engine.exclusions
+    return ((rules.weight_lj != 0.0) | (rules.weight_coul != 0.0))[code & 3]
 
 
 def type_cutoffs(state) -> np.ndarray:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import force_cutoff, half
+from asemd.compute._pairs import force_cutoff, half, ordinary
 from asemd.errors import InputError
 from asemd.kernels import surroundings as loops
 from asemd.words import bounds, choice, number, take, whole
@@ -80,7 +80,8 @@ class ADF(Compute):
         longest = force_cutoff(state, "compute adf")
         radii = np.array([t[3:] for t in self.triples] or [(0.0, longest, 0.0, longest)])
         reach = max(longest, float(radii.max()))
-        around = half(state, reach * (1.0 + 1e-12), own=reach > longest).around(system.n)
+        pairs = half(state, reach * (1.0 + 1e-12), own=reach > longest)
+        around = pairs.take(ordinary(state, pairs.kind)).around(system.n)
         counts, centres = np.zeros((len(radii), self.bins), np.int64), np.zeros(len(radii), np.int64)
         loops.angular(np.flatnonzero(mask), np.ascontiguousarray(system.type, np.int32), *around, mask, self._ranges(system), radii**2,
                       list(ORDINATES).index(self.ordinate), counts, centres)

@@ -32,13 +32,19 @@ class CountType(Compute):
     def __init__(self, group: str = "all", mode: str = "atom"):
         super().__init__(group)
         self.mode = choice(mode, MODES, "compute count/type")
+        self.size: int | None = None        # of the vector, in a script
 
     @classmethod
     def from_lammps(cls, group, words, session):
-        return cls(group, exactly(words, 1, "compute count/type (atom, bond, angle, dihedral or improper)")[0])
+        new = cls(group, exactly(words, 1, "compute count/type (atom, bond, angle, dihedral or improper)")[0])
+        new.size = new._count(session.scene.need_system("compute count/type"))
+        return new
 
     def to_lammps(self) -> list[str]:
         return [self.mode]
+
+    def _count(self, system) -> int:
+        return system.counts["ntypes" if self.mode == "atom" else f"n{self.mode}types"]
 
     def _types(self, state) -> np.ndarray:
         mask, system = state.mask(self.group), state.system
@@ -55,5 +61,4 @@ class CountType(Compute):
 
     def vector(self, state) -> np.ndarray:
         """A count for each type from 1 on."""
-        ntypes = state.system.counts["ntypes" if self.mode == "atom" else f"n{self.mode}types"]
-        return np.bincount(np.maximum(self._types(state), 0), minlength=ntypes + 1)[1:].astype(float)
+        return np.bincount(np.maximum(self._types(state), 0), minlength=self._count(state.system) + 1)[1:].astype(float)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.compute import Compute
-from asemd.compute._pairs import cluster_list, force_cutoff, half, in_slots, limits, of_slots
+from asemd.compute._pairs import cluster_list, force_cutoff, half, in_slots, limits, of_slots, ordinary
 from asemd.errors import InputError
 from asemd.kernels import surroundings as loops
 from asemd.words import bounds, number, take, whole
@@ -84,13 +84,15 @@ class RDF(Compute):
         own, n, inverse = self.cutoff is not None, state.system.counts["ntypes"] + 1, self.bins / cutoff
         if limits(state, cutoff, own) is not None:
             p = half(state, cutoff, own=own)
+            p = p.take(ordinary(state, p.kind))
             k = np.minimum(np.sqrt(p.r2) * inverse, self.bins).astype(np.int64)
             counts = np.bincount((kind[p.i].astype(np.int64) * n + kind[p.j]) * (self.bins + 1) + k, minlength=n * n * (self.bins + 1))
             return counts.reshape(n, n, -1)[:, :, :-1]
         clusters = cluster_list(state, cutoff)
         if clusters is None:
             f, counts = in_slots(state, cutoff), np.zeros((1, n, n, self.bins + 1), np.int64)
-            loops.radial(f.x, of_slots(kind, f.row), f.i, f.j, f.code, f.shifts, inverse, counts[0])
+            keep = ordinary(state, f.code)
+            loops.radial(f.x, of_slots(kind, f.row), f.i[keep], f.j[keep], f.code[keep], f.shifts, inverse, counts[0])
         else:
             engine, counts = state.engine, np.zeros((state.engine.threads, n, n, self.bins + 1), np.int64)
             s, kinds = engine.state, of_slots(kind, engine.state.row)

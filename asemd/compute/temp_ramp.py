@@ -64,8 +64,6 @@ class TempRamp(Temp):
         if vdim == "vz" and scene.dimension == 2:
             raise InputError(f"{what}: vz cannot be used in a 2d simulation")
         spacings = scene.lattice.spacings if lattice and scene.lattice is not None else np.ones(3)
-        if lattice and scene.lattice is None:
-            raise InputError(f"{what}: units lattice needs the lattice command; or give units box")
         v, c = spacings[COMPONENTS.index(vdim)], spacings["xyz".index(cdim)]
         return cls(group, vdim, [float(v * number(w, what)) for w in (vlo, vhi)], cdim, [float(c * number(w, what)) for w in (clo, chi)])
 

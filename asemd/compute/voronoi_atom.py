@@ -180,6 +180,11 @@ class VoronoiAtom(Compute):
         out[:, 1] = np.where(at >= 0, count[at], 0)
         return out
 
+    @property
+    def size(self) -> int | None:
+        """Elements of the vector, None without one."""
+        return None if self.edge_histo is None else self.edge_histo + 1
+
     def vector(self, state) -> np.ndarray:
         """(edge_histo + 1,) faces by their number of edges."""
         if self.edge_histo is None:

@@ -205,6 +205,10 @@ class Fix:
     def follow(self, loop: Loop) -> None:
         """Put the present numbers into ``p`` and ``a``; called before the compiled hook that `follows` names."""
 
+    def setup_pre_force(self, loop: Loop) -> bool:
+        """Called at the start of every run, before any `setup`: whether it has changed what the first forces come from."""
+        return False
+
     def setup(self, loop: Loop) -> None:
         """Called at the start of every run, after the first forces; compiled post_force hooks are applied to those forces by the loop."""
 

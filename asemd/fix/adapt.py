@@ -16,7 +16,6 @@ from asemd.compute._perturbed import held, spelled, uses_of
 from asemd.engine import Engine
 from asemd.errors import InputError, nearest
 from asemd.fix import Fix, sampled
-from asemd.fix.first_forces import forces_again
 from asemd.fix.formula import Formula
 from asemd.kspace.ewald import choose_waves
 from asemd.kspace.term import KSpaceTerm
@@ -138,8 +137,8 @@ class Adapt(Fix):
     def next_step(self, step: int) -> int:
         return (step // self.adapt_every + 1) * self.adapt_every if self.adapt_every else sampled.NEVER
 
-    def setup(self, loop) -> None:
-        """The first change; forces are computed again."""
+    def setup_pre_force(self, loop) -> bool:
+        """The first change."""
         self._check(loop.interactions)
         if self.kspace is not None and loop.engine.solver is None:
             raise InputError("fix adapt kspace needs a kspace_style")
@@ -147,7 +146,7 @@ class Adapt(Fix):
         self._change(loop)
         if self.charge is not None:
             choose_waves(loop.engine)
-        forces_again(loop, self)
+        return True
 
     def pre_force(self, loop) -> None:
         """Change what is due."""

@@ -64,6 +64,7 @@ class BoxRelax(Fix):
     brings = ("temp", "press")
     minimizes = True
     extensive = False
+    flat = False                    # whether the system is two-dimensional, known with the reference box
 
     def __init__(self, group: str = "all", targets=None, couple: str = "none", vmax: float = 1e-4, nreset: int = 0, scale=None,
                  fixedpoint=None, partial: bool = False, deviatoric: bool = True):
@@ -169,9 +170,8 @@ class BoxRelax(Fix):
     # ---- what the minimiser sees --------------------------------------------------------------------------------------------------------
     @property
     def uniform(self) -> bool:
-        """One scale for all lengths."""
-        lengths = [name for name in self.targets if len(name) == 1]
-        return self.couple == ("xyz" if len(lengths) == 3 else "xy") and len(lengths) == len(self.targets) and len(lengths) > 1
+        """One scale for all lengths of the box."""
+        return self.couple == ("xy" if self.flat else "xyz") and self.box_moves == "size"
 
     def count(self) -> int:
         """How many more degrees of freedom the minimiser has."""

@@ -19,7 +19,6 @@ import numpy as np
 from asemd.compute._pairs import half
 from asemd.errors import InputError
 from asemd.fix import Fix, sampled
-from asemd.fix.first_forces import forces_again
 from asemd.kspace.ewald import choose_waves
 from asemd.population import recharge
 from asemd.potential_file import PotentialFile, Record
@@ -153,15 +152,16 @@ class ChargeEquilibration(Fix):
     def next_step(self, step: int) -> int:
         return step + 1 if self.minimizing else (step // self.find_every + 1) * self.find_every
 
-    def setup(self, loop) -> None:
-        """Charges before the first step; forces are computed again."""
+    def setup_pre_force(self, loop) -> bool:
+        """Charges before the first step."""
         self.check(loop.system, loop.interactions)
         if not loop.interactions.uses["pair"]:
             raise InputError(f"fix {self.style} needs a pair style, whose neighbour list it uses")
-        if loop.step % self.find_every == 0:
-            self.find_charges(loop)
-            choose_waves(loop.engine)
-            forces_again(loop, self)
+        if loop.step % self.find_every:
+            return False
+        self.find_charges(loop)
+        choose_waves(loop.engine)
+        return True
 
     def pre_force(self, loop) -> None:
         """New charges, where they are due."""

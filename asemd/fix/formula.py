@@ -20,7 +20,7 @@ class Formula:
     Parameters
     ----------
     name : str
-        Name of the variable.
+        Name of the variable, which must be there when a run begins.
     session
         Its ``variables`` evaluate it; its ``moment`` is what they see of computes.
 

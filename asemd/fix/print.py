@@ -52,8 +52,10 @@ class Print(Fix):
         take(words, 2, what)
         options = sampled.keywords(words[2:], KEYWORDS, what)
         if words[0].startswith("v_"):
-            if session.variables.find(words[0][2:]).style != "equal":
+            name, table = words[0][2:], session.variables.table
+            if name in table and table[name].style != "equal":
                 raise InputError(f"{what}: {words[0]} must be a variable of style equal")
+            session.awaited.append(name)
             every = words[0]
         else:
             every = whole(words[0], f"{what} N")

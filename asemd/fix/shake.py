@@ -119,7 +119,7 @@ class Shake(OnLevels, Fix):
                 lists["masses"].append(number(word, f"{what} m"))
             else:
                 kind, count = {"b": ("bond", "nbondtypes"), "a": ("angle", "nangletypes"), "t": ("atom", "ntypes")}[mode]
-                value = whole(word, f"{what} {mode}")
+                value = next((t for t, label in system.labels[kind].items() if label == word), None) or whole(word, f"{what} {mode}")
                 if not 1 <= value <= system.counts[count]:
                     raise InputError(f"{what}: there is no {kind} type {value} ({mode}); there are {system.counts[count]}")
                 lists[LISTS[mode]].append(value)

@@ -64,8 +64,8 @@ class BoxLandscape(Landscape):
 
     def __init__(self, loop, session, fix):
         super().__init__(loop, session)
-        self.fix, self.n, self.count = fix, loop.system.n, fix.count()
         fix.set_reference(loop.system, loop.units.nktv2p, begin=True)
+        self.fix, self.n, self.count = fix, loop.system.n, fix.count()
         self.where = self.x0
         self.mask = loop.groups[fix.group] if fix.partial else np.ones(self.n, bool)
         self.x0 = np.vstack([self.x0, np.zeros((-(-self.count // 3), 3))])

@@ -128,11 +128,12 @@ def substitute(text: str, value: Callable[[str], str], formula: Callable[[str], 
     echo : callable, optional
         Called with the line after each replacement, which is what a log shows.
     quotes : bool
-        Whether text inside quotes stays as it is (a command line) or not (the text of ``print``).
+        Whether a quote must have its partner (a command line) or may be an apostrophe (the text of ``print``); text inside quotes stays
+        as it is.
     """
     i = 0
     while i < len(text):
-        if quotes and text[i] in "\"'":
+        if text[i] in "\"'" and (quotes or text[i] in text[i + 1:]):
             i = _quoted_end(text, i)
         elif text[i] == "$":
             kind, content, end = _reference(text, i)

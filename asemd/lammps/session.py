@@ -232,7 +232,7 @@ class Session:
             raise InputError(f"jump: no label {missing}{f' in {path}' if path else ''}{found}", origin and origin.where)
 
     def substitute(self, text: str) -> str:
-        """Replace variables in text whose quotes are gone (print, if)."""
+        """Replace variables in text whose outer quotes are gone (print, if); inner ones keep what is between them."""
         return lex.substitute(text, self.variables.value, self.variables.evaluate, quotes=False)
 
     def print(self, text: str) -> None:

@@ -101,7 +101,7 @@ def report_mixing(session, command: str = "") -> None:
             session.told_charge = True
         if lines[1:]:
             session.print("\n".join(lines[1:]))
-    if not scene.interactions.hybrid["pair"] and uses[0].style.many:
+    if any(use.style.many for use in uses):
         return
     mixed = sum(pair not in use.coeff for use, filled in terms if _mixes_energies(use.style) for pair in filled)
     rules = [use.modify["mix"] for use in uses if "mix" in use.modify]

@@ -43,8 +43,6 @@ def run(session, args):
         raise InputError(f"rerun: first {first} is after last {last}")
     start = first if options["start"] is None else options["start"]
     stop = last if options["stop"] is None else options["stop"]
-    if start > first or stop < last and options["stop"] is not None and options["last"] != FOREVER:
-        raise InputError(f"rerun: start {start} and stop {stop} must enclose the snapshots, {first} to {last}")
     Rerun(session, files, options, request, Plan(0, start, stop, post=options["post"])).run()
 
 
@@ -65,6 +63,8 @@ class Rerun(Driver):
                     return
                 if frame.step < o["first"] or frame.step <= before or (before >= 0 and o["every"] and frame.step % o["every"]):
                     continue
+                if o["stop"] is not None and frame.step > o["stop"]:
+                    raise InputError(f"rerun: snapshot {frame.step} is beyond stop {o['stop']}: give last too, or a later stop")
                 count += 1
                 if (count - 1) % o["skip"] == 0:
                     before = frame.step
@@ -121,7 +121,7 @@ class Rerun(Driver):
         if fresh:
             setup_log.report_list(session, loop.engine)
             session.log.write("Per MPI rank memory allocation (min/avg/max) = {0:.4g} | {0:.4g} | {0:.4g} Mbytes\n".format(memory()))
-            self.progress = Progress(begin=step, first=self.plan.first, last=self.plan.last)
+            self.progress = Progress(begin=self.plan.first, first=self.plan.first, last=self.plan.last)
             if scene.thermo.header(self.words):
                 session.log.write(scene.thermo.header(self.words) + "\n")
         self._provide(step, step, fresh=True)

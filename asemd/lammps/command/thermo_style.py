@@ -24,8 +24,8 @@ def run(session, args):
         if table is not None and reference[1] not in table:
             kind, id = "compute" if reference[0] == "c" else "fix", reference[1]
             raise InputError(f"thermo_style: there is no {kind} {id}{nearest(id, table)}")
-        if table is not None and not reference[2]:
-            _check_scalar(table[reference[1]])
+        if table is not None and len(reference[2]) < 2:
+            _check_output(table[reference[1]], "vector" if reference[2] else "scalar")
         if reference and reference[0] == "v":
             style, fits = session.variables.find(reference[1]).style, ("vector",) if reference[2] else NUMBERS
             if style not in fits:
@@ -37,11 +37,11 @@ def run(session, args):
         session.warn("new thermo_style command, previous thermo_modify settings are lost")
 
 
-def _check_scalar(source) -> None:
-    """Say at once, with the line of ``thermo_style``, that a compute or fix never has a global scalar."""
+def _check_output(source, kind: str) -> None:
+    """Say at once, with the line of ``thermo_style``, that a compute or fix never has a global scalar, or vector."""
     base = Fix if isinstance(source, Fix) else Compute
-    if type(source).scalar is base.scalar:
-        raise InputError(f"thermo_style: {base.__name__.lower()} {source.id} (style {source.style}) has no global scalar")
+    if getattr(type(source), kind) is getattr(base, kind):
+        raise InputError(f"thermo_style: {base.__name__.lower()} {source.id} (style {source.style}) has no global {kind}")
 
 
 def _expanded(session, word: str) -> list[str]:
