@@ -93,6 +93,7 @@ def test_the_script_that_is_written(found, tmp_path):
 
 @pytest.mark.parametrize(("pair", "solver", "left_out"), [
     ("lj/cut 8.0", "none", {name: "no kspace_style" for name in NAMES}),
+    ("lj/cut/coul/long 7.0 8.0", "zero 1e-4", {name: "kspace_style zero adds nothing" for name in NAMES}),
     ("lj/cut/coul/long 7.0 8.0", "ewald 1e-4", {"mesh": "kspace_style ewald has no such mesh"}),
     ("lj/cut/coul/long 7.0 8.0", "pppm 1e-4\nkspace_modify mesh 8 8 8", {"accuracy": "kspace_modify mesh stands for the accuracy"}),
     ("lj/cut/coul/long 7.0 8.0", "pppm 1e-4\nkspace_modify compute no", {name: "kspace_modify compute no" for name in NAMES}),

@@ -22,6 +22,8 @@ def why_not(scene) -> str | None:
     cls = solver_class(scene)
     if cls is None:
         return "no kspace_style"
+    if not cls.adds:
+        return f"kspace_style {cls.style} adds nothing"
     if not scene.interactions.kspace_modify.get("compute", True):
         return "kspace_modify compute no"
     q = scene.system.q
