@@ -239,13 +239,14 @@ class Bench:
             squares[1] += float((force * force).sum())
         point.energy_error, point.pressure_error = max(energies), max(pressures)
         if any(not self.knobs[name].model and self.knobs[name].reference(self.scene) is not None for name in settings):
-            point.given_error = self._given_error(reference)
+            point.given_error = self.given_error(*settings)
         if math.isnan(point.force_error) and squares[1] > 0.0:
             point.force_error = math.sqrt(squares[0] / squares[1])
 
 
-    def _given_error(self, reference: Reference) -> float:
-        """What the script's settings miss of better forces, relative; at the first frame."""
+    def given_error(self, *names: str) -> float:
+        """What the script's settings miss of the forces with the tightest values of some knobs, relative; at the first frame."""
+        reference = self.reference(dict.fromkeys(names), False)
         if id(reference) not in self.given:
             scene = self.trial({}, "", shifted=False)
             engine, exact = Engine(scene.system, scene.interactions, scene.settings()), reference.at(self.frames[0]).forces

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from asemd.errors import AsemdError, InputError
@@ -210,7 +211,7 @@ class Study:
             self.report.curves.append(curve)
             current = knob.current(self.scene)
             values = [v for v in knob.values(self.scene) if v != current]
-            if current is not None and knob.reference(self.scene) is not None:      # the script's value has an error of its own
+            if current is not None and knob.model and knob.reference(self.scene) is not None:       # an error of its own
                 values.insert(0, current)
             rows.append([(knob, v) for v in values])
         return [row[k] for k in range(max(map(len, rows), default=0)) for row in rows if k < len(row)]
@@ -225,6 +226,11 @@ class Study:
                 curve.script_label, curve.script_number = knob.label(current), knob.number(current, 0)
                 if knob.reference(self.scene) is None:
                     curve.points.append(report.script)
+                elif not knob.model:        # the same run, with what its forces miss
+                    missed = self.bench.given_error(knob.name)
+                    curve.points.append(replace(report.script, knob=knob.name, label=curve.script_label, number=curve.script_number,
+                                                force_error=missed, given_error=missed, energy_error=math.nan, pressure_error=math.nan,
+                                                own=True))
         for k, (knob, value) in enumerate(self.wanted):
             left = self.clock.left(1.0 - REST - (TOGETHER if k >= len(report.curves) else 0.0))
             if left <= (self.overhead if curves_begun(report) else 0.0):
