@@ -149,6 +149,9 @@ CASES = {
     "create weighted": MELT.format("lj/coul 0.5 1 1", "", "run 22"),
     "create limited": MELT.format(SAME, "iparam 2 3 jparam 1 2", "run 32"),
     "create with items": MELT.format("lj/coul 0 0.3 0.6", "iparam 3 1 atype 1 dtype 1 itype 1", "run 33"),
+    "create perhaps": MELT.format(SAME, "prob 0.4 5557", "run 32"),
+    "create perhaps, limited": MELT.format("lj/coul 0.5 1 1", "iparam 2 3 jparam 1 2 prob 0.7 77", "run 32"),
+    "break perhaps": MELT.format(SAME, "atype 1 dtype 1 itype 1", "run 30\nunfix 2\nfix 2 all bond/break 4 1 1.05 prob 0.5 991\nrun 21"),
     "break": MELT.format(SAME, "atype 1 dtype 1 itype 1", "run 30\nunfix 2\nfix 2 all bond/break 4 1 1.05\nrun 10"),
 }
 SCRIPT = """
