@@ -272,6 +272,18 @@ def test_evaporate_goes_on_from_a_restart(tmp_path, monkeypatch):
     assert rest.scene.fixes["2"].scalar() == 21.0
 
 
+@pytest.mark.parametrize("last", ["restart 15 r.*\nrun 32\nrun 0", "run 15\nwrite_restart r.15\nrun 17"])
+def test_bonds_by_chance_go_on_from_a_restart(tmp_path, monkeypatch, last):
+    monkeypatch.chdir(tmp_path)
+    script = MELT.format(SAME, "prob 0.3 5557", last)
+    whole = asemd(script)
+    fixes = "\n".join(line for line in lines_of(MELT.format(SAME, "prob 0.3 5557", "")) if line.startswith("fix "))
+    rest = asemd(f"read_restart r.15\n{fixes}\nrun 17")
+    assert len(whole.scene.system.topology.bonds) > len(asemd("read_restart r.15").scene.system.topology.bonds)
+    np.testing.assert_array_equal(np.sort(np.sort(whole.scene.system.id[whole.scene.system.topology.bonds], axis=1), axis=0),
+                                  np.sort(np.sort(rest.scene.system.id[rest.scene.system.topology.bonds], axis=1), axis=0))
+
+
 def test_deposit_goes_on_from_a_restart(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     script = SURFACE.format("near 1.0 vz -1.0 -1.0", 70).replace("run 70", "")

@@ -49,7 +49,7 @@ class BondChange(Fix):
         if not 0.0 <= probability <= 1.0:
             raise InputError(f"fix {self.style} prob: the fraction must be from 0 to 1, got {probability:g}")
         self.interval, self.bond_type, self.distance, self.probability, self.seed = every, bond_type, distance, probability, seed
-        self.random, self.storage, self.resumed = Marsaglia(seed), AtomOrder(), False
+        self.random, self.storage, self.resumed, self.running = Marsaglia(seed), AtomOrder(), False, False
         self.now = self.total = 0
 
     @classmethod
@@ -72,6 +72,10 @@ class BondChange(Fix):
             if not self.resumed:
                 self.storage.sort(loop)
             self.resumed = False
+        self.running = True
+
+    def finish(self, loop) -> None:
+        self.running = False
 
     def next_list(self, step: int) -> int:
         return max(step + 1, self.storage.due) if self.draws else NEVER
@@ -118,14 +122,16 @@ class BondChange(Fix):
         return float((self.now, self.total)[i - 1])
 
     def state(self) -> dict:
-        return {"now": self.now, "total": self.total, "stream": self.random.stream(), "ids": self.storage.ids, "due": self.storage.due}
+        return {"now": self.now, "total": self.total, "stream": self.random.stream(), "ids": self.storage.ids, "due": self.storage.due,
+                "running": self.running}
 
     def restore(self, state: dict) -> None:
         self.now, self.total = int(state["now"]), int(state["total"])
         if "stream" not in state:       # of an older file, whose numbers were others
             return
         self.random.take([float(x) for x in state["stream"]])
-        self.storage.ids, self.storage.due, self.resumed = np.array(state["ids"], np.int64), int(state["due"]), True
+        self.storage.ids, self.storage.due = np.array(state["ids"], np.int64), int(state["due"])
+        self.resumed = bool(state["running"])       # each run begins with a sort
 
 
 def mutual(n: int, pairs: np.ndarray, rank: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
