@@ -103,3 +103,13 @@ def test_elements_of_baths_are_not_per_atom(fix):
     with ran(text) as own:
         assert list(own.last_thermo().values()) == pytest.approx(theirs, rel=1e-8, abs=1e-12)
     assert max(abs(x) for x in theirs[2:]) > 1e-6
+
+
+def test_fixes_begin_a_run_with_positions_that_fit_the_images():
+    """Atoms left the box in the run before, and are wrapped when the next one begins."""
+    text = BASE + "velocity all create 1.0 77\nfix 2 all smd cvel 5 0.1 tether 1 1 1 0\nthermo_style custom step f_2[4] f_2[5] f_2[6]\n" \
+           "run 4\nrun 2\n"
+    theirs = ask("answer = list(ran(given['text']).last_thermo().values())", text=text)
+    with ran(text) as own:
+        assert list(own.last_thermo().values()) == pytest.approx(theirs, rel=1e-6, abs=1e-9)
+        assert abs(own.scene.system.image).sum() > 10
