@@ -85,15 +85,15 @@ class Loop:
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
     def setup(self, begin: int | None = None, end: int | None = None, virial: bool = True, needs=()) -> Result:
         """Lists, first forces, the fixes' part in them; compiles what the run needs. The first step's result, with what `needs` names."""
-        self.begin = self.step if begin is None else int(begin)
+        e, self.fix_data, self.begin = self.engine, (), self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
-        e, self.fix_data = self.engine, ()
         for f in self.fixes:
             f.prepare(self)
         self._with_lost(e.load)
         self.gone, self.natoms, self._ago = {}, self.system.n, 0
         e.bonds.hold(True)
         e.forces(True)
+        e.store()       # fixes see positions that fit the image flags
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
         self._wanted = needs

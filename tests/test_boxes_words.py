@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from wheel import ask, ran
 
 import asemd.compute
 import asemd.fix
@@ -100,3 +101,10 @@ def test_extra_words_of_computes():
     for name in ("temp/deform", "viscosity/cos"):
         with pytest.raises(InputError, match="takes no arguments"):
             asemd.compute.find(name).from_lammps("all", ["1"], session_of(False))
+
+
+def test_factor_of_heat_before_the_first_step():
+    script = "region b block 0 4 0 4 0 4\ncreate_box 1 b\ncreate_atoms 1 random 5 77 NULL\nmass 1 1\npair_style zero 1.0\n" \
+             "pair_coeff * *\nfix 1 all nve\nfix 2 all heat 1 0.1\nrun 0"
+    theirs = ask("answer = ran(given['text']).extract_fix('2', 0, 0)", text=script)
+    assert ran(script).extract_fix("2", 0, 0) == theirs == 1.0

@@ -94,6 +94,9 @@ CASES = {
                            ["lattice custom 1.1 a1 1 0 0 a2 0 2 0 a3 0 0 1.5 basis 0 0 0"]),
                            ("plane y 4 lo", []), ("plane z v_one hi", ["lattice sc 11.0"]))},
     "dt/reset": ([NVE, "fix 2 some dt/reset 3 NULL NULL 0.004"], ["f_2", "dt", "time"]),
+    "dt/reset nvt": (["fix 1 all nvt temp 300 350 20", "fix 2 all dt/reset 3 0.2 1.5 0.01"], ["f_2", "dt", "time", "ecouple"]),
+    "dt/reset npt": (["fix 1 all npt temp 300 350 20 aniso 0 500 100 drag 0.1", "fix 2 all dt/reset 2 0.2 1.5 0.01"],
+                     ["f_2", "dt", "time", "ecouple", "vol"]),
     "dt/reset emax": ([NVE, "lattice sc 2.0", "fix 2 all dt/reset 1 0.2 1.5 0.02 emax 0.01"], ["f_2", "dt", "time"]),
 }
 # a fix that acts in Python, on nobody: only the hooks are compiled, not the loop around them

@@ -266,6 +266,12 @@ pair_coeff 1 1 eam Cu_u3.eam
 pair_coeff 2 2 eam Cu_u3.eam
 pair_coeff 1 2 none
 run 0
+pair_style lj/class2 4
+pair_modify mix arithmetic
+pair_coeff 1 1 0.1 2
+pair_coeff 2 2 0.1 2
+pair_coeff 3 3 0.1 2
+run 0
 special_bonds fene
 create_bonds many all all 1 0.1 0.2
 clear

@@ -149,6 +149,9 @@ CASES = {
     "create weighted": MELT.format("lj/coul 0.5 1 1", "", "run 22"),
     "create limited": MELT.format(SAME, "iparam 2 3 jparam 1 2", "run 32"),
     "create with items": MELT.format("lj/coul 0 0.3 0.6", "iparam 3 1 atype 1 dtype 1 itype 1", "run 33"),
+    "create perhaps": MELT.format(SAME, "prob 0.4 5557", "run 32"),
+    "create perhaps, limited": MELT.format("lj/coul 0.5 1 1", "iparam 2 3 jparam 1 2 prob 0.7 77", "run 32"),
+    "break perhaps": MELT.format(SAME, "atype 1 dtype 1 itype 1", "run 30\nunfix 2\nfix 2 all bond/break 4 1 1.05 prob 0.5 991\nrun 21"),
     "break": MELT.format(SAME, "atype 1 dtype 1 itype 1", "run 30\nunfix 2\nfix 2 all bond/break 4 1 1.05\nrun 10"),
 }
 SCRIPT = """
@@ -267,6 +270,18 @@ def test_evaporate_goes_on_from_a_restart(tmp_path, monkeypatch):
     rest = asemd("read_restart r.15\nlattice fcc 0.5\nregion s block INF INF INF INF 2 INF\nfix 1 all nve\n" + fix + "run 20")
     assert sorted(rest.scene.system.id) == sorted(whole.scene.system.id)
     assert rest.scene.fixes["2"].scalar() == 21.0
+
+
+@pytest.mark.parametrize("last", ["restart 15 r.*\nrun 32\nrun 0", "run 15\nwrite_restart r.15\nrun 17"])
+def test_bonds_by_chance_go_on_from_a_restart(tmp_path, monkeypatch, last):
+    monkeypatch.chdir(tmp_path)
+    script = MELT.format(SAME, "prob 0.3 5557", last)
+    whole = asemd(script)
+    fixes = "\n".join(line for line in lines_of(MELT.format(SAME, "prob 0.3 5557", "")) if line.startswith("fix "))
+    rest = asemd(f"read_restart r.15\n{fixes}\nrun 17")
+    assert len(whole.scene.system.topology.bonds) > len(asemd("read_restart r.15").scene.system.topology.bonds)
+    np.testing.assert_array_equal(np.sort(np.sort(whole.scene.system.id[whole.scene.system.topology.bonds], axis=1), axis=0),
+                                  np.sort(np.sort(rest.scene.system.id[rest.scene.system.topology.bonds], axis=1), axis=0))
 
 
 def test_deposit_goes_on_from_a_restart(tmp_path, monkeypatch):

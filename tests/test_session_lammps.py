@@ -93,3 +93,23 @@ answer = [float(l.expand("$(" + f + ")")) for f in given["formulas"]]
     with ran(STATE) as own:
         for formula, expected in zip(FORMULAS, theirs):
             assert own.eval(formula) == pytest.approx(expected, rel=1e-11, abs=1e-11), formula
+
+
+@pytest.mark.parametrize("fix", ["npt temp 1 2 0.1 iso 1 2 1", "msst z 1 q 10"])
+def test_elements_of_baths_are_not_per_atom(fix):
+    """Of their outputs ``thermo_modify norm yes``, the default of units lj, divides the energy only."""
+    text = BASE + f"unfix 1\nfix 1 all {fix}\nthermo_style custom step f_1 f_1[1] f_1[2] f_1[3] f_1[4]\nrun 5\n"
+    theirs = ask("answer = list(ran(given['text']).last_thermo().values())", text=text)
+    with ran(text) as own:
+        assert list(own.last_thermo().values()) == pytest.approx(theirs, rel=1e-8, abs=1e-12)
+    assert max(abs(x) for x in theirs[2:]) > 1e-6
+
+
+def test_fixes_begin_a_run_with_positions_that_fit_the_images():
+    """Atoms left the box in the run before, and are wrapped when the next one begins."""
+    text = BASE + "velocity all create 1.0 77\nfix 2 all smd cvel 5 0.1 tether 1 1 1 0\nthermo_style custom step f_2[4] f_2[5] f_2[6]\n" \
+           "run 4\nrun 2\n"
+    theirs = ask("answer = list(ran(given['text']).last_thermo().values())", text=text)
+    with ran(text) as own:
+        assert list(own.last_thermo().values()) == pytest.approx(theirs, rel=1e-6, abs=1e-9)
+        assert abs(own.scene.system.image).sum() > 10

@@ -124,3 +124,23 @@ def test_fix_balance_asks_for_lists():
     assert list(ours.gather_atoms("image", 0, 3)) == theirs["image"]
     assert list(ours.gather_atoms("x", 1, 3)) == pytest.approx(theirs["x"], rel=1e-9, abs=1e-9)
     assert [ours.last_thermo()[name] for name in ("f_2", "f_2[1]", "f_2[2]", "f_2[3]")] == theirs["row"] == [0.0, 108.0, 0.0, 0.0]
+
+
+SETTLED = """
+l = start()
+l.commands_string(given["text"])
+answer = {"x": list(l.gather_atoms("x", 1, 3)), "image": list(l.gather_atoms("image", 0, 3)), "lz": l.get_thermo("lz")}
+"""
+
+
+@pytest.mark.parametrize("command", ["write_data out.data", "write_restart out.restart", "balance 1.0 shift x 1 1.0", "reset_atoms id",
+                                     "write_coeff out.coeff"])
+def test_state_after_files(command, tmp_path, monkeypatch):
+    """Atoms are within the box, and open faces close to them, once the state was written; a later random displacement depends on it."""
+    monkeypatch.chdir(tmp_path)
+    script = MELT.replace("lattice fcc", "boundary p p s\natom_modify map array sort 0 0\nlattice fcc").split("fix 2")[0]
+    script = script.replace("every 50", "every 50\nneighbor 1.0 bin") + f"run 17\n{command}\n"
+    theirs, ours = ask(SETTLED, text=script), ran(script)
+    assert list(ours.gather_atoms("image", 0, 3)) == theirs["image"]
+    assert list(ours.gather_atoms("x", 1, 3)) == pytest.approx(theirs["x"], rel=1e-9, abs=1e-9)
+    assert ours.get_thermo("lz") == pytest.approx(theirs["lz"], rel=1e-12)

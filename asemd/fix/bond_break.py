@@ -12,6 +12,7 @@ import itertools
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.fix.atom_order import AtomOrder
 from asemd.fix.bond_change import BondChange, mutual
 from asemd.topology import KINDS
 from asemd.words import bounds, number, take, whole
@@ -32,13 +33,15 @@ class BondBreak(BondChange):
             options, rest = cls.read_probability(rest[1:3]), rest[3:]
         system = session.scene.system
         kind = bounds(kind, 1, system.counts["nbondtypes"], "fix bond/break bond type", system.labels["bond"])[0]
-        return cls(group, whole(every, "fix bond/break Nevery"), kind, number(distance, "fix bond/break Rmax"), **options)
+        fix = cls(group, whole(every, "fix bond/break Nevery"), kind, number(distance, "fix bond/break Rmax"), **options)
+        fix.storage = AtomOrder(*session.scene.sort, session.scene.order)
+        return fix
 
     def to_lammps(self) -> list[str]:
         words = [str(self.interval), str(self.bond_type), repr(self.distance)]
         return words + (["prob", repr(self.probability), str(self.seed)] if self.probability < 1.0 else [])
 
-    def candidates(self, loop) -> np.ndarray:
+    def candidates(self, loop) -> tuple[np.ndarray, np.ndarray]:
         system, mask = loop.system, loop.groups[self.group]
         bonds, types = system.topology.bonds, system.topology.bond_types
         bonds = bonds[(types == self.bond_type) & mask[bonds].all(axis=1)] if len(bonds) else bonds

@@ -14,6 +14,7 @@ import itertools
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.fix.atom_order import AtomOrder
 from asemd.fix.bond_change import BondChange, mutual
 from asemd.words import bounds, number, take, whole
 
@@ -80,6 +81,7 @@ class BondCreate(BondChange):
                 items[ITEMS[key]] = number_of(values[0], ITEMS[key], key)
         fix = cls(group, whole(every, f"{what} Nevery"), types, number(distance, f"{what} Rmin"), number_of(kind, "bond", "bond type"),
                   tuple(most), tuple(become), items=items, **options)
+        fix.storage = AtomOrder(*session.scene.sort, session.scene.order)
         return fix
 
     def to_lammps(self) -> list[str]:
@@ -90,6 +92,10 @@ class BondCreate(BondChange):
         return words + (["prob", repr(self.probability), str(self.seed)] if self.probability < 1.0 else [])
 
     def setup(self, loop) -> None:
+        super().setup(loop)
+        self.resize(loop)
+
+    def resize(self, loop) -> None:
         e = loop.engine
         if e.mode == "none":
             raise InputError("fix bond/create needs a pair style, whose neighbour list it looks for partners in")
@@ -97,14 +103,12 @@ class BondCreate(BondChange):
             raise InputError(f"fix bond/create: Rmin {self.distance:g} is longer than the cutoff of the pair style, {e.cutoff:g}")
         self.counts = self._count(loop.system)
 
-    resize = setup
-
     def _count(self, system) -> np.ndarray:
         """(n,) bonds of the type that each atom has."""
         bonds = system.topology.bonds[system.topology.bond_types == self.bond_type]
         return np.bincount(bonds.ravel(), minlength=system.n)
 
-    def candidates(self, loop) -> np.ndarray:
+    def candidates(self, loop) -> tuple[np.ndarray, np.ndarray]:
         system, e = loop.system, loop.engine
         i, j, d = near(e, self.distance)
         kind, mask = system.type, loop.groups[self.group]

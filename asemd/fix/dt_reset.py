@@ -17,7 +17,8 @@ from asemd.errors import InputError, nearest
 from asemd.fix import Fix
 from asemd.words import choice, number, take, whole
 
-FREE = ("nve", "nve/sphere", "nve/noforce", "move")        # of those that move atoms: they keep nothing that belongs to a timestep
+FREE = ("nve", "nve/sphere", "nve/asphere", "nve/noforce", "move", "nvt", "npt", "nph", "nvt/sphere", "npt/sphere", "nph/sphere",
+        "nvt/asphere", "npt/asphere", "nph/asphere")        # of those that move atoms: they look at the timestep of each step
 
 
 class DtReset(Fix):

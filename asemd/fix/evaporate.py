@@ -54,7 +54,7 @@ class Evaporate(Fix):
         self.interval, self.count, self.region, self.molecules = every, count, region, molecules
         self.seed, self.random = seed, ParkMiller(seed)
         self.random.skip(30)        # as LAMMPS: the first numbers of neighbouring seeds are alike
-        self.taken, self.storage, self.resumed = 0, AtomOrder(), False
+        self.taken, self.storage, self.resumed, self.running = 0, AtomOrder(), False, False
 
     @classmethod
     def from_lammps(cls, group, words, session):
@@ -82,9 +82,12 @@ class Evaporate(Fix):
         self.storage = storage_of(loop, self.storage)
         if not self.resumed:
             self.storage.sort(loop)
-        self.resumed = False
+        self.resumed, self.running = False, True
         if self.next_reneighbor <= loop.step:
             self.next_reneighbor = self._next(loop.step)
+
+    def finish(self, loop) -> None:
+        self.running = False
 
     def _next(self, step: int) -> int:
         return (step // self.interval + 1) * self.interval
@@ -138,9 +141,9 @@ class Evaporate(Fix):
 
     def state(self) -> dict:
         return {"taken": self.taken, "random": self.random.state, "next": self.next_reneighbor, "ids": self.storage.ids,
-                "due": self.storage.due}
+                "due": self.storage.due, "running": self.running}
 
     def restore(self, state: dict) -> None:
         self.taken, self.random.state, self.next_reneighbor = int(state["taken"]), int(state["random"]), int(state["next"])
-        self.resumed = True
+        self.resumed = bool(state.get("running", True))       # each run begins with a sort
         self.storage.ids, self.storage.due = np.array(state["ids"], np.int64), int(state["due"])

@@ -48,7 +48,7 @@ class Heat(Fix):
         super().__init__(group)
         if every < 1:
             raise InputError(f"fix {self.style}: N must be at least 1, got {every}")
-        self.every, self.rate, self.region, self.region_id, self.factor = every, rate, region, region_id, 0.0
+        self.every, self.rate, self.region, self.region_id, self.factor = every, rate, region, region_id, 1.0
 
     @classmethod
     def from_lammps(cls, group, words, session):

@@ -324,6 +324,10 @@ class MSST(Fix):
         volume = float(np.prod(np.diag(self._loop.state.box.vectors)))
         return volume, 1.0 - volume / self.v0
 
+    def extensive_at(self, index) -> bool:
+        """Whether ``thermo_modify norm yes`` divides an output by the number of atoms: the energy, not the elements of the vector."""
+        return not index
+
     def scalar(self) -> float:
         """Energy of the cell, energy units."""
         p, (volume, strain) = self.p, self._compression()

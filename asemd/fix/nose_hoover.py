@@ -217,6 +217,10 @@ class NoseHoover(Thermostat):
         potential[0] *= p[15]
         return potential, 0.5 * mass * rate * rate
 
+    def extensive_at(self, index) -> bool:
+        """Whether ``thermo_modify norm yes`` divides an output by the number of atoms: the energy, not the elements of the vector."""
+        return not index
+
     def scalar(self) -> float:
         """Energy of what the atoms are coupled to, energy units."""
         return float(sum(e.sum() for e in self.chain_energies()))

@@ -106,6 +106,8 @@ def report_mixing(session, command: str = "") -> None:
     mixed = sum(pair not in use.coeff for use, filled in terms if _mixes_energies(use.style) for pair in filled)
     rules = [use.modify["mix"] for use in uses if "mix" in use.modify]
     rule = (rules or [scene.interactions.mix or ("geometric" if scene.interactions.hybrid["pair"] else uses[0].style.mix_rule)])[-1]
+    if uses[0].style.name.startswith("lj/class2") and not scene.interactions.hybrid["pair"]:
+        rule = f"sixthpower/{rule}"
     session.print(f"Generated {mixed} of {n * (n - 1) // 2} mixed pair_coeff terms from {rule} mixing rule")
 
 

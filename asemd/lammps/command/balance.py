@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from asemd.fix.balance import KEYWORDS, read_keywords, read_shift
+from asemd.lammps.command.write_restart import settle
 from asemd.words import choice, number, take
 
 
@@ -21,3 +22,4 @@ def run(session, args):
         style, rest = (rest[0], rest[1:]) if rest and rest[0] in ("x", "y", "z") else ("", rest)
     read_keywords(rest, "balance")
     session.print("  balance: no effect, there is one process")
+    settle(session)

@@ -69,9 +69,9 @@ def _ramp(x, rows, words, spacings, what) -> None:
 
 
 def _rotate(system, x, image, rows, words, spacings, what) -> None:
-    """Rotation about an axis through a point, of unwrapped positions."""
+    """Rotation about an axis through a point, of unwrapped positions; rounded as LAMMPS does, for random numbers that follow positions."""
     values = [number(w, what) for w in words]
-    point, axis, angle = np.array(values[:3]) * spacings, np.array(values[3:6]), math.radians(values[6])
+    point, axis, angle = np.array(values[:3]) * spacings, np.array(values[3:6]), math.pi * values[6] / 180.0
     length = math.sqrt(axis @ axis)
     if length == 0.0:
         raise InputError(f"{what}: the axis must not be zero")
@@ -79,9 +79,9 @@ def _rotate(system, x, image, rows, words, spacings, what) -> None:
         raise InputError(f"{what}: in a 2d simulation the axis must be along z")
     axis /= length
     d = system.box.unwrap(x[rows], image[rows]) - point
-    along = (d @ axis)[:, None] * axis
+    along = (d[:, 0] * axis[0] + d[:, 1] * axis[1] + d[:, 2] * axis[2])[:, None] * axis
     across = d - along
-    x[rows] = point + along + across * math.cos(angle) + np.cross(axis, across) * math.sin(angle)
+    x[rows] = point + along + (across * math.cos(angle) + np.cross(axis, across) * math.sin(angle))
     image[rows] = 0
     if "quaternions" in system.extra:
         turn = [math.cos(0.5 * angle), *(axis * math.sin(0.5 * angle))]

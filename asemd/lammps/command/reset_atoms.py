@@ -6,6 +6,7 @@ import time
 import numpy as np
 
 from asemd.errors import InputError, nearest
+from asemd.lammps.command.write_restart import settle
 from asemd.lammps.setup_log import report_mixing, report_special
 from asemd.words import take, whole, yes_no
 
@@ -35,7 +36,7 @@ def reset_ids(session, words: list[str]) -> None:
                          f"{' '.join(map(str, ids))}: delete atoms with bond yes or mol yes")
     session.print("Resetting atom IDs ...")
     report_mixing(session)
-    system.box.wrap(system.x, system.image)
+    settle(session)
     order = _places(system) if sort else np.arange(system.n)
     system.id[order] = np.arange(1, system.n + 1)
     system.topology.frozen = None       # partners are listed anew

@@ -4,6 +4,7 @@ from __future__ import annotations
 import warnings
 
 from asemd.errors import InputError, InputWarning, nearest
+from asemd.lammps.command.write_restart import settle
 from asemd.lammps.data_write import write_data
 from asemd.lammps.setup_log import report_mixing
 from asemd.words import choice, take
@@ -42,3 +43,4 @@ def run(session, args):
         write_data(path, system, scene.interactions if coeffs else None, progress=progress, fixes=fixes, **options)
     for warning in caught:
         session.warn(str(warning.message))
+    settle(session)

@@ -13,7 +13,15 @@ def run(session, args):
     no_pieces(args[1:], [name], "write_restart")
     report_mixing(session, "write_restart")
     restart.write(session, restart.file_name(name, session.scene.step))
-    session.loop = None         # the next run begins as one that is continued from the file
+    settle(session)
+
+
+def settle(session) -> None:
+    """Atoms go into the periodic box and open faces to them, as for a file; the next run begins as one that is continued from it."""
+    system = session.scene.system
+    system.box.wrap(system.x, system.image)
+    system.box = system.box.shrink_wrapped(system.x)
+    session.loop = None
 
 
 def no_pieces(words: list[str], names: list[str], command: str) -> None:
