@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import pytest
-from wheel import ask, start
+from wheel import ask, ran, start
+
+from asemd.errors import InputError
 
 SCENE = """atom_style charge
 region b block 0 9 0 9 0 9
@@ -43,6 +45,11 @@ for reset in ("yes", "no"):
             "run 1", "run 2 pre no", "run 1", "unfix a\nrun 1"]
         CASES[f"charges, every {n}, reset {reset}"] = [
             charged + f"fix a all adapt {n} atom charge v_e reset {reset}", "run 1", "run 2 pre no", "run 1"]
+HYBRID = ("pair_style hybrid/overlay lj/cut 3 lj/cut 4 coul/cut 4\npair_coeff * * lj/cut 1 1 1\npair_coeff * * lj/cut 2 0.5 1.2\n"
+          f"pair_coeff * * coul/cut\n{OUT}fix a all adapt 1 ")
+CASES |= {f"sub-style, {words}": [HYBRID + words, "run 1"] for words in (
+    "pair lj/cut:1 epsilon * * v_e", "pair lj/cut:2 epsilon 1 2 v_e pair lj/cut:1 sigma * 1 v_g scale yes",
+    "pair coul/cut:1 scale * * v_e")}
 MEASURE = """
 def measure(lmp, scene, texts):
     out = []
@@ -72,3 +79,8 @@ def test_like_lammps(name, theirs, tmp_path):
     exec(MEASURE, found)
     got, want = found["measure"](start(), SCENE, texts_of(name, tmp_path)), theirs[name]
     assert got == pytest.approx(want, rel=1e-9, abs=1e-9 * max(map(abs, want)))
+
+
+def test_a_sub_style_that_is_not_there():
+    with pytest.raises(InputError, match="no pair style 'lj/cut:3' in use"):
+        ran(SCENE + HYBRID + "pair lj/cut:3 epsilon * * v_e")

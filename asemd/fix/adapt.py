@@ -2,9 +2,10 @@
 
 ``pair STYLE COEFFICIENT I J v_name``, ``bond|angle|dihedral|improper STYLE COEFFICIENT TYPE v_name``, ``atom charge|diameter v_name``,
 ``kspace v_name`` (a factor of the Coulomb part of the long-range solver, 1 again in a run without it); on the first step of a run and on
-multiples of N (N = 0: on the first step only). ``scale yes``: the variable multiplies what the coefficient was. Pairs of types without
-own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. Masses follow diameters and densities stay,
-unless ``mass no``. LAMMPS's ewald/disp keeps the energy of charges by themselves as it was when the run began; here it follows.
+multiples of N (N = 0: on the first step only). ``pair lj/cut:2`` is the second one of that name in a hybrid style. ``scale yes``: the
+variable multiplies what the coefficient was. Pairs of types without own coefficients are mixed from the new ones. ``reset yes``: after
+each run all is as it was. Masses follow diameters and densities stay, unless ``mass no``. LAMMPS's ewald/disp keeps the energy of charges
+by themselves as it was when the run began; here it follows.
 
 Source: LAMMPS manual, fix adapt.
 """
