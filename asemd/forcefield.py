@@ -127,7 +127,7 @@ class Interactions:
             uses = [Use(style, style.parse_settings(rest), label=name)]
             old = self.uses[category]
             if category == "pair" and not self.hybrid[category] and old and old[0].style is style:
-                uses[0].coeff = style.reset_cutoffs(old[0].coeff)
+                uses[0].coeff, uses[0].coulomb = style.reset_cutoffs(old[0].coeff), old[0].coulomb
                 self.uses[category] = uses
                 return
         self.uses[category], self.none[category] = uses, set()
@@ -181,6 +181,7 @@ class Interactions:
                 self._forget(category, key)
             self.none[category].discard(key)
             use.coeff[key] = joined
+            use.coulomb.pop(key, None)
 
     def sub_style(self, category: str, name: str, words: list[str]) -> tuple[Use, list[str]]:
         """The sub-style named in a coefficient line, and the words after its name (and number)."""

@@ -152,7 +152,7 @@ def make_terms(interactions: Interactions, ntypes: int, units, idle: bool = Fals
                         style, settings, table, interactions.coulomb_constant(units) / interactions.dielectric)
                 if use.coulomb:
                     style, filled = coulomb_scale.factored(style), coulomb_scale.with_factors(filled, use.coulomb)
-                tables = style.pack_pairs(settings, filled, ntypes, units, shift)
+                tables = style.pack_pairs(settings, filled, ntypes, replace(units, qqr2e=interactions.coulomb_constant(units)), shift)
                 tables = replace(tables, arrays=tables.arrays + arrays)
                 out.append(PairTerm(use, style, tables, filled, use.label, tail, molecules))
                 if style.on_sites:

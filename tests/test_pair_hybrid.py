@@ -297,3 +297,12 @@ def test_own_energies_and_hydrogen_bonds_follow_a_factor():
     for script, want in zip(scripts, theirs, strict=True):
         lmp = ran(script, "-compat", "lammps")
         assert [lmp.get_thermo("pe"), *lmp.gather_atoms("f", 1, 3)] == pytest.approx(want, rel=1e-9)
+
+
+def test_zbl_beside_a_style_with_the_constant_of_charmm():
+    script = chain() + ("pair_style hybrid/overlay zbl 3 4 lj/charmmfsw/coul/charmmfsh 5 6\npair_coeff 1 1 zbl 6 6\n"
+                        "pair_coeff 2 2 zbl 8 8\npair_coeff * * lj/charmmfsw/coul/charmmfsh 0.1 2\ncompute p all pair zbl\n"
+                        "variable p equal c_p\n"
+                        "thermo_style custom c_p\nrun 0")
+    theirs = ask("answer = ran(given['lines']).extract_variable('p')", lines=script)
+    assert ran(script).extract_variable("p") == pytest.approx(theirs, rel=1e-11)

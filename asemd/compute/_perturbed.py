@@ -35,12 +35,18 @@ class Perturbed(Compute):
 def uses_of(interactions, category: str, style: str, name: str, what: str, cutoffs: bool = True) -> list:
     """The uses of a style, which must have a coefficient of that name that can change; cutoffs only where lists can.
 
+    ``lj/cut:2`` is the second one of that name of a hybrid pair style.
+
     Raises
     ------
     InputError
         The style is not in use, or has no such coefficient.
     """
     uses = [u for u in interactions.uses[category] if style in (u.label, u.style.name)]
+    plain, _, number = style.partition(":")
+    if category == "pair" and number.isdigit():
+        uses = [u for u in interactions.uses[category] if u.style.name == plain]
+        uses = uses if len(uses) == 1 else [u for u in uses if u.label == f"{plain} {number}"]
     if not uses:
         known = [u.label for u in interactions.uses[category]]
         raise InputError(f"{what}: there is no {category} style {style!r} in use{nearest(style, known)}")

@@ -2,9 +2,10 @@
 
 ``pair STYLE COEFFICIENT I J v_name``, ``bond|angle|dihedral|improper STYLE COEFFICIENT TYPE v_name``, ``atom charge|diameter v_name``,
 ``kspace v_name`` (a factor of the Coulomb part of the long-range solver, 1 again in a run without it); on the first step of a run and on
-multiples of N (N = 0: on the first step only). ``scale yes``: the variable multiplies what the coefficient was. Pairs of types without
-own coefficients are mixed from the new ones. ``reset yes``: after each run all is as it was. Masses follow diameters and densities stay,
-unless ``mass no``. LAMMPS's ewald/disp keeps the energy of charges by themselves as it was when the run began; here it follows.
+multiples of N (N = 0: on the first step only). ``pair lj/cut:2`` is the second one of that name in a hybrid style. ``scale yes``: the
+variable multiplies what the coefficient was. Pairs of types without own coefficients are mixed from the new ones. ``reset yes``: after
+each run all is as it was. Masses follow diameters and densities stay, unless ``mass no``. LAMMPS's ewald/disp keeps the energy of charges
+by themselves as it was when the run began; here it follows.
 
 Source: LAMMPS manual, fix adapt.
 """
@@ -142,7 +143,11 @@ class Adapt(Fix):
         self._check(loop.interactions)
         if self.kspace is not None and loop.engine.solver is None:
             raise InputError("fix adapt kspace needs a kspace_style")
-        self._kept = []
+        adapting = [f for f in loop.fixes if isinstance(f, Adapt)]
+        if self is adapting[0]:
+            for fix in adapting:        # what the run begins with, also for those after others that change the same
+                fix._kept = []
+                fix._remember(loop)
         self._change(loop)
         if self.charge is not None:
             choose_waves(loop.engine)
@@ -156,18 +161,20 @@ class Adapt(Fix):
         if self.kspace is not None:
             loop.interactions.kspace_factor = 1.0
         if self.reset:
+            self._take_factor(loop)
             for holder, key, value in reversed(self._kept):
                 _put(holder, key, value)
             self._kept = []
             self._follow_masses(loop)
-            extra, seen = loop.system.extra, [loop.system.f.copy()]     # forces and torques stay those of the last step
+            extra, seen = loop.system.extra, [loop.system.f.copy()]     # forces and torques stay those of the last step, to go on with, too
             seen += [extra["torque"].copy()] if "torque" in extra else []
             self._follow(loop)
             loop.engine.forces(True)
             rewind(loop.engine)
             loop.sync_out()
-            for array, values in zip((loop.system.f, extra.get("torque")), seen):
-                array[:] = values
+            state = loop.engine.state
+            for array, of_slots, values in zip((loop.system.f, extra.get("torque")), (state.f, state.torque), seen):
+                array[:], of_slots[:, loop.engine.slot_of] = values, values.T
 
     def _set(self, holder, key, value) -> None:
         """Set one coefficient or array, and remember what it was."""
@@ -178,36 +185,53 @@ class Adapt(Fix):
         new = value * before[0] if self.scale else value
         _put(holder, key, float(new) if not isinstance(before[0], np.ndarray) else new)
 
-    def _change(self, loop) -> None:
+    def _places(self, loop):
+        """Each list of the coefficients, as mappings and keys, that one value of a variable goes to, and the value's function."""
         system, counts = loop.system, loop.system.counts
-        coefficients = False
         for style, name, i, j, value in self.pair:
-            number, (ilo, ihi), (jlo, jhi) = float(value(loop)), *(_range(t, counts["ntypes"], system.labels["atom"]) for t in (i, j))
-            pairs = [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)]
+            (ilo, ihi), (jlo, jhi) = (_range(t, counts["ntypes"], system.labels["atom"]) for t in (i, j))
+            pairs, found = [(a, b) for a in range(ilo, ihi + 1) for b in range(max(a, jlo), jhi + 1)], []
             for use in uses_of(loop.interactions, "pair", style, name, "fix adapt"):
                 name = spelled(use.style, name)
-                for pair in pairs:
-                    if place := held(use, pair, name):
-                        place[0].setdefault(*place[1:])
-                        self._set(*place[:2], number)
-                        coefficients = True
+                for place in filter(None, (held(use, pair, name) for pair in pairs)):
+                    place[0].setdefault(*place[1:])
+                    found.append(place[:2])
+            yield found, value
         for category, given in self.bonded.items():
             for style, name, t, value in given:
-                number, (lo, hi) = float(value(loop)), _range(t, counts[f"n{category}types"], system.labels[category])
+                (lo, hi), found = _range(t, counts[f"n{category}types"], system.labels[category]), []
                 for use in uses_of(loop.interactions, category, style, name, "fix adapt"):
                     name = spelled(use.style, name)
-                    for k in range(lo, hi + 1):
-                        if name in use.coeff.get(k, ()):
-                            self._set(use.coeff[k], name, number)
-                            coefficients = True
+                    found += [(use.coeff[k], name) for k in range(lo, hi + 1) if name in use.coeff.get(k, ())]
+                yield found, value
+
+    def _remember(self, loop) -> None:
+        """What the coefficients are before this run changes them."""
+        for places, _ in self._places(loop):
+            for holder, key in places:
+                if not any(h is holder and k == key for h, k, _ in self._kept):
+                    self._kept.append((holder, key, holder[key]))
+
+    def _change(self, loop) -> None:
+        coefficients = False
+        for places, value in self._places(loop):
+            number = float(value(loop))
+            for holder, key in places:
+                self._set(holder, key, number)
+                coefficients = True
         if self.charge is not None or self.diameter is not None:
             self._change_atoms(loop)
         self._follow(loop, coefficients)
         if self.kspace is not None:
             loop.interactions.kspace_factor = float(self.kspace(loop))
-            for term in loop.engine.terms:
-                if isinstance(term, KSpaceTerm):
-                    term.set_factor(loop.interactions.kspace_factor)
+            self._take_factor(loop)
+
+    @staticmethod
+    def _take_factor(loop) -> None:
+        """The solver takes up the present factor."""
+        for term in loop.engine.terms:
+            if isinstance(term, KSpaceTerm):
+                term.set_factor(loop.interactions.kspace_factor)
 
     def _change_atoms(self, loop) -> None:
         system, mask = loop.system, loop.groups[self.group]

@@ -123,7 +123,7 @@ def contents(session, state: dict[str, Any] | None = None) -> dict[str, Any]:
 def force_field(interactions: Interactions) -> dict[str, Any]:
     """Interactions as plain data."""
     out = {f.name: getattr(interactions, f.name) for f in fields(interactions) if f.name not in ("uses", "compat", "compute")}
-    names = ("settings", "coeff", "label", "modify", "special", "scale", "memory")
+    names = ("settings", "coeff", "label", "modify", "special", "scale", "coulomb", "memory")
     out["uses"] = {category: [{"style": use.style.name, **{n: getattr(use, n) for n in names}} for use in uses]
                    for category, uses in interactions.uses.items()}
     for use in out["uses"]["pair"]:         # what is left out of one run counts again in others, as in LAMMPS
