@@ -333,7 +333,8 @@ def test_changes_are_noticed(change):
 @pytest.mark.parametrize(("lines", "array", "before", "after"), [
     (["pair_style lj/cut/sphere 8.0", "pair_coeff * * 0.01"], "radius", [1.7, 1.7, 1.7], [1.5, 1.6, 1.7]),
     (["pair_style hybrid/molecular lj/cut 6.0 morse 6.0", "pair_coeff * * lj/cut 0.01 3.4", "pair_coeff * * morse 0.1 1.5 3.0"],
-     "mol-id", [1, 1, 2], [1, 2, 3])])
+     "mol-id", [1, 1, 2], [1, 2, 3]),
+    (["pair_style lepton/coul 8.0", "pair_coeff * * qi*qj/r"], "initial_charges", [0.5, -0.5, 0.1], [0.5, 0.5, 0.1])])
 def test_changes_of_arrays_of_lammps_are_noticed(lines, array, before, after):
     def fresh(values):
         a = PlainAtoms("Ar3", [[0, 0, 0], [3.5, 0, 0], [0, 3.6, 0]], cell=[20] * 3, pbc=True)
