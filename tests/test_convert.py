@@ -251,12 +251,37 @@ def test_files_go_along(files, monkeypatch, capsys):
 @pytest.mark.parametrize(("text", "message"), [
     ("fix 1 all nve\nfix 2 all evaporate 2 1 b 123", "after fix 2 .style evaporate. there may be other atoms.*--to lammps"),
     ("fix 1 all nve\nrun_style respa 2 2 pair 1", "run_style respa has no form under ASE"),
+    ("fix 1 all nve\nvariable f equal 1+step\npair_style hybrid/scaled v_f lj/cut 5\npair_coeff 1 1 lj/cut 0.01 3.4",
+     "variable f of the force field changes during the run"),
 ])
 def test_python_refuses_what_ase_cannot_follow(here, text, message):
     Path("in.c").write_text(f"{ARGON}{text}\nrun 3\n")
     with pytest.raises(InputError, match=message):
         convert("in.c", "python", "out")
     assert not Path("out").exists()
+
+
+def test_variables_of_the_force_field_go_along(here):
+    """As factors and in expressions, whose variables stand before the coefficients and may change behind them."""
+    text = """variable f equal 0.3
+variable k equal 2*v_f
+pair_style hybrid/scaled v_f lj/cut 6.0 0.4 lepton 6.0
+pair_coeff * * lj/cut 0.01 3.4
+pair_coeff * * lepton "4*eps*((3.3/r)^12-(3.3/r)^6);eps=0.02*v_k"
+variable f equal 0.5
+fix 1 all nve
+run 3
+"""
+    Path("in.c").write_text(ARGON + text)
+    energy = thermo_energy("in.c")
+    atoms = runpy.run_path(str(here / convert("in.c", "python", "out")))["atoms"]
+    os.chdir(here)
+    assert atoms.get_potential_energy() == pytest.approx(energy, rel=1e-12)
+    assert convert("in.c", "lammps", "plain").name == "in.c"
+    os.chdir("plain")
+    assert thermo_energy("in.c") == pytest.approx(energy, rel=1e-12)
+    with ran(ARGON + text) as lmp, pytest.raises(InputError, match="hybrid/scaled uses v_f, which only a script can give"):
+        lmp.scene.to_lammps("other")
 
 
 def thermo_energy(path: str) -> float:
