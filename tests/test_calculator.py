@@ -643,6 +643,50 @@ def test_forces_set_to_zero_are_constraints(tmp_path):
     assert np.all(forces[:20] == 0) and np.all(forces[20:30, 1] == 0) and np.all(forces[20:30, [0, 2]] != 0)
 
 
+@pytest.mark.parametrize(("fix", "kept"), [
+    ("lineforce 1 0 0", [[1, 0, 0], [0, 0, 0], [0, 0, 0]]), ("planeforce 0 0 2", [[1, 0, 0], [0, 1, 0], [0, 0, 0]]),
+    ("lineforce 1 1 0", [[0.5, 0.5, 0], [0.5, 0.5, 0], [0, 0, 0]]), ("planeforce 1 1 0", [[0.5, -0.5, 0], [-0.5, 0.5, 0], [0, 0, 1]])])
+def test_forces_along_lines_and_planes_are_constraints(tmp_path, fix, kept):
+    atoms = read(tmp_path, script("real", f"fix 1 low {fix}"))
+    free = atoms.get_forces(apply_constraint=False)
+    assert np.allclose(atoms.get_forces()[:20], free[:20] @ np.array(kept), atol=1e-12)
+    assert np.array_equal(atoms.get_forces()[20:], free[20:])
+
+
+def test_atoms_in_two_dimensions_have_the_temperature_of_two(tmp_path):
+    atoms = read(tmp_path, "units metal\ndimension 2\nlattice sq2 4\nregion b block 0 4 0 4 -0.1 0.1\ncreate_box 1 b\ncreate_atoms 1 box\n"
+                           "mass 1 40\nvelocity all create 80 123\npair_style lj/cut 6\npair_coeff 1 1 0.01 3.4\nfix 2 all enforce2d\n")
+    assert atoms.get_temperature() == pytest.approx(80.0 * 62 / 64, rel=1e-4)       # LAMMPS takes two degrees off for the drift
+
+
+@pytest.mark.parametrize("fix", ["adapt 1 atom charge v_k", "qeq/point 1 6.0 1.0e-6 200 q.par", "ti/spring 10.0 5 5"])
+def test_fixes_that_change_energies_are_named(tmp_path, monkeypatch, fix):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "q.par").write_text("1 5.0 7.0 1.0 1.0 0.0\n2 6.0 8.0 1.0 1.0 0.0\n")
+    with pytest.warns(InputWarning, match=f"fix 1 .{fix.split()[0]}. is not part of the calculator"):
+        read(tmp_path, script("real", f"variable k equal 0.3\nfix 1 all {fix}"))
+
+
+def test_variables_of_the_force_field_have_their_values_of_the_run(tmp_path):
+    """Factors of hybrid/scaled, and expressions that name variables which change after their pair_coeff."""
+    more = """variable f equal 0.3
+variable k equal 0.9
+pair_style hybrid/scaled v_f lj/cut 8.0 0.4 lepton 6.0
+pair_coeff * * lj/cut 0.1 3.3
+pair_coeff * * lepton "4*eps*((3.3/r)^12-(3.3/r)^6);eps=v_k"
+variable k equal 0.5
+"""
+    atoms = read(tmp_path, script("real", more))
+    with ran(script("real", more)) as session:
+        energy = session.get_thermo("pe") * FACTORS["real"][0]
+    assert atoms.get_potential_energy() == pytest.approx(energy, rel=1e-9)
+    assert ForceField(**json.loads(json.dumps(atoms.calc.todict()))).get_potential_energy(atoms) == pytest.approx(energy, rel=1e-9)
+    with pytest.warns(InputWarning, match="variable f of the force field may change during a run"):
+        read(tmp_path, script("real", more.replace("0.3", "0.3+step", 1)))
+    with pytest.raises(InputError, match="atom-style variable f as a factor forces are not the gradient"):
+        read(tmp_path, script("real", more.replace("f equal 0.3", "f atom 0.3*id")))
+
+
 def test_forces_without_an_energy_are_left_out_and_named(tmp_path):
     more = ("variable f atom -x\nfix 1 low setforce 1.0 0 0\nfix 2 two addforce v_f 0 0\nfix 3 two efield v_f 0 0\n"
             "fix 4 all restrain bond 1 2 5 6 2.5\nfix 5 all gravity 1 vector 0 0 -1\nfix 6 all viscous 1.0")
