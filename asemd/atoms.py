@@ -16,6 +16,7 @@ from asemd.topology import Topology
 
 CLOSE = 0.1        # how far a mass may be from that of its element, in amu
 COMMON_UP_TO = 92  # elements beyond uranium are not guessed from masses
+OF_ASE = ("numbers", "positions", "momenta", "masses", "tags", "initial_magmoms", "initial_charges")
 
 __all__ = ["Atoms", "elements", "holds"]
 
@@ -32,7 +33,8 @@ class Atoms(ase.Atoms):
     *args, **kwargs
         As for `ase.Atoms`.
     topology : Topology, optional
-        Bonded items by atom index; by default those of the atoms that are copied or that their `info` holds, or none.
+        Bonded items by atom index; by default those of the atoms that are copied or that their `info` holds, or none. Other arrays of
+        atoms that are copied (``mol-id``, ``radius`` ...) are copied, too.
 
     Raises
     ------
@@ -50,6 +52,10 @@ class Atoms(ase.Atoms):
             topology, arrays = atoms_info.found(self._info, self.numbers)
             for name, array in arrays.items():
                 if name not in self.arrays:
+                    self.set_array(name, array)
+        if isinstance(source, ase.Atoms):       # ASE takes over the arrays that it knows
+            for name, array in source.arrays.items():
+                if name not in (*self.arrays, *OF_ASE):
                     self.set_array(name, array)
         self.topology = Topology() if topology is None else topology.copy()
 

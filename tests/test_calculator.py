@@ -187,6 +187,14 @@ def test_arguments_survive_json():
         assert other.get_potential_energy() == pytest.approx(energy, rel=1e-13)
 
 
+def test_topology_beside_commands_survives_json():
+    lines = ["bond_style harmonic", "bond_coeff 1 20.0 0.96"]
+    calc = ForceField(commands=lines, units="metal", types=["O", "H"], topology=Topology(bonds=[[0, 1]]))
+    atoms = PlainAtoms("OH", [[0, 0, 0], [1, 0, 0]])
+    again = ForceField(**json.loads(json.dumps(calc.todict())))
+    assert again.get_potential_energy(atoms) == pytest.approx(20.0 * 0.04**2, rel=1e-12)
+
+
 def test_forces_of_lammps_where_they_are_no_gradient():
     atoms = asemd.Atoms("CCC", positions=[[1, 0, 0], [0, 0, 0], [-0.3, 1.1, 0.2]], topology=Topology(angles=[[0, 1, 2]], angle_types=[1]))
     atoms.calc = ForceField(angle={"mm3": {1: (2.0, 70.0)}}, compat="lammps")
