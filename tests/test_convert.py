@@ -293,13 +293,14 @@ def thermo_energy(path: str) -> float:
         return lmp.get_thermo("pe") * units.factor("energy", lmp.scene.units)
 
 
-@pytest.mark.parametrize("ending", ["extxyz", "traj", "json"])
-def test_ase(here, ending):
-    assert main(["convert", "in.melt", "--to", "ase", "-o", f"melt.{ending}"]) == 0
-    atoms, read = ase.io.read(f"melt.{ending}"), asemd.read("in.melt")
+@pytest.mark.parametrize("name", ["melt.extxyz", "melt.traj", "melt.json", "in.melt.xyz", "melt.extxyz.gz"])
+def test_ase(here, name):
+    assert main(["convert", "in.melt", "--to", "ase", "-o", name]) == 0
+    os.rename(name, name := name.removeprefix("in."))
+    atoms, read = ase.io.read(name), asemd.read("in.melt")
     assert np.allclose(atoms.positions, read.positions, atol=1e-7) and np.allclose(atoms.cell, read.cell)
     assert atoms.get_potential_energy() == pytest.approx(read.get_potential_energy(), rel=1e-7)
-    assert ending != "extxyz" or np.array_equal(atoms.arrays["type"], read.arrays["type"])      # others keep what ASE knows only
+    assert "extxyz" not in name or np.array_equal(atoms.arrays["type"], read.arrays["type"])      # others keep what ASE knows only
 
 
 def test_data(here):

@@ -240,7 +240,7 @@ def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
         ASE does not know the format, or the file cannot be written.
     """
     import ase.io
-    from ase.io.formats import UnknownFileTypeError
+    from ase.io.formats import UnknownFileTypeError, filetype
     path = Path(path)
     if not path.suffix:
         raise InputError(f"convert: {path.name} has no ending that says the format: use a name such as {path.name}.extxyz, .json or .traj")
@@ -253,7 +253,8 @@ def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
         atoms.get_forces()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        ase.io.write(path, atoms)
+        name = path.name.replace("in.", "x.", 1) if path.name.startswith("in.") else path.name       # the names in.* are those of scripts
+        ase.io.write(path, atoms, format=filetype(name, read=False))
     except UnknownFileTypeError:
         raise InputError(f"convert: ASE knows no format for {path.name}: use a name such as {path.stem}.extxyz, .json or .traj") from None
     except OSError as e:

@@ -89,6 +89,18 @@ def is_data(lines: list[str]) -> bool:
     return counted and any(re.search(r"\bxlo\s+xhi\b|\bavec\b", line) for line in body)
 
 
+def refuse_data(path: str) -> None:
+    """Tell whoever takes a data file for a script; other files pass.
+
+    Raises
+    ------
+    InputError
+        It is one.
+    """
+    if os.path.isfile(path) and is_data(head(path)):
+        raise InputError(f"{path} is a data file, not a script: a script reads it by read_data")
+
+
 def guess_style(lines: list[str]) -> str:
     """The atom style that fits the first line of ``Atoms``; image flags are the last three of 8 or more columns."""
     body = [line.partition("#")[0].split() for line in lines]
