@@ -216,6 +216,44 @@ def test_repeated_atoms_have_repeated_energy():
     assert np.allclose(large.get_forces(), np.tile(forces, (4, 1)), atol=1e-9)
 
 
+@pytest.mark.parametrize("ids", [True, False])
+def test_molecules_across_faces_stay_molecules_in_repeated_cells(ids):
+    """Their ids, by which TIP4P water finds its hydrogen atoms, and their molecule ids follow the bonds; periodic chains keep theirs."""
+    atoms = waters(2, SHAPES["tilted"])
+    atoms.set_array("mol-id", np.arange(24) // 3 + 1)
+    if ids:
+        atoms.set_array("id", np.arange(1, 25))
+    atoms.positions += [0.3, 0.2, 0.1]
+    calc = ForceField(commands=["bond_style harmonic", "bond_coeff 1 20 0.96", "angle_style harmonic", "angle_coeff 1 2 104.5",
+                                "pair_style lj/cut/tip4p/cut 1 2 1 1 0.15 5 5", "pair_coeff 1 1 0.006 3.1", "pair_coeff 2 2 0 1"],
+                      units="metal", types=["O", "H"])
+    energy = calc.get_potential_energy(atoms)
+    atoms.wrap()
+    bonds = atoms.topology.bonds
+    assert np.linalg.norm(atoms.positions[bonds[:, 0]] - atoms.positions[bonds[:, 1]], axis=1).max() > 3.0
+    large = atoms * (1, 2, 3)
+    assert calc.get_potential_energy(large) == pytest.approx(6 * energy, rel=1e-10)
+    for name in ("mol-id", "id"):
+        assert name == "mol-id" or len(set(large.arrays[name])) == len(large)
+        apart = large.arrays[name][large.topology.bonds]
+        assert np.abs(np.diff(apart)).max() <= (0 if name == "mol-id" else 2)
+    chain = asemd.Atoms("C4", positions=[[1.5 * k, 0, 0] for k in range(4)], cell=[6, 9, 9], pbc=True,
+                        topology=Topology(bonds=[[0, 1], [1, 2], [2, 3], [3, 0]]))
+    chain.set_array("mol-id", np.array([5] * 4))
+    assert (chain * (2, 1, 1)).arrays["mol-id"].tolist() == [5] * 4 + [10] * 4
+
+
+def test_hydrogen_atoms_of_tip4p_are_those_with_bonds():
+    atoms = asemd.Atoms("OHHOHH", positions=[[0, 0, 0], [0.9, 0, 0], [-0.2, 0.9, 0], [4, 0, 0], [4.9, 0, 0], [3.8, 0.9, 0]], cell=[12] * 3,
+                        pbc=True, topology=Topology(bonds=[[0, 1], [0, 2], [3, 4], [3, 5]]))
+    atoms.set_initial_charges([-1, 0.5, 0.5] * 2)
+    calc = ForceField(commands=["bond_style harmonic", "bond_coeff 1 20 0.96", "angle_style harmonic", "angle_coeff 1 2 104.5",
+                                "pair_style tip4p/cut 1 2 1 1 0.15 5", "pair_coeff * *"], units="metal", types=["O", "H"])
+    calc.get_potential_energy(atoms)
+    with pytest.raises(InputError, match="atoms 2 and 3 behind oxygen atom 1 are not those bonded to it"):
+        calc.get_potential_energy(atoms[[3, 1, 2, 0, 4, 5]])
+
+
 def test_slices_and_deleted_atoms():
     """Molecules apart: the energy of a part is the sum over its molecules."""
     atoms = waters(2, spacing=12.0)
