@@ -12,10 +12,12 @@ from ase.data import atomic_numbers as number_of
 from asemd import atoms_info
 from asemd.atoms_info import holds
 from asemd.box import Box
+from asemd.togetherness import cells_of_molecules
 from asemd.topology import Topology
 
 CLOSE = 0.1        # how far a mass may be from that of its element, in amu
 COMMON_UP_TO = 92  # elements beyond uranium are not guessed from masses
+OF_ASE = ("numbers", "positions", "momenta", "masses", "tags", "initial_magmoms", "initial_charges")
 
 __all__ = ["Atoms", "elements", "holds"]
 
@@ -32,7 +34,8 @@ class Atoms(ase.Atoms):
     *args, **kwargs
         As for `ase.Atoms`.
     topology : Topology, optional
-        Bonded items by atom index; by default those of the atoms that are copied or that their `info` holds, or none.
+        Bonded items by atom index; by default those of the atoms that are copied or that their `info` holds, or none. Other arrays of
+        atoms that are copied (``mol-id``, ``radius`` ...) are copied, too.
 
     Raises
     ------
@@ -50,6 +53,10 @@ class Atoms(ase.Atoms):
             topology, arrays = atoms_info.found(self._info, self.numbers)
             for name, array in arrays.items():
                 if name not in self.arrays:
+                    self.set_array(name, array)
+        if isinstance(source, ase.Atoms):       # ASE takes over the arrays that it knows
+            for name, array in source.arrays.items():
+                if name not in (*self.arrays, *OF_ASE):
                     self.set_array(name, array)
         self.topology = Topology() if topology is None else topology.copy()
 
@@ -103,15 +110,21 @@ class Atoms(ase.Atoms):
 
     def __imul__(self, m):
         times = (m, m, m) if isinstance(m, abstract.Integral) else tuple(m)
-        n, copies = len(self), int(np.prod(times))
+        n, copies, number = len(self), int(np.prod(times)), None
         if not self.topology.is_empty:
             box = Box.from_ase(np.asarray(self.cell), self.pbc, np.ravel(self.get_celldisp()), self.positions)
             top = self.topology.repeat_periodic(n, times, box, self.positions)
+            cells = cells_of_molecules(self.topology, n, box, self.positions)
+            if cells.any():     # ids and molecule ids of one molecule stay together
+                if "id" not in self.arrays:
+                    self.set_array("id", np.arange(1, n + 1))
+                copy = (np.stack(np.unravel_index(np.arange(copies), times), axis=-1)[:, None] - cells) % times
+                number = np.ravel((copy[..., 0] * times[1] + copy[..., 1]) * times[2] + copy[..., 2])
         else:
             top = self.topology
         largest = {name: int(self.arrays[name].max(initial=0)) for name in ("id", "mol-id") if name in self.arrays}
         super().__imul__(times)
-        number = np.repeat(np.arange(copies), n)
+        number = np.repeat(np.arange(copies), n) if number is None else number
         for name, most in largest.items():
             self.arrays[name] = self.arrays[name] + number * most
         if "image" in self.arrays:       # flags of the old cell mean nothing in the new one

@@ -102,6 +102,7 @@ class ForceField(Calculator):
         self.bits: dict[str, int] = {}           # group -> bit in the atoms' array "groups"
         self.loads: list[Load | Field | Potential | Maps] = []
         self.left_out: list[str] = []
+        self.scripted = False                    # made by `from_scene`
         self._engine: Engine | None = None
         self._seen: dict[str, np.ndarray | None] = {}
         self._seen_topology: Topology | None = None
@@ -123,7 +124,7 @@ class ForceField(Calculator):
         self = cls(threads=scene.threads, precision=scene.precision)
         self.arguments, self.interactions, self.units = {}, copy.deepcopy(scene.interactions), scene.system.units
         self.topology, self.like = scene.system.topology.copy(), scene.system.select(slice(0, 0))
-        self.natoms = scene.system.n
+        self.natoms, self.scripted = scene.system.n, True
         self.settings = replace(scene.neighbor, threads=scene.threads, precision=scene.precision)
         self.loads, self.left_out = loads_of(scene.fixes.values(), scene.system.n)
         names = {w for kind, *words in self.settings.exclude if kind != "type" for w in words}

@@ -38,7 +38,7 @@ class ChargeSites:
         Raises
         ------
         InputError
-            An oxygen atom whose hydrogen atoms are not there, or are of another type.
+            An oxygen atom whose hydrogen atoms are not there, are of another type, or are not those that it has bonds to.
         """
         oxygen = np.flatnonzero(np.asarray(system.type) == self.oxygen)
         ids = np.asarray(system.id)
@@ -54,4 +54,11 @@ class ChargeSites:
         if len(wrong):
             raise InputError(f"pair style {self.name}: TIP4P hydrogen has incorrect atom type: atom {wanted[tuple(wrong[0])]} of oxygen "
                              f"atom {ids[oxygen[wrong[0][0]]]} has not type {self.hydrogen}; ids of a molecule must be in the order O H H")
+        n, bonds = len(ids), np.sort(system.topology.bonds.astype(np.int64), axis=1)
+        pairs = np.sort(np.stack([np.broadcast_to(oxygen[:, None], rows.shape), rows], axis=-1), axis=-1)
+        apart = ~np.isin(pairs[..., 0] * n + pairs[..., 1], bonds[:, 0] * n + bonds[:, 1]).all(axis=1) & np.isin(oxygen, bonds)
+        if apart.any():
+            k = int(np.argmax(apart))
+            raise InputError(f"pair style {self.name}: atoms {wanted[k, 0]} and {wanted[k, 1]} behind oxygen atom {ids[oxygen[k]]} are "
+                             "not those bonded to it; ids of a molecule must be in the order O H H")
         return np.column_stack([oxygen, rows])

@@ -78,6 +78,8 @@ def show_warning(message, category, *place) -> None:
 def entry() -> None:
     """The console script."""
     warnings.showwarning = show_warning
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="replace")        # terminals that do not have all letters
     sys.exit(main())
 
 

@@ -86,8 +86,7 @@ def _analytic(calculator, atoms) -> tuple[np.ndarray, np.ndarray]:
     if calculator.loads:
         raise InputError(f"no second derivatives by strain of {calculator.loads[0]}")
     engine = ListEngine(system, calculator.interactions, replace(calculator.neighbor_settings(atoms), threads=1, precision="double"))
-    engine.compute()
-    n, born, mixed = system.n, np.zeros((6, 6)), np.zeros((system.n, 3, 6))
+    n, born, mixed = system.n, _of_tail(engine.compute().virial_of), np.zeros((system.n, 3, 6))
 
     def pairs(at, d, b):
         add_pairs(born, d, b)
@@ -117,6 +116,13 @@ def _analytic(calculator, atoms) -> tuple[np.ndarray, np.ndarray]:
     unit = calculator.units
     return (born * unit_styles.factor("energy", unit),
             mixed.reshape(3 * n, 6) * unit_styles.factor("energy/distance", unit))
+
+
+def _of_tail(virial_of) -> np.ndarray:
+    """Second derivatives by strain (6, 6) of the tail correction, whose virial goes with one over the volume."""
+    volume = np.zeros((6, 6))
+    volume[:3, :3] = 1.0
+    return (volume + np.diag([2.0] * 3 + [1.0] * 3)) * virial_of.get("tail", np.zeros(6))[0]
 
 
 def _differences(calculator, atoms) -> tuple[np.ndarray, np.ndarray]:

@@ -61,7 +61,10 @@ def hessian_of(system, interactions, settings, numerical: bool = False):
         if type(term) is BondedTerm:
             blocks += [_block(atoms, ends, inner) for atoms, ends, _, _, inner in bonded_items(engine, term, numerical)]
         elif type(term) is PairListTerm:
-            pairs += of_list(engine, term, numerical)
+            if numerical and term.sized:
+                rest.append(_of_forces(engine, term))
+            else:
+                pairs += of_list(engine, term, numerical)
         elif type(term) is ManyBodyTerm:
             rest.append(_many(engine, term, numerical, pairs))
         elif term.category == "kspace":

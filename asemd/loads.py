@@ -13,8 +13,12 @@ from asemd.fix import Fix
 from asemd.fix.addforce import AddForce
 from asemd.fix.cmap import CMAP
 from asemd.fix.efield import EField, has_dipoles
+from asemd.fix.enforce2d import Enforce2D
 from asemd.fix.forcing import Forcing
+from asemd.fix.lineforce import LineForce
+from asemd.fix.planeforce import PlaneForce
 from asemd.fix.setforce import SetForce
+from asemd.fix.shake import Shake
 from asemd.kernels import correction_map
 from asemd.kernels.hooks import Calls
 from asemd.kernels.state import BoxState, State, Thread, cell_arrays, empty_state
@@ -23,6 +27,7 @@ from asemd.system import System
 from asemd.topology import CROSSTERM
 
 FRICTION = ("viscous", "viscous/sphere", "recenter")      # no forces of positions: left out as thermostats are
+OTHERS = ("accelerate/cos", "adapt", "external", "python/invoke", "qeq/", "rigid", "spring/chunk", "ti/spring")     # beginnings of names
 
 
 def pulled(f: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -250,7 +255,11 @@ def loads_of(fixes: Iterable[Fix], natoms: int) -> tuple[list[Load | Field | Pot
                 left_out.append(f"{_named(fix)} with a field that is not constant")
         elif isinstance(fix, Forcing) and fix.has_potential():
             loads.append(Potential(fix, natoms))
+        elif isinstance(fix, Shake):
+            left_out.append(f"{_named(fix)}, without which nothing holds its bonds and angles,")
         elif isinstance(fix, Forcing) and fix.style not in FRICTION:
+            left_out.append(_named(fix))
+        elif fix.style.startswith(OTHERS) and getattr(fix, "callback", "") != "end_of_step":
             left_out.append(_named(fix))
     return loads, left_out
 
@@ -282,15 +291,24 @@ def together(loads: Iterable[Load | Field | Potential | Maps], atoms, system: Sy
 
 
 def constraints_of(fixes: Iterable[Fix], groups: Mapping[str, np.ndarray]) -> tuple[list, list[str]]:
-    """ASE constraints for fixes that set forces to zero, and the names of those that set them to something else."""
+    """ASE constraints for fixes that set forces, or components of them, to zero, and the names of those that set them to something else."""
     out, left_out = [], []
     for fix in fixes:
-        if isinstance(fix, SetForce):
-            from ase.constraints import FixAtoms, FixCartesian  # a quarter of a second that most scenes need not wait
-            if fix.region is not None or any(f is not None and (callable(f) or f != 0.0) for f in fix.force):
-                left_out.append(f"{_named(fix)} with a force that is not zero everywhere in its group")
-                continue
-            index, held = np.flatnonzero(groups[fix.group]), tuple(f is not None for f in fix.force)
-            if len(index) and any(held):
-                out.append(FixAtoms(index) if all(held) else FixCartesian(index, held))
+        if isinstance(fix, SetForce) and (fix.region is not None or any(f is not None and (callable(f) or f != 0.0) for f in fix.force)):
+            left_out.append(f"{_named(fix)} with a force that is not zero everywhere in its group")
+        elif isinstance(fix, SetForce | LineForce | Enforce2D) and len(index := np.flatnonzero(groups[fix.group])):
+            out += _constraint(fix, index)
     return out, left_out
+
+
+def _constraint(fix: SetForce | LineForce | Enforce2D, index: np.ndarray) -> list:
+    """What holds atoms as the fix does."""
+    from ase.constraints import FixAtoms, FixCartesian, FixedLine, FixedPlane  # a quarter of a second that most scenes need not wait
+    if isinstance(fix, LineForce):
+        across = isinstance(fix, PlaneForce)
+        if np.count_nonzero(fix.direction) > 1:
+            return [(FixedPlane if across else FixedLine)(index, fix.direction)]
+        held = (fix.direction != 0.0) == across
+    else:
+        held = np.array([False, False, True] if isinstance(fix, Enforce2D) else [f is not None for f in fix.force])
+    return [FixAtoms(index) if held.all() else FixCartesian(index, held)] if held.any() else []

@@ -52,7 +52,7 @@ def as_dict(calc) -> dict[str, Any]:
                 "types": calc.like.counts["ntypes"]}
     if calc.type_of:
         out["types"] = dict(calc.type_of)
-    if calc.topology is not None and calc.arguments:
+    if calc.topology is not None and not calc.scripted:
         out["topology"] = {f"{kind}s": items.tolist() for kind, items, _ in calc.topology.every() if len(items)} | {
             f"{kind}_types": types.tolist() for kind, _, types in calc.topology.every() if len(types)}
     from_script = [str(load) for load in calc.loads] + [f"neigh_modify exclude {' '.join(map(str, rule))}" for rule in rules

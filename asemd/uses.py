@@ -1,6 +1,7 @@
 """A style in use, and the sub-styles that the words after ``hybrid`` name."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -51,8 +52,7 @@ class Use:
     memory: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self):
-        if not isinstance(self.scale, str):
-            self.factor = self.scale
+        self.factor = math.nan if isinstance(self.scale, str) else self.scale
 
 
 def sub_styles(category: str, hybrid: str, words: list[str]) -> list[Use]:

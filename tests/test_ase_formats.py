@@ -153,6 +153,24 @@ def test_databases(name, tmp_path):
     assert read(tmp_path / name, format="asemd-db").info["note"] == "a chain"
 
 
+@pytest.mark.parametrize("name", ["x.db", "x.extxyz"])
+def test_arrays_of_lammps(name, tmp_path):
+    """What styles of spheres, ellipsoids and dipoles need comes back, and goes over to copies of plain atoms."""
+    rng = np.random.default_rng(3)
+    wanted = {"radius": rng.random(3), "shape": rng.random((3, 3)), "quaternions": rng.random((3, 4)), "mu": rng.random((3, 3)),
+              "mol-id": np.array([1, 1, 2]), "type": np.array([2, 1, 1])}
+    plain = ase.Atoms("ArNeAr", positions=rng.random((3, 3)) * 9, cell=[9] * 3, pbc=True)
+    for key, array in wanted.items():
+        plain.set_array(key, array)
+    kind = {"format": "asemd-db"} if name == "x.db" else {}
+    write(tmp_path / name, Atoms(plain), **kind)
+    again = Atoms(read(tmp_path / name, **kind))
+    for key, array in wanted.items():
+        assert np.allclose(again.arrays[key], array, rtol=0, atol=1e-7), key
+    again.arrays["radius"][0] = 9.0
+    assert Atoms(plain, masses=[1, 2, 3]).get_masses().tolist() == [1, 2, 3] and plain.arrays["radius"][0] < 1
+
+
 def test_scripts(tmp_path):
     (tmp_path / "in.argon").write_text("units metal\nlattice fcc 5.26\nregion b block 0 2 0 2 0 2\ncreate_box 1 b\ncreate_atoms 1 box\n"
                                        "mass 1 39.948\npair_style lj/cut 5.0\npair_coeff 1 1 0.0104 3.40\nrun 0\n")

@@ -187,6 +187,14 @@ def test_arguments_survive_json():
         assert other.get_potential_energy() == pytest.approx(energy, rel=1e-13)
 
 
+def test_topology_beside_commands_survives_json():
+    lines = ["bond_style harmonic", "bond_coeff 1 20.0 0.96"]
+    calc = ForceField(commands=lines, units="metal", types=["O", "H"], topology=Topology(bonds=[[0, 1]]))
+    atoms = PlainAtoms("OH", [[0, 0, 0], [1, 0, 0]])
+    again = ForceField(**json.loads(json.dumps(calc.todict())))
+    assert again.get_potential_energy(atoms) == pytest.approx(20.0 * 0.04**2, rel=1e-12)
+
+
 def test_forces_of_lammps_where_they_are_no_gradient():
     atoms = asemd.Atoms("CCC", positions=[[1, 0, 0], [0, 0, 0], [-0.3, 1.1, 0.2]], topology=Topology(angles=[[0, 1, 2]], angle_types=[1]))
     atoms.calc = ForceField(angle={"mm3": {1: (2.0, 70.0)}}, compat="lammps")
@@ -206,6 +214,44 @@ def test_repeated_atoms_have_repeated_energy():
     large.calc = ForceField(pair=SWITCHED, **WATER)
     assert large.get_potential_energy() == pytest.approx(4 * energy, rel=1e-11)
     assert np.allclose(large.get_forces(), np.tile(forces, (4, 1)), atol=1e-9)
+
+
+@pytest.mark.parametrize("ids", [True, False])
+def test_molecules_across_faces_stay_molecules_in_repeated_cells(ids):
+    """Their ids, by which TIP4P water finds its hydrogen atoms, and their molecule ids follow the bonds; periodic chains keep theirs."""
+    atoms = waters(2, SHAPES["tilted"])
+    atoms.set_array("mol-id", np.arange(24) // 3 + 1)
+    if ids:
+        atoms.set_array("id", np.arange(1, 25))
+    atoms.positions += [0.3, 0.2, 0.1]
+    calc = ForceField(commands=["bond_style harmonic", "bond_coeff 1 20 0.96", "angle_style harmonic", "angle_coeff 1 2 104.5",
+                                "pair_style lj/cut/tip4p/cut 1 2 1 1 0.15 5 5", "pair_coeff 1 1 0.006 3.1", "pair_coeff 2 2 0 1"],
+                      units="metal", types=["O", "H"])
+    energy = calc.get_potential_energy(atoms)
+    atoms.wrap()
+    bonds = atoms.topology.bonds
+    assert np.linalg.norm(atoms.positions[bonds[:, 0]] - atoms.positions[bonds[:, 1]], axis=1).max() > 3.0
+    large = atoms * (1, 2, 3)
+    assert calc.get_potential_energy(large) == pytest.approx(6 * energy, rel=1e-10)
+    for name in ("mol-id", "id"):
+        assert name == "mol-id" or len(set(large.arrays[name])) == len(large)
+        apart = large.arrays[name][large.topology.bonds]
+        assert np.abs(np.diff(apart)).max() <= (0 if name == "mol-id" else 2)
+    chain = asemd.Atoms("C4", positions=[[1.5 * k, 0, 0] for k in range(4)], cell=[6, 9, 9], pbc=True,
+                        topology=Topology(bonds=[[0, 1], [1, 2], [2, 3], [3, 0]]))
+    chain.set_array("mol-id", np.array([5] * 4))
+    assert (chain * (2, 1, 1)).arrays["mol-id"].tolist() == [5] * 4 + [10] * 4
+
+
+def test_hydrogen_atoms_of_tip4p_are_those_with_bonds():
+    atoms = asemd.Atoms("OHHOHH", positions=[[0, 0, 0], [0.9, 0, 0], [-0.2, 0.9, 0], [4, 0, 0], [4.9, 0, 0], [3.8, 0.9, 0]], cell=[12] * 3,
+                        pbc=True, topology=Topology(bonds=[[0, 1], [0, 2], [3, 4], [3, 5]]))
+    atoms.set_initial_charges([-1, 0.5, 0.5] * 2)
+    calc = ForceField(commands=["bond_style harmonic", "bond_coeff 1 20 0.96", "angle_style harmonic", "angle_coeff 1 2 104.5",
+                                "pair_style tip4p/cut 1 2 1 1 0.15 5", "pair_coeff * *"], units="metal", types=["O", "H"])
+    calc.get_potential_energy(atoms)
+    with pytest.raises(InputError, match="atoms 2 and 3 behind oxygen atom 1 are not those bonded to it"):
+        calc.get_potential_energy(atoms[[3, 1, 2, 0, 4, 5]])
 
 
 def test_slices_and_deleted_atoms():
@@ -333,7 +379,8 @@ def test_changes_are_noticed(change):
 @pytest.mark.parametrize(("lines", "array", "before", "after"), [
     (["pair_style lj/cut/sphere 8.0", "pair_coeff * * 0.01"], "radius", [1.7, 1.7, 1.7], [1.5, 1.6, 1.7]),
     (["pair_style hybrid/molecular lj/cut 6.0 morse 6.0", "pair_coeff * * lj/cut 0.01 3.4", "pair_coeff * * morse 0.1 1.5 3.0"],
-     "mol-id", [1, 1, 2], [1, 2, 3])])
+     "mol-id", [1, 1, 2], [1, 2, 3]),
+    (["pair_style lepton/coul 8.0", "pair_coeff * * qi*qj/r"], "initial_charges", [0.5, -0.5, 0.1], [0.5, 0.5, 0.1])])
 def test_changes_of_arrays_of_lammps_are_noticed(lines, array, before, after):
     def fresh(values):
         a = PlainAtoms("Ar3", [[0, 0, 0], [3.5, 0, 0], [0, 3.6, 0]], cell=[20] * 3, pbc=True)
@@ -640,6 +687,50 @@ def test_forces_set_to_zero_are_constraints(tmp_path):
     assert isinstance(cartesian, FixCartesian) and cartesian.index.tolist() == list(range(20, 30))
     forces = atoms.get_forces()
     assert np.all(forces[:20] == 0) and np.all(forces[20:30, 1] == 0) and np.all(forces[20:30, [0, 2]] != 0)
+
+
+@pytest.mark.parametrize(("fix", "kept"), [
+    ("lineforce 1 0 0", [[1, 0, 0], [0, 0, 0], [0, 0, 0]]), ("planeforce 0 0 2", [[1, 0, 0], [0, 1, 0], [0, 0, 0]]),
+    ("lineforce 1 1 0", [[0.5, 0.5, 0], [0.5, 0.5, 0], [0, 0, 0]]), ("planeforce 1 1 0", [[0.5, -0.5, 0], [-0.5, 0.5, 0], [0, 0, 1]])])
+def test_forces_along_lines_and_planes_are_constraints(tmp_path, fix, kept):
+    atoms = read(tmp_path, script("real", f"fix 1 low {fix}"))
+    free = atoms.get_forces(apply_constraint=False)
+    assert np.allclose(atoms.get_forces()[:20], free[:20] @ np.array(kept), atol=1e-12)
+    assert np.array_equal(atoms.get_forces()[20:], free[20:])
+
+
+def test_atoms_in_two_dimensions_have_the_temperature_of_two(tmp_path):
+    atoms = read(tmp_path, "units metal\ndimension 2\nlattice sq2 4\nregion b block 0 4 0 4 -0.1 0.1\ncreate_box 1 b\ncreate_atoms 1 box\n"
+                           "mass 1 40\nvelocity all create 80 123\npair_style lj/cut 6\npair_coeff 1 1 0.01 3.4\nfix 2 all enforce2d\n")
+    assert atoms.get_temperature() == pytest.approx(80.0 * 62 / 64, rel=1e-4)       # LAMMPS takes two degrees off for the drift
+
+
+@pytest.mark.parametrize("fix", ["adapt 1 atom charge v_k", "qeq/point 1 6.0 1.0e-6 200 q.par", "ti/spring 10.0 5 5"])
+def test_fixes_that_change_energies_are_named(tmp_path, monkeypatch, fix):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "q.par").write_text("1 5.0 7.0 1.0 1.0 0.0\n2 6.0 8.0 1.0 1.0 0.0\n")
+    with pytest.warns(InputWarning, match=f"fix 1 .{fix.split()[0]}. is not part of the calculator"):
+        read(tmp_path, script("real", f"variable k equal 0.3\nfix 1 all {fix}"))
+
+
+def test_variables_of_the_force_field_have_their_values_of_the_run(tmp_path):
+    """Factors of hybrid/scaled, and expressions that name variables which change after their pair_coeff."""
+    more = """variable f equal 0.3
+variable k equal 0.9
+pair_style hybrid/scaled v_f lj/cut 8.0 0.4 lepton 6.0
+pair_coeff * * lj/cut 0.1 3.3
+pair_coeff * * lepton "4*eps*((3.3/r)^12-(3.3/r)^6);eps=v_k"
+variable k equal 0.5
+"""
+    atoms = read(tmp_path, script("real", more))
+    with ran(script("real", more)) as session:
+        energy = session.get_thermo("pe") * FACTORS["real"][0]
+    assert atoms.get_potential_energy() == pytest.approx(energy, rel=1e-9)
+    assert ForceField(**json.loads(json.dumps(atoms.calc.todict()))).get_potential_energy(atoms) == pytest.approx(energy, rel=1e-9)
+    with pytest.warns(InputWarning, match="variable f of the force field may change during a run"):
+        read(tmp_path, script("real", more.replace("0.3", "0.3+step", 1)))
+    with pytest.raises(InputError, match="atom-style variable f as a factor forces are not the gradient"):
+        read(tmp_path, script("real", more.replace("f equal 0.3", "f atom 0.3*id")))
 
 
 def test_forces_without_an_energy_are_left_out_and_named(tmp_path):

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from lj_cell import BASE
@@ -101,6 +102,26 @@ def test_every_unknown_name_is_reported(script, capsys):
     assert cli.main(["run", "in.y"]) == 1
     errors = capsys.readouterr().err.strip().splitlines()
     assert len(errors) == 2 and "in.y:1" in errors[0] and "in.y:3" in errors[1]
+
+
+def test_the_installed_command_is_that_of_the_module():
+    """Which prints warnings without lines of code."""
+    assert '\n[project.scripts]\nasemd = "asemd.cli:entry"\n' in (Path(asemd.__file__).parents[1] / "pyproject.toml").read_text()
+
+
+def test_letters_that_the_terminal_does_not_have(script):
+    (script / "in.u").write_text('print "gr\u00f6\u00dfer"\nprint last\n')
+    done = subprocess.run([sys.executable, "-m", "asemd", "run", "in.u", "-log", "none"], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONPATH": str(Path(asemd.__file__).parents[1])})
+    assert done.returncode == 0 and "gr??er" in done.stdout and "last" in done.stdout, done.stderr
+
+
+@pytest.mark.parametrize("command", [["run"], ["run", "--dry"], ["check"], ["convert"]])
+def test_a_data_file_is_no_script(script, capsys, command):
+    (script / "x.data").write_text("x\n\n1 atoms\n1 atom types\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nAtoms\n\n1 1 0 0 0\n")
+    assert cli.main([*command, "x.data"]) == 1
+    said = "".join(capsys.readouterr())
+    assert "x.data is a data file, not a script: a script reads it by read_data" in said and "unknown" not in said
 
 
 def test_quit_status(script):

@@ -251,12 +251,37 @@ def test_files_go_along(files, monkeypatch, capsys):
 @pytest.mark.parametrize(("text", "message"), [
     ("fix 1 all nve\nfix 2 all evaporate 2 1 b 123", "after fix 2 .style evaporate. there may be other atoms.*--to lammps"),
     ("fix 1 all nve\nrun_style respa 2 2 pair 1", "run_style respa has no form under ASE"),
+    ("fix 1 all nve\nvariable f equal 1+step\npair_style hybrid/scaled v_f lj/cut 5\npair_coeff 1 1 lj/cut 0.01 3.4",
+     "variable f of the force field changes during the run"),
 ])
 def test_python_refuses_what_ase_cannot_follow(here, text, message):
     Path("in.c").write_text(f"{ARGON}{text}\nrun 3\n")
     with pytest.raises(InputError, match=message):
         convert("in.c", "python", "out")
     assert not Path("out").exists()
+
+
+def test_variables_of_the_force_field_go_along(here):
+    """As factors and in expressions, whose variables stand before the coefficients and may change behind them."""
+    text = """variable f equal 0.3
+variable k equal 2*v_f
+pair_style hybrid/scaled v_f lj/cut 6.0 0.4 lepton 6.0
+pair_coeff * * lj/cut 0.01 3.4
+pair_coeff * * lepton "4*eps*((3.3/r)^12-(3.3/r)^6);eps=0.02*v_k"
+variable f equal 0.5
+fix 1 all nve
+run 3
+"""
+    Path("in.c").write_text(ARGON + text)
+    energy = thermo_energy("in.c")
+    atoms = runpy.run_path(str(here / convert("in.c", "python", "out")))["atoms"]
+    os.chdir(here)
+    assert atoms.get_potential_energy() == pytest.approx(energy, rel=1e-12)
+    assert convert("in.c", "lammps", "plain").name == "in.c"
+    os.chdir("plain")
+    assert thermo_energy("in.c") == pytest.approx(energy, rel=1e-12)
+    with ran(ARGON + text) as lmp, pytest.raises(InputError, match="hybrid/scaled uses v_f, which only a script can give"):
+        lmp.scene.to_lammps("other")
 
 
 def thermo_energy(path: str) -> float:
@@ -268,13 +293,14 @@ def thermo_energy(path: str) -> float:
         return lmp.get_thermo("pe") * units.factor("energy", lmp.scene.units)
 
 
-@pytest.mark.parametrize("ending", ["extxyz", "traj", "json"])
-def test_ase(here, ending):
-    assert main(["convert", "in.melt", "--to", "ase", "-o", f"melt.{ending}"]) == 0
-    atoms, read = ase.io.read(f"melt.{ending}"), asemd.read("in.melt")
+@pytest.mark.parametrize("name", ["melt.extxyz", "melt.traj", "melt.json", "in.melt.xyz", "melt.extxyz.gz"])
+def test_ase(here, name):
+    assert main(["convert", "in.melt", "--to", "ase", "-o", name]) == 0
+    os.rename(name, name := name.removeprefix("in."))
+    atoms, read = ase.io.read(name), asemd.read("in.melt")
     assert np.allclose(atoms.positions, read.positions, atol=1e-7) and np.allclose(atoms.cell, read.cell)
     assert atoms.get_potential_energy() == pytest.approx(read.get_potential_energy(), rel=1e-7)
-    assert ending != "extxyz" or np.array_equal(atoms.arrays["type"], read.arrays["type"])      # others keep what ASE knows only
+    assert "extxyz" not in name or np.array_equal(atoms.arrays["type"], read.arrays["type"])      # others keep what ASE knows only
 
 
 def test_data(here):

@@ -245,7 +245,8 @@ def test_check_complete():
 
 
 def test_charges_are_needed():
-    for style, coeff in (("coul/cut 3", "* *"), ("lj/cut/coul/cut 3", "* * 1 1"), ("lj/charmm/coul/charmm 2 3", "* * 1 1")):
+    for style, coeff in (("coul/cut 3", "* *"), ("lj/cut/coul/cut 3", "* * 1 1"), ("lj/charmm/coul/charmm 2 3", "* * 1 1"),
+                         ("lepton/coul 3", "* * qi*qj/r")):
         i = made(style, coeff)
         i.check_complete(system())
         with pytest.raises(InputError, match=f"pair style {style.split()[0]} needs atom attribute q: use atom_style charge or full"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 import ase
 import numpy as np
 import pytest
-from ase.build import molecule
+from ase.build import bulk, molecule
 from ase.phonons import Phonons
 from ase.vibrations import Vibrations, VibrationsData
 
@@ -103,6 +103,48 @@ def test_pair_styles(pair):
     atoms.calc = asemd.ForceField(bond={"harmonic": {1: (2.0, 2.2)}}, pair={pair: {("He", "He"): PAIRS[pair]}},
                                   special_bonds={"lj": (0, 0.3, 0.5), "coul": (0, 0.2, 0.8)})
     compare(atoms)
+
+
+@pytest.mark.parametrize("style", ["lj/cut/sphere 2.2", "lj/expand/sphere 8.0"])
+def test_pairs_of_spheres(style):
+    """Whose sizes are those of atoms: by differences, across faces too."""
+    rng = np.random.default_rng(3)
+    atoms = bulk("Ar", a=5.4, cubic=True) * (2, 1, 1)
+    atoms.rattle(0.05, seed=3)
+    atoms.set_array("radius", rng.uniform(1.5, 1.7, 8))
+    words = "0.01 0.4" if "expand" in style else "0.01"
+    atoms.calc = asemd.ForceField(commands=[f"pair_style {style}", f"pair_coeff 1 1 {words}"], units="metal", types=["Ar"])
+    with pytest.raises(InputError, match="numerical=True takes differences"):
+        atoms.calc.get_hessian(atoms)
+    got, want = atoms.calc.get_hessian(atoms, numerical=True).toarray(), differences(atoms)
+    assert np.abs(got - want).max() < 1e-7 * np.abs(want).max()
+
+
+@pytest.mark.parametrize("style", ["lj/cut 6.0", "nm/cut 6.0"])
+def test_elastic_constants_with_a_tail_correction(style):
+    """As the slopes of the stress, which has the correction too; it also resists shear where the crystal is under pressure."""
+    atoms = bulk("Ar", a=5.0, cubic=True) * 2
+    words = "0.01 3.4" if style.startswith("lj") else "0.01 3.8 12 6"
+
+    def stress(calc, k, h):
+        strain = np.zeros(6)
+        strain[k] = h
+        x, y, z, a, b, c = strain
+        values, vectors = np.linalg.eigh(np.eye(3) + np.array([[2 * x, c, b], [c, 2 * y, a], [b, a, 2 * z]]))
+        stretch = vectors * np.sqrt(values) @ vectors.T
+        moved = atoms.copy()
+        moved.set_cell(atoms.cell.array @ stretch, scale_atoms=True)
+        moved.calc, back = calc, np.linalg.inv(stretch)
+        second = np.linalg.det(stretch) * back @ moved.get_stress(voigt=False) @ back      # Piola and Kirchhoff's
+        return second[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]]
+    found = []
+    for tail in ("no", "yes"):
+        calc = asemd.ForceField(commands=[f"pair_style {style}", f"pair_coeff 1 1 {words}", f"pair_modify tail {tail}"], units="metal",
+                                types=["Ar"])
+        found.append(calc.get_elastic_constants(atoms, relaxed=False))
+        slopes = np.array([stress(calc, k, 1e-4) - stress(calc, k, -1e-4) for k in range(6)]) / 2e-4
+        assert np.abs(found[-1] - slopes).max() < 1e-6 * np.abs(slopes).max()
+    assert np.abs(found[1] - found[0]).max() > 5e-3 * np.abs(found[0]).max()
 
 
 def test_pairs_of_dihedrals():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import shake_scene as scene
 
-from asemd.errors import InputError, SimulationError
+from asemd.errors import InputError, InputWarning, SimulationError
 from asemd.fix import constraint_clusters as cc
 from asemd.fix.rattle import Rattle
 from asemd.fix.shake import Shake
@@ -187,7 +187,11 @@ def test_with_ase(data):
     from ase import units
 
     import asemd
-    atoms = start(data / "data.water").session.scene.to_atoms()
+    lmp = start(data / "data.water")
+    atoms = lmp.session.scene.to_atoms()
+    lmp.command("fix water all shake 1e-4 100 0 b 1 a 1")
+    with pytest.warns(InputWarning, match="fix water .shake., without which nothing holds its bonds and angles, is not part"):
+        lmp.session.scene.to_atoms()
     before = atoms.topology.bond_types.copy()
     fixes = [asemd.fix.NVE(), Shake(tolerance=1e-7, iterations=100, bonds=[1], angles=[1])]
     md = asemd.MolecularDynamics(atoms, 2.0 * units.fs, fixes=fixes)

@@ -3,13 +3,14 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 
 from asemd import units as unit_styles
 from asemd import user_styles
 from asemd.errors import InputError, InputWarning
 from asemd.fix.shake import Shake
-from asemd.lammps import catalog, export
+from asemd.lammps import catalog, export, live_coefficients
 from asemd.lammps.carried import carried
 from asemd.lammps.data_write import write_data
 from asemd.lammps.session import ACTIONS, Session, Stop
@@ -67,7 +68,8 @@ def read(path: str | os.PathLike, switches: Switches | None = None) -> Reader:
     return session
 
 
-def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more: list[str] | None = None) -> Path:
+def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more: list[str] | None = None,
+              early: Sequence[str] = ()) -> Path:
     """Write a scene as ``in.NAME`` and ``data.NAME``; the script reads the data file from the working directory.
 
     Files that the commands read, as those of potentials and tables, are copied beside them.
@@ -80,6 +82,8 @@ def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more
     name : str
     more : list of str, optional
         Commands after the force field instead of the scene's own timestep and fixes.
+    early : sequence of str, optional
+        Commands between the data file and the coefficients.
 
     Returns
     -------
@@ -93,18 +97,18 @@ def to_lammps(scene: Scene, folder: str | os.PathLike, name: str = "scene", more
     """
     if more is None or more:
         _of_lammps(scene)
-        return _write(scene, released(scene), folder, name, _fixes(scene) if more is None else more)
+        return _write(scene, released(scene), folder, name, _fixes(scene) if more is None else more, early)
     return _write(scene, scene.need_system("to_lammps"), folder, name, [])
 
 
-def _write(scene: Scene, system: System, folder: str | os.PathLike, name: str, more: list[str]) -> Path:
+def _write(scene: Scene, system: System, folder: str | os.PathLike, name: str, more: list[str], early: Sequence[str] = ()) -> Path:
     """The script and its data file, which holds this system."""
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         lines = export.commands(system, scene.interactions, scene.settings(), folder / f"data.{name}")
         first = next(k for k, line in enumerate(lines) if line.startswith("read_data "))
-        lines[first] = f"read_data data.{name}"
+        lines[first:first + 1] = [f"read_data data.{name}", *early]
         if scene.newton != (True, True):
             lines.insert(1, "newton " + " ".join("on" if on else "off" for on in scene.newton))
         path = folder / f"in.{name}"
@@ -153,6 +157,9 @@ def _of_lammps(scene: Scene) -> None:
 
 
 def _fixes(scene: Scene) -> list[str]:
+    if names := [use.scale for use in scene.interactions.uses["pair"] if isinstance(use.scale, str)]:
+        raise InputError(f"to_lammps: pair_style hybrid/scaled uses {names[0]}, which only a script can give it: "
+                         "asemd convert in.file --to lammps keeps it")
     out = [f"timestep {scene.dt!r}"]
     for fix in scene.fixes.values():
         words = [str(w) for w in fix.to_lammps()]
@@ -233,7 +240,7 @@ def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
         ASE does not know the format, or the file cannot be written.
     """
     import ase.io
-    from ase.io.formats import UnknownFileTypeError
+    from ase.io.formats import UnknownFileTypeError, filetype
     path = Path(path)
     if not path.suffix:
         raise InputError(f"convert: {path.name} has no ending that says the format: use a name such as {path.name}.extxyz, .json or .traj")
@@ -246,7 +253,8 @@ def to_ase(scene: Scene, path: str | os.PathLike) -> Path:
         atoms.get_forces()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        ase.io.write(path, atoms)
+        name = path.name.replace("in.", "x.", 1) if path.name.startswith("in.") else path.name       # the names in.* are those of scripts
+        ase.io.write(path, atoms, format=filetype(name, read=False))
     except UnknownFileTypeError:
         raise InputError(f"convert: ASE knows no format for {path.name}: use a name such as {path.stem}.extxyz, .json or .traj") from None
     except OSError as e:
@@ -273,7 +281,14 @@ def convert(source: str | os.PathLike, form: str, output: str | os.PathLike | No
     name = base[3:] if base.startswith("in.") and len(base) > 3 else Path(base).stem
     output = Path(output or "converted")
     if form == "lammps":
-        return to_lammps(scene, output, name, [*session.kept, *([session.action] if session.action else [])])
+        known = live_coefficients.defined(session)
+        early = [line for line in session.kept if line.split()[0] == "variable" and line.split()[1] in known]
+        more = [line for line in session.kept if line not in early]
+        return to_lammps(scene, output, name, [*more, *([session.action] if session.action else [])], early)
+    changing = [] if form == "data" else live_coefficients.freeze(session)
+    if form == "python" and changing:
+        raise InputError(f"convert: variable {changing[0]} of the force field changes during the run, which dynamics under ASE do not "
+                         "follow: take a number in its place, or convert --to lammps")
     if form == "python":
         return to_python(session, output, name.replace(".", "_"))
     path = output / f"{name}.{'extxyz' if form == 'ase' else 'data'}" if output.is_dir() or output == Path("converted") else output

@@ -12,6 +12,7 @@ from asemd.kspace import solve
 from asemd.lammps import script
 from asemd.lammps.driver import Driver, check
 from asemd.lammps.names import COMMANDS
+from asemd.lammps.read import refuse_data
 from asemd.lammps.script import Command
 from asemd.lammps.session import NESTING, Jump, Session, Stop
 from asemd.thermo import parse_reference
@@ -68,6 +69,8 @@ class DrySession(Session):
     def file(self, path: str | os.PathLike) -> None:
         commands = script.read(path)
         errors, _ = script.check(commands)
+        if errors:
+            refuse_data(os.fspath(path))
         broken = {e.where for e in errors}
         for e in errors:
             self._add(e)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asemd.errors import InputError
+from asemd.expression import VARIABLE
 from asemd.expression_style import ExpressionStyle, fill_variables
 from asemd.fix import Fix
 from asemd.formula import CONSTANTS
@@ -54,6 +55,35 @@ def scale(session: Session) -> list[str]:
             raise InputError(f"pair_style hybrid/scaled: variable {name} has style {style}, it must be equal or atom")
         names.append(name)
     return names
+
+
+def freeze(session: Session) -> list[str]:
+    """Put the present values of variables in the place of their names; returns the names of those that may have others at another step.
+
+    Raises
+    ------
+    InputError
+        A factor of ``hybrid/scaled`` with a value for each atom.
+    """
+    names = [*fill(session), *scale(session)]
+    for category, uses in session.scene.interactions.uses.items():
+        for use in uses:
+            if np.ndim(use.factor):
+                raise InputError(f"pair_style hybrid/scaled: with the atom-style variable {use.scale[2:]} as a factor forces are not the "
+                                 "gradient of an energy, which a calculator needs: take a number or an equal-style variable")
+            if category == "pair":
+                use.scale = use.factor
+            for values in use.coeff.values() if hasattr(use.style, "fill") else ():
+                values["expression"] = VARIABLE.sub(lambda name: f"({session.variables.value(name[1])})", values["expression"])
+                values.pop("current", None)
+    return [name for name in dict.fromkeys(names) if changes(session, name)]
+
+
+def defined(session: Session) -> set[str]:
+    """Names of the variables that expressions of the force field name, and of those that these are made of."""
+    uses = [use for uses in session.scene.interactions.uses.values() for use in uses if hasattr(use.style, "fill")]
+    named = [name for use in uses for values in use.coeff.values() for name in VARIABLE.findall(values["expression"])]
+    return {word[2:] for name in named for word in session.variables.references(f"v_{name}") if word.startswith("v_")}
 
 
 def changes(session: Session, name: str) -> bool:

@@ -4,9 +4,10 @@ from __future__ import annotations
 import gzip
 import os
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 
-from asemd.errors import InputError, Where
+from asemd.errors import InputError, InputWarning, Where
 from asemd.lammps.script import Command
 from asemd.lammps.switches import Switches
 
@@ -40,6 +41,7 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
     InputError
         With the line of the script or data file.
     """
+    from asemd.lammps.live_coefficients import freeze
     from asemd.lammps.session import Session, Stop
     path = os.fspath(path)
     lines = head(path)
@@ -59,6 +61,9 @@ def read(path: str | os.PathLike, units: str | None = None, atom_style: str | No
         session.label = None
     if session.scene.system is None:
         raise InputError(f"read: {path} defines no atoms before its first run")
+    for name in freeze(session):
+        warnings.warn(f"variable {name} of the force field may change during a run: the calculator has its present value", InputWarning,
+                      stacklevel=2)
     return session.scene.to_atoms()
 
 
@@ -82,6 +87,18 @@ def is_data(lines: list[str]) -> bool:
     body = [line.partition("#")[0] for line in lines[1:]]
     counted = any(re.fullmatch(r"\s*\d+\s+atoms\s*", line) for line in body)
     return counted and any(re.search(r"\bxlo\s+xhi\b|\bavec\b", line) for line in body)
+
+
+def refuse_data(path: str) -> None:
+    """Tell whoever takes a data file for a script; other files pass.
+
+    Raises
+    ------
+    InputError
+        It is one.
+    """
+    if os.path.isfile(path) and is_data(head(path)):
+        raise InputError(f"{path} is a data file, not a script: a script reads it by read_data")
 
 
 def guess_style(lines: list[str]) -> str:

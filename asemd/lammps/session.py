@@ -15,6 +15,7 @@ from asemd.lammps.loops import Loops
 from asemd.lammps.origin import Origin
 from asemd.lammps.providers import Providers
 from asemd.lammps.python_functions import PythonFunctions
+from asemd.lammps.read import refuse_data
 from asemd.lammps.script import Command
 from asemd.lammps.switches import Switches
 from asemd.lammps.timer import Timer
@@ -194,6 +195,8 @@ class Session:
         commands = script.read(path)
         self.origin.read(path)
         errors, doubtful = script.check(list(script.before(commands, ACTIONS)) if self.passive else commands)
+        if errors:
+            refuse_data(os.fspath(path))
         script.raise_problems(errors)
         for problem in doubtful:
             self.log.warn(str(problem))

@@ -27,6 +27,10 @@ DISTANCES = (0.9, 1.7, 3.1)
 class ChargedExpression(PairExpression):
     """Expressions of the distance times both charges."""
 
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)
+        self.charged = True     # its part is written for a scene
+
     def parse_settings(self, words):
         for word in words[1:]:
             if word not in SOLVERS:
