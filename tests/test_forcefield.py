@@ -325,9 +325,9 @@ def test_build():
     apart = Interactions.build(pair={"lj/cut 10.0": {(1, 1): (1, 1), (2, 2): (1, 1)}, "morse 5.0": {(2, 1): (1, 1, 1)}})
     assert apart.hybrid["pair"] == "hybrid" and apart.uses["pair"][1].coeff.keys() == {(1, 2)}
     both = Interactions.build(pair={"lj/cut 10.0": {(1, 1): (1, 1)}, "coul/cut 8.0": {(1, 1): ()}})
-    assert both.hybrid["pair"] == "hybrid/overlay" and len(both.pair_terms(1, None)) == 2
+    assert both.hybrid["pair"] == "hybrid/overlay" and len(both.pair_terms(1, units.get("real"))) == 2
     twice = Interactions.build(pair={"lj/cut 10.0": {1: (1, 1)}, "lj/cut 8.0": {2: (1, 1), (1, 2): (np.float64(2), 1)}})
-    assert [u.label for u in twice.uses["pair"]] == ["lj/cut 1", "lj/cut 2"] and twice.cutoff(2, None) == 10.0
+    assert [u.label for u in twice.uses["pair"]] == ["lj/cut 1", "lj/cut 2"] and twice.cutoff(2, units.get("real")) == 10.0
 
 
 @pytest.mark.parametrize("given, message", [

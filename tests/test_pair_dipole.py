@@ -144,7 +144,6 @@ def test_forces_and_torques_are_the_gradient(name, exact_erfc):
     ("pair_style lj/long/dipole/long long long 5\npair_coeff * * 1 1\nrun 0", "needs a kspace_style, such as ewald/disp"),
     ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\nspecial_bonds lj/coul 0 1 1\nbond_style special\n"
      "bond_coeff * 0.5 0.5\nrun 0", "cannot be used with pair"),
-    ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\nfix 1 all widom 1 1 1 4711 300\nrun 1", "depends on the orientation"),
     ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\ncompute 1 all born/matrix\nthermo_style custom c_1[1]\nrun 0",
      "orientation"),
     ("pair_style lj/cut/dipole/cut 5\npair_coeff * * 1 1\npair_write 1 1 10 r 1 2 file.table X", "orientation"),
