@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scripted
 from both import asemd
+from wheel import ask, ran
 
 from asemd.errors import InputError
 
@@ -193,3 +194,32 @@ def test_dihedrals_and_their_ends_on_one_level():
         session.execute("run 1")
     session.execute("run_style respa 2 2 dihedral 2")
     session.execute("run 1")
+
+
+SPLIT = """units real
+atom_style charge
+region b block 0 14 0 14 0 14
+create_box 1 b
+create_atoms 1 random 40 77 NULL overlap 2.2 maxtry 500
+mass 1 12
+set atom 1*20 charge 0.3
+set atom 21*40 charge -0.3
+pair_style {}
+pair_coeff * * {}
+pair_modify table 0
+kspace_style {}
+fix 1 all nve
+run_style respa 3 2 2 inner 1 2.2 3.0 middle 2 3.2 3.8 outer 3
+run 0"""
+
+
+@pytest.mark.parametrize("pair, coeff, solver", [
+    ("lj/charmmfsw/coul/long 4 5", "0.1 3", "pppm 1e-4"), ("lj/expand/coul/long 5", "0.1 3 0.1", "pppm 1e-4"),
+    ("lj/cut/coul/long/soft 2 0.5 5 5", "0.1 3 0.7", "pppm 1e-4"), ("lj/charmm/coul/long/soft 2 0.5 5 4.5 5", "0.1 3 0.7", "pppm 1e-4"),
+    ("buck/long/coul/long cut long 5", "1000 0.3 20", "pppm 1e-4"), ("buck/long/coul/long long long 5", "1000 0.3 20", "ewald/disp 1e-4")])
+def test_pieces_of_long_range_styles(pair, coeff, solver):
+    script = SPLIT.format(pair, coeff, solver)
+    theirs = ask("lmp = ran(given['lines'])\nanswer = list(lmp.gather_atoms('f', 1, 3))", lines=script)
+    ours, whole = (list(ran(s, "-compat", "lammps").gather_atoms("f", 1, 3)) for s in (script, script.replace("run_style", "#")))
+    assert ours == pytest.approx(theirs, rel=1e-11, abs=1e-11 * max(theirs))
+    assert ours == pytest.approx(whole, rel=1e-11, abs=1e-11 * max(theirs))

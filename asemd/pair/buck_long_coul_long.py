@@ -36,4 +36,4 @@ repulsion.d2 = repulsion_d2
 register(BuckinghamDispersion(
     "buck/long/coul/long", [buck], [repulsion, dispersion], "cut_buck", coeff="A rho C [cut_buck]", rows="C6", derived=derived, check=check,
     units={"C": "energy*distance^6"}, settings_example="long long 10.0", example="100.0 0.3 20.0",
-    see="LAMMPS manual, pair_style buck/long/coul/long", doc=inspect.cleandoc(__doc__)))
+    splits=True, see="LAMMPS manual, pair_style buck/long/coul/long", doc=inspect.cleandoc(__doc__)))

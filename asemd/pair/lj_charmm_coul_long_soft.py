@@ -57,7 +57,7 @@ OPTIONS = CHARMM | dict(
     cls=SoftCharmmPair, settings="n alphaLJ alphaC inner outer [cut_coul]", coeff="epsilon sigma lambda [epsilon14] [sigma14]",
     units={"epsilon": "energy", "epsilon14": "energy", "sigma14": "distance", "alphaC": "distance^2"}, derived=derived,
     rows="front core weight gap", settings_example="2.0 0.5 5.0 8.0 10.0 9.0", example="0.1 3.0 0.7 0.05 2.9",
-    see="LAMMPS manual, pair_style lj/charmm/coul/long/soft")
+    splits=True, see="LAMMPS manual, pair_style lj/charmm/coul/long/soft")
 style = pair_sum("lj/charmm/coul/long/soft", (lj_charmm_soft, "outer"), (coul_long_soft, "cut_coul"), **OPTIONS)
 style.twin = SoftCharmmPair("lj/charmm/coul/long/soft", [(lj_charmm_soft, "outer"), (coul_long_soft_lammps, "cut_coul")], doc=__doc__,
                             **{k: v for k, v in OPTIONS.items() if k != "cls"})

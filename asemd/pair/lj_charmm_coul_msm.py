@@ -11,4 +11,4 @@ from asemd.pair.lj_charmm_coul_long import OPTIONS
 from asemd.pairstyle import pair_sum
 
 pair_sum("lj/charmm/coul/msm", (lj_charmm, "outer"), (coul_msm, "cut_coul"),
-         **OPTIONS | {"see": "LAMMPS manual, pair_style lj/charmm/coul/msm"})
+         splits=True, **OPTIONS | {"see": "LAMMPS manual, pair_style lj/charmm/coul/msm"})

@@ -19,7 +19,7 @@ class CharmmSwitchedLongPair(CharmmSwitchedPair):
     one_four_shifted_parts = (make_part(lj_shifted, "", ("epsilon", "sigma")), make_part(coul_cut, "", ()))
 
 
-OPTIONS = CHARMM | dict(see="LAMMPS manual, pair_style lj/charmmfsw/coul/long")
+OPTIONS = CHARMM | dict(splits=True, see="LAMMPS manual, pair_style lj/charmmfsw/coul/long")
 style = pair_sum("lj/charmmfsw/coul/long", (lj_charmmfsw, "outer"), (coul_long, "cut_coul"), cls=CharmmSwitchedLongPair, **OPTIONS)
 style.twin = CharmmSwitchedLongPair("lj/charmmfsw/coul/long", [(lj_charmmfsw_lammps, "outer"), (coul_long, "cut_coul")], doc=__doc__,
                                     **OPTIONS)

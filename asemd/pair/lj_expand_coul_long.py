@@ -22,4 +22,4 @@ class ExpandSum(ExpandPair):
 pair_sum("lj/expand/coul/long", (lj_expand, "cut_lj"), (coul_long, "cut_coul"), cls=ExpandSum, settings="cut_lj [cut_coul]",
          coeff="epsilon sigma delta [cut_lj]", defaults={"cut_coul": "cut_lj"}, tail=tail,
          mix={"epsilon": "sigma", "sigma": "distance", "delta": "arithmetic"}, settings_example="8.0 10.0", example="0.1 3.0 -0.2 7.0",
-         see="LAMMPS manual, pair_style lj/expand/coul/long")
+         splits=True, see="LAMMPS manual, pair_style lj/expand/coul/long")
