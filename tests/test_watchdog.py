@@ -351,3 +351,13 @@ def test_switched_off(tmp_path):
     with ran(MELT.format(n=3, dt=0.004) + "run 10", "-watchdog", "no") as lmp:
         dog = lmp.session.loop.watchdog
         assert not dog.on and not dog.frames and dog.seconds == 0.0
+
+
+@pytest.mark.parametrize("skin", [0.3, 0.0])
+@pytest.mark.parametrize("size", [1, 3])
+def test_atoms_without_forces_fly_freely(skin, size):
+    """A pair style whose cutoffs are 0 reaches nowhere, and no atom flies too far."""
+    with ran(f"units lj\nlattice fcc 0.8\nregion b block 0 {size} 0 {size} 0 {size}\ncreate_box 1 b\ncreate_atoms 1 box\nmass 1 1.0\n"
+             f"velocity all create 1.0 4711\nneighbor {skin} bin\npair_style lj/cut 2.5\npair_coeff 1 1 1 1 0.0\nfix 1 all nve\n"
+             "run 0\nrun 30") as lmp:
+        assert lmp.get_thermo("pe") == 0.0 and lmp.get_thermo("temp") == pytest.approx(1.0, rel=1e-12)
