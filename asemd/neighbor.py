@@ -112,7 +112,7 @@ class BinCell:
 
     def squeeze(self, state, ns: int, n: int, reach: float, ortho: bool, mark: bool, order: bool) -> None:
         """Leave out empty stretches where few atoms (`n`) are in much space, so that cells are small where the atoms are."""
-        if CLUSTER * self.volume <= n * reach * reach * reach:
+        if reach == 0.0 or CLUSTER * self.volume <= n * reach * reach * reach:
             return
         k, low, high, places = squeezed_kernels(ortho, mark, order), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
         k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, APART * reach / self.widths, low, high, places)
@@ -202,7 +202,7 @@ class ClusterList:
         # edge of the cube that holds one cluster; in layers and rows that are thinner than that, of the square or the line
         h = max((share * self.bins.volume) ** (1 / 3), *((share * u * v) ** 0.5 for u, v in ((wa, wb), (wb, wc), (wc, wa))),
                 share * max(wa, wb, wc))
-        if self.bins.k is not None and self.reach > 0.0:     # no column has atoms of both sides of what has been left out
+        if self.bins.k is not None:     # no column has atoms of both sides of what has been left out
             h = min(h, 0.65 * APART * self.reach)
         d = SLENDER * h if h < 0.8 * self.reach and self.width == vector(False) else h
         nx, ny = max(1, round(wa / d)), max(1, round(wb / d))
