@@ -200,8 +200,22 @@ class MolecularDynamics(ASEMolecularDynamics):
         except Exception:
             self._loop = None
             raise
+        self._leave()
+
+    def _leave(self) -> None:
+        """Note what the atoms are like that the loop has left."""
         arrays, topology = self._state()
         self._left = {k: None if a is None else a.copy() for k, a in arrays.items()}, None if topology is None else topology.copy()
+
+    def _refresh_properties(self) -> None:
+        """Energy and forces of the start; those with friction and noise are the loop's."""
+        calc = self.atoms.calc
+        if calc.interactions is None:
+            calc._system(self.atoms)
+        if not any(use.style.stirred for use in calc.interactions.uses["pair"]):
+            return super()._refresh_properties()
+        self._publish(self._start(self.max_steps - self.nsteps).result)
+        self._leave()
 
     def step(self):
         """One step (for code that drives the dynamics by hand)."""

@@ -112,7 +112,7 @@ class BinCell:
 
     def squeeze(self, state, ns: int, n: int, reach: float, ortho: bool, mark: bool, order: bool) -> None:
         """Leave out empty stretches where few atoms (`n`) are in much space, so that cells are small where the atoms are."""
-        if CLUSTER * self.volume <= n * reach * reach * reach:
+        if reach == 0.0 or CLUSTER * self.volume <= n * reach * reach * reach:
             return
         k, low, high, places = squeezed_kernels(ortho, mark, order), np.empty(2 * n), np.empty(2 * n), np.empty((3, 2 * n + 2))
         k.find_gaps(state.x, state.row, ns, self.origin, self.inverse, APART * reach / self.widths, low, high, places)

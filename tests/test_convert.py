@@ -261,6 +261,23 @@ def test_python_refuses_what_ase_cannot_follow(here, text, message):
     assert not Path("out").exists()
 
 
+def test_python_of_friction_and_noise(here):
+    """Energies and forces that take a run are those of the dynamics, whose log begins with the start."""
+    Path("in.d").write_text("units lj\ncomm_modify vel yes\nlattice fcc 3.0\nregion b block 0 3 0 3 0 3\ncreate_box 1 b\n"
+                            "create_atoms 1 box\nmass 1 1.0\nvelocity all create 1 4711\npair_style dpd 1.0 1.0 34387\n"
+                            "pair_coeff 1 1 25.0 4.5\nfix 1 all nve\ntimestep 0.01\nrun 4\n")
+    atoms = runpy.run_path(str(here / convert("in.d", "python", "out")))["atoms"]
+    assert atoms.get_forces().shape == (108, 3) and atoms.get_potential_energy() > 0.0
+    os.chdir(here)
+    again, rows = asemd.read("in.d"), []
+    md = asemd.MolecularDynamics(again, 0.01)
+    md.attach(lambda: rows.append((again.get_potential_energy(), np.abs(again.get_forces()).max())), interval=2)
+    md.run(4)
+    assert again.get_potential_energy() == atoms.get_potential_energy() == rows[-1][0] and len(set(rows)) == 3
+    Path("in.s").write_text(Path("in.d").read_text().partition("fix")[0])
+    assert len(runpy.run_path(str(here / convert("in.s", "python", "still")))["atoms"]) == 108
+
+
 def test_variables_of_the_force_field_go_along(here):
     """As factors and in expressions, whose variables stand before the coefficients and may change behind them."""
     text = """variable f equal 0.3

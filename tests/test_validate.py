@@ -371,3 +371,20 @@ def test_potential_files_of_the_package(folder, monkeypatch, capsys):
     copper.rattle(0.1)
     copper.calc = asemd.EAM.from_file("Cu_mishin1.eam.alloy")
     assert validate(copper).ok
+
+
+@needs_lammps
+def test_rare_differences_are_documented_where_the_programs_differ(folder):
+    """Styles whose own forces are gradients without a second function say so only if they do not agree."""
+    (folder / "al.streitz").write_text("Al 0.1 10.328655 0 1.968438 0.763905\nO 5.484763 14.035715 0 2.143957 0.2\n")
+    text = ("units metal\natom_style charge\nlattice fcc 5\nregion b block 0 2 0 2 0 2\ncreate_box 2 b\ncreate_atoms 1 box\nmass * 20\n"
+            "set group all type/ratio 2 0.5 7\nset type 1 charge 0.4\nset type 2 charge -0.4\ndisplace_atoms all random 0.1 0.1 0.1 7\n")
+    (folder / "in.ions").write_text(text + "pair_style coul/streitz 6.0 wolf 0.3\npair_coeff * * al.streitz Al O\n")
+    (folder / "in.metal").write_text(text.replace("create_box 2", "create_box 1").partition("set")[0] +
+                                     "pair_style eam\npair_coeff * * Cu_u3.eam\n")
+    report = validate("in.ions")
+    assert not report.ok and "pair style coul/streitz: asemd's force is minus the gradient" in report.documented[0]
+    assert report.verdict.endswith("--compat lammps compares with LAMMPS's own forces")
+    assert validate("in.ions", compat="lammps").ok
+    report = validate("in.metal")
+    assert report.ok and not report.documented

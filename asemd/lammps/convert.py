@@ -199,6 +199,8 @@ def to_python(session: Reader, folder: str | os.PathLike, name: str) -> Path:
              *(f"import_file({path!r})" for path in user_styles.files),
              "sys.excepthook = in_one_line", "os.chdir(os.path.dirname(os.path.abspath(__file__)))"]
     energy = 'print("potential energy", atoms.get_potential_energy())'
+    if any(use.style.stirred for use in scene.interactions.uses["pair"]):       # their energies take a run
+        energy = 'print(len(atoms), "atoms")'
     if not integrates:
         return _written(Path(folder) / f"{name}.py", [*lines, f'atoms = asemd.read("in.{name}_atoms")', energy])
     commands = carried([line for line in session.kept if line.split()[0] in MAKERS], Path(folder), (f"in.{name}_atoms", f"{name}.py"))

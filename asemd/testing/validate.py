@@ -202,8 +202,7 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
         raise OracleError(f"asemd has {system.n} atoms, LAMMPS {len(theirs['id'])}, or their ids differ: forces cannot be compared")
     rotation = system.box.to_lammps()[1]
     result = ours[0]
-    report = Report(source, system.n, system.units, lammps_version() or "", tolerance, 0.0,
-                    documented=documented(interactions) if interactions.compat != "lammps" else [])
+    report = Report(source, system.n, system.units, lammps_version() or "", tolerance, 0.0)
     for command in exact:
         report.notes.append(f"LAMMPS is told {command}: " + (
             "by default it has no components of the pressure with msm" if command == TENSOR else
@@ -225,6 +224,8 @@ def _zero_step(source: str, system: System, interactions: Interactions, settings
                 their_forces[k] - their_forces[k + 1], our_virial.get(category, np.zeros(6)), their_virial[category], size)
     whole = result.virial + result.virial_of.get("tail", 0.0)
     _forces(report, "all", result.forces[rows], their_forces[0], whole, sum(their_virial.values(), np.zeros(6)), size)
+    if interactions.compat != "lammps":
+        report.documented += documented(interactions, report.ok)
     return report
 
 
@@ -262,8 +263,11 @@ def _back(rotation: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.array([t[0, 0], t[1, 1], t[2, 2], t[0, 1], t[0, 2], t[1, 2]])
 
 
-def documented(interactions: Interactions) -> list[str]:
-    """Styles in use whose forces differ from LAMMPS's on purpose."""
+def documented(interactions: Interactions, agree: bool = True) -> list[str]:
+    """Styles in use whose forces differ from LAMMPS's on purpose; those that do so in rare places only where the programs do not agree."""
+    def differs(use) -> bool:
+        rarely = use.style.category == "pair" and use.style.variant(use.settings, "lammps") is not use.style.variant(use.settings)
+        return getattr(use.style, "twin", None) is not None or rarely and not agree
     return [f"{category} style {use.style.name}: asemd's force is minus the gradient of the energy, LAMMPS's is not everywhere "
             "(the style's page says where); --compat lammps takes LAMMPS's"
-            for category, uses in interactions.uses.items() for use in uses if getattr(use.style, "twin", None) is not None]
+            for category, uses in interactions.uses.items() for use in uses if differs(use)]
