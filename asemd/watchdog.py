@@ -119,11 +119,7 @@ class Watchdog:
         loop, e = self.loop, self.loop.engine
         self.width = max(e.reach, *(1.0 / np.linalg.norm(np.linalg.inv(e.vectors), axis=0)))
         bond = _longest_bond(e.system)
-<<<<<<< HEAD
-        self.reach = (max(e.cutoff, bond) if e.has_pairs else 0.0) or FREE * max(bond, loop.settings.skin)
-=======
         self.reach = (max(e.cutoff, bond) if e.has_pairs else 0.0) or FREE * max(bond, loop.settings.skin) or np.inf
->>>>>>> fix-c
         self._limit = min(self.reach, self.width) ** 2
         self._free = _conserving(loop)
         self.frames.clear()

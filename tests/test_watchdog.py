@@ -353,12 +353,12 @@ def test_switched_off(tmp_path):
         assert not dog.on and not dog.frames and dog.seconds == 0.0
 
 
-<<<<<<< HEAD
 def test_atoms_of_which_all_pairs_are_excluded_may_fly():
     lmp = ran("region b block 0 9 0 9 0 9\ncreate_box 1 b\ncreate_atoms 1 single 1 1 1\ncreate_atoms 1 single 2 2 2\nmass 1 1\n"
               "velocity all create 1 4711\npair_style lj/cut 2\npair_coeff * * 1 1\nneigh_modify exclude type 1 1\nfix 1 all nve\nrun 3")
     assert lmp.get_thermo("pe") == 0.0
-=======
+
+
 @pytest.mark.parametrize("skin", [0.3, 0.0])
 @pytest.mark.parametrize("size", [1, 3])
 def test_atoms_without_forces_fly_freely(skin, size):
@@ -367,4 +367,3 @@ def test_atoms_without_forces_fly_freely(skin, size):
              f"velocity all create 1.0 4711\nneighbor {skin} bin\npair_style lj/cut 2.5\npair_coeff 1 1 1 1 0.0\nfix 1 all nve\n"
              "run 0\nrun 30") as lmp:
         assert lmp.get_thermo("pe") == 0.0 and lmp.get_thermo("temp") == pytest.approx(1.0, rel=1e-12)
->>>>>>> fix-c
