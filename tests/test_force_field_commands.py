@@ -60,6 +60,19 @@ def test_commands_are_the_same_as_arguments():
     assert abs(swapped.get_potential_energy() - atoms.get_potential_energy()) > 0.1
 
 
+def test_variables_have_their_values():
+    atoms = bulk("Ar", a=5.3, cubic=True)
+    lines = ["variable f equal 0.5", "variable k equal 0.3", "pair_style hybrid/scaled v_f lj/cut 5.0 1.0 lepton 4.0",
+             "pair_coeff 1 1 lj/cut 0.01 3.4", "pair_coeff 1 1 lepton v_k*(r-4)^2"]
+    plain = ["pair_style hybrid/overlay lj/cut 5.0 lepton 4.0", "pair_coeff 1 1 lj/cut 0.005 3.4", "pair_coeff 1 1 lepton 0.3*(r-4)^2"]
+    calc = ForceField(commands=lines, units="metal", types=["Ar"])
+    energy = ForceField(commands=plain, units="metal", types=["Ar"]).get_potential_energy(atoms)
+    for one in (calc, ForceField(**json.loads(json.dumps(calc.todict())))):
+        assert one.get_potential_energy(atoms) == pytest.approx(energy, rel=1e-12)
+    with pytest.raises(InputError, match="undefined variable f"):
+        ForceField(commands=lines[1:], units="metal", types=["Ar"])
+
+
 def test_commands_with_bonds_agree_with_lammps(tmp_path):
     """Real units, bonds, charges, dielectric: the energy of the exported scene in a session."""
     atoms = water()

@@ -236,6 +236,15 @@ def test_runs_of_a_script(melt):
     assert first.where.line == 15 and first.taken.step == 0
 
 
+def test_variables_of_the_force_field_have_their_values(tmp_path):
+    """Those of the run that is asked for."""
+    path = tmp_path / "in.scaled"
+    text = MELT.replace("pair_style lj/cut", "variable f equal 0.25\npair_style hybrid/scaled v_f lj/cut")
+    path.write_text(text.replace("1 1 1.0", "1 1 lj/cut 1.0").replace("run 100", "variable f equal 0.75\nrun 100"))
+    for at, factor in ((1, 0.25), (2, 0.75), (None, 0.75)):
+        assert [use.factor for use in read(str(path), at=at).taken.interactions.uses["pair"]] == [factor]
+
+
 # ---- advice -----------------------------------------------------------------------------------------------------------------------------
 
 def test_front_and_ties():

@@ -1,9 +1,12 @@
 """Short runs at constant energy: drift, order in the timestep, temperatures, errors by blocks."""
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from check_scenes import LJ
+from wheel import ran
 
 from asemd.errors import InputError
 from asemd.report import nve
@@ -71,3 +74,13 @@ def test_bad_input(melt):
         nve.order(melt, [0.001])
     with pytest.raises(InputError, match="nve' or 'own"):
         nve.run(melt, fixes="both")
+
+
+def test_no_temperature_where_the_energy_curves_down():
+    """Two atoms beyond the inflection of their pull."""
+    from asemd.report.configurational import Probe
+    with ran("units lj\nregion b block -5 5 -5 5 -5 5\ncreate_box 1 b\ncreate_atoms 1 single 0 0 0\ncreate_atoms 1 single 1.6 0 0\n"
+             "mass 1 1.0\npair_style lj/cut 4.0\npair_coeff 1 1 1 1\nfix 1 all nve\n") as lmp:
+        assert math.isnan(Probe(lmp.scene).temperature(lmp.scene.system))
+        lmp.scene.system.x[1] = [1.1, 0, 0]
+        assert Probe(lmp.scene).temperature(lmp.scene.system) > 0.0

@@ -10,6 +10,7 @@ from asemd.atom_style import fresh
 from asemd.box import Box
 from asemd.errors import InputError, nearest
 from asemd.lammps import script
+from asemd.lammps.live_coefficients import freeze
 from asemd.lammps.session import Session
 from asemd.scene import Scene
 from asemd.system import System
@@ -58,7 +59,9 @@ def scene_of(text: str, units: str, types: int, compat: str = "") -> Scene:
     scene.interactions.compat = compat
     scene.system = System(box=Box.from_lammps(np.zeros(3), np.ones(3)), x=np.zeros((0, 3)), type=np.zeros(0), counts=counts, units=units,
                           dimension=dimension, **fresh("full", 0))
-    Session(scene, passive=True).commands(re.sub(r"^\s*dimension\s.*$", "", text, flags=re.M))     # a box is there already
+    session = Session(scene, passive=True)
+    session.commands(re.sub(r"^\s*dimension\s.*$", "", text, flags=re.M))     # a box is there already
+    freeze(session)
     return scene
 
 

@@ -6,6 +6,7 @@ Source: H. H. Rugh, Phys. Rev. Lett. 78, 772 (1997); B. D. Butler et al., J. Che
 """
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np

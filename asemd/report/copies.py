@@ -11,6 +11,7 @@ import numpy as np
 
 from asemd import units as unit_styles
 from asemd.errors import AsemdError, InputError
+from asemd.lammps.live_coefficients import freeze
 from asemd.lammps.session import ACTIONS, Session, Stop
 from asemd.lammps.switches import Switches
 from asemd.scene import GroupTable, Scene, default_computes
@@ -55,7 +56,10 @@ class Reader(Session):
         if name == "run":
             self.runs += 1
             if self.at is None or self.runs == self.at:
-                self.taken, self.where, self.action = copied(scene), self._position, " ".join([name, *args])
+                self.where, self.action = self._position, " ".join([name, *args])
+                self.scene = self.taken = copied(scene)
+                freeze(self)        # copies have no variables
+                self.scene = scene
             if self.runs == self.at:
                 raise Stop
         dumps, restarts, scene.dumps, scene.restarts = scene.dumps, scene.restarts, {}, {}
