@@ -106,7 +106,7 @@ def test_every_unknown_name_is_reported(script, capsys):
 
 def test_the_installed_command_is_that_of_the_module():
     """Which prints warnings without lines of code."""
-    assert '\n[project.scripts]\nasemd = "asemd.cli:entry"\n' in (Path(asemd.__file__).parents[1] / "pyproject.toml").read_text()
+    assert '\n[project.scripts]\nasemd = "asemd.cli:entry"\n' in (Path(__file__).parents[1] / "pyproject.toml").read_text()
 
 
 def test_letters_that_the_terminal_does_not_have(script):
