@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import pytest
+from four_ions import FOUR_IONS
 from wheel import ask, ran, start
 
 from asemd.errors import InputError
@@ -9,14 +10,7 @@ from asemd.errors import InputError
 SCENE = """atom_style charge
 region b block 0 9 0 9 0 9
 create_box 2 b
-create_atoms 1 single 1 1 1
-create_atoms 1 single 2 2 2
-create_atoms 2 single 2.2 3 2
-create_atoms 2 single 4 3 2.5
-mass * 1
-set type 1 charge 0.5
-set type 2 charge -0.5
-variable e equal 0.4
+""" + FOUR_IONS + """variable e equal 0.4
 variable g equal 0.7
 variable s equal 0.5+0.1*step
 timestep 0.001

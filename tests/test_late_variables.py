@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import pytest
+from four_ions import FOUR_IONS
 from wheel import ask, ran
 
 from asemd.errors import InputError
@@ -10,14 +11,7 @@ SCENE = """units lj
 atom_style full
 region b block 0 9 0 9 0 9
 create_box 2 b bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 4
-create_atoms 1 single 1 1 1
-create_atoms 1 single 2 2 2
-create_atoms 2 single 2.2 3 2
-create_atoms 2 single 4 3 2.5
-mass * 1
-set type 1 charge 0.5
-set type 2 charge -0.5
-bond_style harmonic
+""" + FOUR_IONS + """bond_style harmonic
 bond_coeff 1 1 1
 create_bonds single/bond 1 1 2
 pair_style lj/cut/coul/long 3

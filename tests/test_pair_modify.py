@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from four_ions import FOUR_IONS
 from test_manybody import uncompiled
 from wheel import ask, ran
 
@@ -116,14 +117,7 @@ def test_tail_of_idle_styles():
 IDLE = """
 region b block 0 9 0 9 0 9
 create_box 2 b
-create_atoms 1 single 1 1 1
-create_atoms 1 single 2 2 2
-create_atoms 2 single 2.2 3 2
-create_atoms 2 single 4 3 2.5
-mass * 1
-set type 1 charge 0.5
-set type 2 charge -0.5
-{pairs}
+""" + FOUR_IONS + """{pairs}
 group a id 1 2
 group b id 3 4
 compute g a group/group b
