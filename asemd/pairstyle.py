@@ -118,7 +118,7 @@ class PairStyle(Style):
     dielectric = False               # each charge stands in a medium of its own, see `asemd.dielectric_term`
     oriented = ""                    # what the atoms have that torques turn, see `asemd.oriented_term`
     all_or_nothing = False           # special pairs whose weight is not 0 count in full
-    unweighted = False               # the energy of special pairs is added up without their weights, which only forces have
+    unweighted: PairStyle | None = None      # special pairs are added up without weights; those of single pairs are this style's
     charmm_constant = False          # in units real the Coulomb constant is that of CHARMM
     molecules = ""                   # same or other: only pairs of atoms of one molecule, or of two
     extra = 0                        # numbers that compute pair gives beside the energy

@@ -185,8 +185,8 @@ def limits(state, cutoff: float, own: bool) -> np.ndarray | None:
     return None if (limit[1:, 1:] >= cutoff * cutoff).all() else limit
 
 
-def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None,
-                 charges=None) -> tuple[np.ndarray, np.ndarray]:
+def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None, charges=None,
+                 single: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Energies (m,) of pairs and the force (m, 3) on the first atom of each, summed over the pair styles.
 
     Parameters
@@ -197,6 +197,8 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
         Formulas go on beyond the cutoff, where no list has a pair; not those of hybrid styles.
     terms, charges : optional
         Terms and charges (n,) other than those of the engine and the system.
+    single : bool
+        Energies are those of single pairs, where these differ from what is added up (`asemd.pairstyle.PairStyle.unweighted`).
 
     Raises
     ------
@@ -231,7 +233,8 @@ def interactions(state, pairs: Half, only=None, beyond: bool = False, terms=None
             chosen = np.flatnonzero(same == (term.molecules == "same"))
         a, b, c = first[chosen], second[chosen], code[chosen]
         radii = [state.system.extra["radius"][rows]] if term.style.sized else []
-        bound(_kernel(term), (x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), rows_of_tables, term.tables.constants,
+        style = term.style.unweighted if single and term.style.unweighted else term.style
+        bound(_kernel(style), (x, f, q, types, a, b, c, np.zeros((1, 3)), lj, coul, 0, len(a), rows_of_tables, term.tables.constants,
                               (*term.tables.arrays, *radii), engine.qqr2e, np.zeros(8), e, np.zeros((6, 2 * m)), bad), 2)()
         energy += e[:m] + e[m:]
         force += f[:, :m].T
@@ -274,9 +277,9 @@ def check_pairwise(terms) -> None:
             raise InputError(f"pair style {term.style.name} depends on dielectric constants of atoms: single pairs are not available")
 
 
-def _kernel(term):
+def _kernel(style):
     from asemd.kernels.pair import list_kernel
-    return list_kernel(term.style, term.style.parts, wanted=True)[0]
+    return list_kernel(style, style.parts, wanted=True)[0]
 
 
 def within_force_cutoff(state, cutoff: float, what: str) -> float:

@@ -105,7 +105,7 @@ class GroupGroup(Compute):
         if self.molecule != "off":
             same = state.system.molecule[p.i] == state.system.molecule[p.j]
             keep &= same == (self.molecule == "intra")
-        energy, force = interactions(state, p.take(keep))
+        energy, force = interactions(state, p.take(keep), single=True)
         sign = ahead[keep].astype(float) - back[keep]
         return float(energy.sum()), (sign[:, None] * force).sum(axis=0)
 

@@ -75,7 +75,7 @@ class PairLocal(Compute):
         r = np.sqrt(p.r2)
         columns = {"dist": r, **{f"d{a}": p.d[:, k] for k, a in enumerate("xyz")}}
         if set(self.keywords) - set(columns):
-            energy, force = interactions(state, p)
+            energy, force = interactions(state, p, single=True)
             columns |= {"eng": energy, "force": (force * p.d).sum(axis=1) / r, **{f"f{a}": force[:, k] for k, a in enumerate("xyz")}}
         out = [columns[k] for k in self.keywords]
         return np.asarray(out[0] if len(out) == 1 else np.column_stack(out), float)

@@ -3,8 +3,9 @@ r"""$$E = \phi(r) - \phi(r_c) - (r - r_c) \phi'(r_c), \qquad \phi = 4\epsilon \l
 Lennard-Jones with shifted force: energy and force end at zero. With x = rc/r each power x^n - 1 - n (1 - 1/x) is (x - 1)^2 times a
 polynomial, so that no digits cancel near the cutoff.
 
-The energy that LAMMPS adds up for special pairs lacks their weights (special_bonds), which its forces have; ``compat="lammps"`` does
-the same.
+LAMMPS has two energies of special pairs: the one it adds up lacks their weights (special_bonds), that of single pairs (compute pair/local,
+compute group/group) has them, like its forces. Ours is the second one, of which its forces are the gradient; ``compat="lammps"`` adds up
+the first one.
 Source: Toxvaerd and Dyre, J. Chem. Phys. 134, 081102 (2011).
 """
 from __future__ import annotations
@@ -56,7 +57,7 @@ class LinearPair(PairStyle):
                          "sigma": "distance"}, shifts=False, settings_example="2.5", example="1.0 1.1 2.4", doc=doc,
                          see="LAMMPS manual, pair_style lj/smooth/linear")
         self.twin = copy.copy(self)
-        self.twin.unweighted = True
+        self.twin.unweighted = self
 
 
 register(LinearPair("lj/smooth/linear"))
