@@ -126,7 +126,8 @@ def test_mixed_precision(special):
         exact = engine_of(system.copy(), "cluster", interactions).compute()
         mixed = engine_of(system.copy(), "cluster", interactions, precision="mixed").compute()
         errors.append(np.sqrt(((mixed.forces - exact.forces) ** 2).sum() / (exact.forces**2).sum()))
-        assert mixed.potential == pytest.approx(exact.potential, abs=1e-6 * system.n * 5)
+        # an inverse root of a processor with estimates of 12 bits is off by up to 1.8e-7, mostly to one side; repulsion has twelve of its powers
+        assert mixed.potential == pytest.approx(exact.potential, rel=1e-6)
         assert np.allclose(mixed.virial, exact.virial, rtol=0, atol=1e-6 * np.abs(exact.virial).max() * 5)
     # the nearest pair of a system makes most of its error: thirteen powers of an inverse root whose last digits differ between processors
     assert 0 < np.median(errors) < 1e-6 and max(errors) < 13 * 1.3e-7 + 1e-6
