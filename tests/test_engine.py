@@ -126,7 +126,7 @@ def test_mixed_precision(special):
         exact = engine_of(system.copy(), "cluster", interactions).compute()
         mixed = engine_of(system.copy(), "cluster", interactions, precision="mixed").compute()
         errors.append(np.sqrt(((mixed.forces - exact.forces) ** 2).sum() / (exact.forces**2).sum()))
-        # an inverse root of a processor with estimates of 12 bits is off by up to 1.8e-7, mostly to one side; repulsion has twelve of its powers
+        # inverse roots from estimates of 12 bits are off by up to 1.8e-7, mostly to one side; repulsion has twelve powers of them
         assert mixed.potential == pytest.approx(exact.potential, rel=1e-6)
         assert np.allclose(mixed.virial, exact.virial, rtol=0, atol=1e-6 * np.abs(exact.virial).max() * 5)
     # the nearest pair of a system makes most of its error: thirteen powers of an inverse root whose last digits differ between processors
