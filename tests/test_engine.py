@@ -120,7 +120,7 @@ def test_threads_and_repetition(special, mode):
 @pytest.mark.parametrize("special", [(1, 1, 1), (0, 0, 0), (0.1, 0.25, 0.5)])
 def test_mixed_precision(special):
     interactions = Interactions.build(pair=PAIRS, special_bonds={"lj": special, "coul": special})
-    errors = []
+    errors, off = [], []
     for seed in range(4, 11):
         system = chains(343, 7, np.diag([7.0, 7.2, 7.1]), np.random.default_rng(seed))
         exact = engine_of(system.copy(), "cluster", interactions).compute()
@@ -128,7 +128,9 @@ def test_mixed_precision(special):
         errors.append(np.sqrt(((mixed.forces - exact.forces) ** 2).sum() / (exact.forces**2).sum()))
         # inverse roots from estimates of 12 bits are off by up to 1.8e-7, mostly to one side; repulsion has twelve powers of them
         assert mixed.potential == pytest.approx(exact.potential, rel=1e-6)
+        off.append(abs(mixed.potential - exact.potential))
         assert np.allclose(mixed.virial, exact.virial, rtol=0, atol=1e-6 * np.abs(exact.virial).max() * 5)
+    assert np.median(off) < 5e-6 * system.n
     # the nearest pair of a system makes most of its error: thirteen powers of an inverse root whose last digits differ between processors
     assert 0 < np.median(errors) < 1e-6 and max(errors) < 13 * 1.3e-7 + 1e-6
 
