@@ -168,3 +168,10 @@ def test_one_place_decides_the_vectors():
     taken = re.compile(r"^\s*from numba import .*\bn?jit\b|\bnumba\.n?jit\b", re.M)
     where = {p.relative_to(ROOT / "asemd").as_posix() for p in (ROOT / "asemd").rglob("*.py") if taken.search(p.read_text())}
     assert where == {"kernels/target.py"}
+
+
+def test_modules_of_tests_and_workflows_have_names_of_their_own():
+    """Workflows are run inside the tests' own process: of two modules with one name the first one imported would serve both."""
+    tests, workflows = ({path.stem for path in (ROOT / folder).glob("*.py")} for folder in ("tests", "workflows"))
+    assert "conftest" in tests and "chains" in workflows
+    assert not tests & workflows

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from both import asemd, lines_of
-from chains import COLUMNS, chain
+from bead_chain import COLUMNS, chain
 from wheel import ask, ran
 
 from asemd.errors import InputError

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from chains import chain
+from bead_chain import chain
 from wheel import ask, ran
 
 WEIGHTS = {"partly": "0.3 0.2 0.5", "excluded": "1e-50 1e-50 0.5"}
