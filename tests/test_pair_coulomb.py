@@ -69,6 +69,9 @@ CASES = {      # name of the style, and what makes a case another one -> command
     "mm3/switch3/coulgauss/long": "pair_style mm3/switch3/coulgauss/long 5 7 1.5\npair_coeff 1 1 0.1 2 1.2\n"
             "pair_coeff 2 2 0.3 1.9 0.7" + SOLVER,
     "coul/slater/long": "pair_style coul/slater/long 1.5 7\npair_coeff * *" + SOLVER,
+    "buck6d/coul/gauss/long": "pair_style buck6d/coul/gauss/long 0.9 0.9 5 7\npair_coeff * * 10304 3.06 457.2 4.06 0.61\n"
+            "pair_coeff 1 2 9000 2.9 400 3 0.5 6" + SOLVER,
+    "buck6d/coul/gauss/long unswitched": "pair_style buck6d/coul/gauss/long 1 1 5\npair_coeff * * 10304 3.06 457.2 4.06 0.61" + SOLVER,
     "coul/long table": "pair_style coul/long 7\npair_coeff * *" + SOLVER[:-1] + "12",
     "coul/long/cs table": "pair_style coul/long/cs 7.1\npair_coeff * *" + SOLVER[:-1] + "14 tabinner 1.3",
     "buck/coul/long table": "pair_style buck/coul/long 5 6\npair_coeff * * 1000 0.3 20" + SOLVER[:-1] + "16",

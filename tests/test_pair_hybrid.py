@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from both import asemd, lines_of
 from bead_chain import COLUMNS, chain
+from both import asemd, lines_of
 from wheel import ask, ran
 
 from asemd.errors import InputError

@@ -62,6 +62,9 @@ RUNS = {
     "shear": ("dpd/ext 0.0 1.5 34387", "pair_coeff * * 25 4.5 3 0.5 0.7",
               "change_box all triclinic\nfix 2 all deform 2 xy erate 0.2 yz erate 0.1 remap v\nrun 20"),
     "levels": ("dpd 1.0 1.5 34387", "pair_coeff * * 25 4.5", "run_style respa 2 2 pair 1\nrun 10\nrun_style respa 2 2 pair 2\nrun 10"),
+    "charges": ("dpd/coul/slater/long 1.0 1.5 34387 0.6 1.9",
+                "variable q atom 2*(id%2)-1\nset group all charge v_q\nkspace_style ewald 1e-4\npair_modify table 0\n"
+                "pair_coeff 1 1 25 4.5 yes\npair_coeff 1 2 20 3 yes 1.2\npair_coeff 2 2 25 4.5 no", "run 20"),
     "new coefficients": ("hybrid/overlay soft 1.1 dpd/tstat 1.0 2.0 1.5 34387", "pair_coeff * * soft 8\npair_coeff * * dpd/tstat 4.5",
                          "variable a equal 8+step/10\nfix 2 all adapt 4 pair soft a * * v_a reset yes\nrun 10\nrun 10"),
 }
@@ -79,7 +82,8 @@ MINIMISATIONS = {
 
 
 def in_small_box(pair: str, coeff: str, what: str) -> str:
-    return FLUID.format(pair=pair, coeff=coeff, more="", size=4, steps="@").replace("run @ post no", what)
+    text = FLUID.format(pair=pair, coeff=coeff, more="", size=4, steps="@").replace("run @ post no", what)
+    return text.replace("atomic", "charge") if "coul" in pair else text
 
 
 def test_runs_with_more_than_one_timestep_ramp_or_box():
@@ -117,5 +121,7 @@ def test_words():
     for words, message in (("1 2.5 0", "seed must be"), ("-1 2.5 7", "temperature must not be negative"), ("1 0 7", "cutoff must be more")):
         with pytest.raises(InputError, match=f"pair_style dpd: .*{message}"):
             s.parse_settings(words.split())
+    with pytest.raises(InputError, match="charged must be yes or no, got 'maybe'"):
+        style.find("pair", "dpd/coul/slater/long").parse_coeff("25 4.5 maybe".split(), {})
     with pytest.raises(InputError, match="pair_style dpd/fdt: temperature must not be 0"):
         style.find("pair", "dpd/fdt").parse_settings("0 2.5 7".split())

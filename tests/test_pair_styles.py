@@ -26,8 +26,9 @@ QQ = -302.0
 RADII = (0.5, 0.5)
 LONG_RANGE = {"g_ewald": 0.29, "g_ewald_6": 0.27} | {
     f"smooth{k}": c / 10.0**(2 * k + 1) for k, c in enumerate((1.9, -1.3, 0.5, -0.1, 0.01, -0.001))}
-SMOOTH = ("buck6d/coul/gauss/dsf", "coul/dsf", "lj/cut/coul/dsf", "born/coul/dsf", "born/coul/dsf/cs", "lj/gromacs/coul/gromacs",
-          "coul/slater/long", *(n for n in STYLES if "coul/msm" in n))      # both go to zero at the end
+# both parts go to zero at the end
+SMOOTH = ("buck6d/coul/gauss/dsf", "buck6d/coul/gauss/long", "coul/dsf", "lj/cut/coul/dsf", "born/coul/dsf", "born/coul/dsf/cs",
+          "lj/gromacs/coul/gromacs", "coul/slater/long", "dpd/coul/slater/long", *(n for n in STYLES if "coul/msm" in n))
 TERMS = pair_formulas.TERMS | dict.fromkeys(SMOOTH, lambda r: abs(QQ) / r)
 
 
