@@ -6,6 +6,8 @@ import numba
 from numba import njit as njit
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
+from asemd.kernels import compiling
+
 
 def prefer_wide_vectors() -> None:
     """Let LLVM use 512-bit vectors where the processor has them: it prefers 256 bits on Intel, which costs these kernels a fifth."""
@@ -39,6 +41,7 @@ class OwnCopies(JITCodeLibrary):
 
 
 JITCPUCodegen._library_class = OwnCopies
+compiling.install()
 
 
 def many_registers() -> bool:

@@ -1,0 +1,118 @@
+"""What makes numba compile faster: the code stays the same, garbage is collected again afterwards."""
+from __future__ import annotations
+
+import gc
+import json
+import subprocess
+import sys
+
+import numba
+import pytest
+from numba.core import errors, event
+from numba.core.compiler import Flags
+from numba.core.cpu_options import FastMathOptions
+
+import asemd.kernels.target  # noqa: F401   which installs it
+from asemd.kernels import compiling
+
+PROGRAM = """
+import json
+import math
+import sys
+
+import numpy as np
+from numba import njit
+from numba.core.types.functions import BaseFunction
+
+from asemd.kernels import compiling
+
+if sys.argv[1] == "faster":
+    compiling.install()
+searches, search = 0, compiling.look_up
+
+def counted(*arguments):
+    global searches
+    searches += 1
+    return search(*arguments)
+
+if sys.argv[1] == "faster":
+    compiling.look_up = counted
+else:
+    BaseFunction.get_call_type = counted
+
+@njit(fastmath=True)
+def loose(a, b):
+    return max(a, 2) + math.pow(b, 3) * round(a) + abs(b)
+
+@njit
+def strict(a, b):
+    return max(a, 2) + math.pow(b, 3) * round(a) + abs(b)
+
+@njit
+def kernel(x, n):
+    out = np.zeros((3, len(n)))
+    for k in range(1, len(n), 2):
+        i, j = n[k] & 3, n[k - 1] >> 2
+        out[0, k] = loose(x[i], x[j]) - strict(x[j], x[i])
+        out[1, k] = math.sqrt(x[i] * x[j]) if x[i] > x[j] and not i == 2 else -x[i] // 3 % 2
+        out[2] += x[i] * 2
+    return out[:2].sum(), out.T.copy(), min(n), float(n[0])
+
+kernel(np.arange(5.0), np.arange(5))
+print(json.dumps([searches, [text for f in (loose, strict, kernel) for text in f.inspect_asm().values()]]))
+"""
+
+
+def test_the_code_is_the_same_and_made_with_fewer_searches():
+    (plain, theirs), (faster, ours) = (json.loads(subprocess.run([sys.executable, "-c", PROGRAM, how], capture_output=True, text=True,
+                                                                 check=True).stdout) for how in ("plain", "faster"))
+    assert len(theirs) == 3 and theirs == ours
+    assert 0 < faster < 0.7 * plain
+
+
+def test_options_of_functions():
+    def flags(**values):
+        out = Flags()
+        for name, value in values.items():
+            setattr(out, name, value)
+        return out
+    same = flags(nrt=True), flags(nrt=True, noalias=False), flags(nrt=True, fastmath=FastMathOptions(False))
+    assert len(set(same)) == 1 and len({hash(f) for f in same}) == 1
+    others = flags(), flags(noalias=True), flags(nrt=True, error_model="numpy"), flags(nrt=True, fastmath=FastMathOptions(True))
+    assert len({same[0], *others}) == 5 and len({hash(f) for f in others}) > 2
+    assert flags() != 1
+
+
+class Watch(event.Listener):
+    def __init__(self):
+        self.seen = []
+
+    def on_start(self, event):
+        self.seen.append(gc.isenabled())
+
+    def on_end(self, event):
+        pass
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_garbage_is_collected_afterwards():
+    @numba.njit
+    def good(x):
+        return x + 1.0
+
+    @numba.njit
+    def bad(x):
+        return good(x) + "1"
+
+    watch = Watch()
+    event.register(compiling.COMPILE, watch)
+    try:
+        for on in (True, False):
+            (gc.enable if on else gc.disable)()
+            with pytest.raises(errors.TypingError):
+                bad(1 if on else 1.0)
+            assert gc.isenabled() == on
+    finally:
+        gc.enable()
+        event.unregister(compiling.COMPILE, watch)
+    assert len(watch.seen) == 4 and not any(watch.seen)
