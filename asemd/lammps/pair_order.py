@@ -6,11 +6,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from asemd.fix import Fix
-from asemd.fix.atom_order import ListOrder, _above
+from asemd.fix.atom_order import ListOrder, bin_counts
+from asemd.kernels.half_list import pairs
 
 if TYPE_CHECKING:
     from asemd.lammps.session import Session
     from asemd.loop import Loop
+
+
+def codes(image: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Four times the place of each image (m, 3) among the known ones; -4 for others, which no pair needs."""
+    most = int(np.abs(image).max(initial=0))
+    wide = 2 * most + 1
+    table = np.full(wide**3, -4, np.int32)
+    near = np.flatnonzero((np.abs(known) <= most).all(axis=1))
+    weights = np.array([wide * wide, wide, 1])
+    table[(known[near] + most) @ weights] = 4 * near
+    return table[(image + most) @ weights]
 
 
 class PairOrder(ListOrder):
@@ -27,26 +39,12 @@ class PairOrder(ListOrder):
             return False
         local = np.argsort(self.place)                     # rows in LAMMPS's order
         x, row, image = self._with_ghosts(self.x[local], e.reach, e.periodic, self.high - self.low)
-        n = len(local)
-        from scipy.spatial import cKDTree
-        found = cKDTree(x[:n]).sparse_distance_matrix(cKDTree(x), e.reach * (1.0 + 1e-12), output_type="coo_matrix")
-        i, j = found.row[found.row != found.col], found.col[found.row != found.col]
-        bins = self._bin(loop, 0.5 * e.reach, x)
-        bins[:n] = np.clip(bins[:n], 0, None)
-        step = bins[j] - bins[i]
-        same = ~step.any(axis=1)
-        keep = np.where(same, np.where(j >= n, _above(x[j] - x[i]) | (x[j] == x[i]).all(axis=1), j > i), _above(step))
-        i, j, step, same = i[keep], j[keep], step[keep], same[keep]
-        order = np.lexsort((j, step[:, 0], step[:, 1], step[:, 2], ~same, i))
-        i, j = i[order], j[order]
-        known = {tuple(k): n for n, k in enumerate(np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(int).tolist())}
-        kinds, code = np.unique(image[j], axis=0, return_inverse=True)
-        code = np.array([known[tuple(k)] for k in kinds.tolist()], int)[code.ravel()]
-        term.shifts = e.plain_shifts        # they follow a box that moves
-        slots = [np.ascontiguousarray(e.slot_of[local[row[a]]], np.int32) for a in (i, j)]
-        s = e.state
-        term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, *slots, (4 * code).astype(np.int32), term.shifts, e.cell,
-                                                      e.periodic)
+        code = codes(image, np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(np.int64))
+        width = (self.high - self.low) / bin_counts(self.high - self.low, 0.5 * e.reach, loop.system.dimension)
+        i, j, code = pairs(x, len(local), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12),
+                           e.slot_of[local[row]].astype(np.int32), code, len(e.plain[0]))
+        s, term.shifts = e.state, e.plain_shifts        # they follow a box that moves
+        term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, i, j, code, term.shifts, e.cell, e.periodic)
         return True
 
     def _with_ghosts(self, x: np.ndarray, reach: float, periodic: np.ndarray, length: np.ndarray):
