@@ -131,11 +131,11 @@ class Engine:
         return 2.1 * self.reach * self.reach * self.reach * n < SPARSE * self.volume
 
     def _make_terms(self) -> list:
-        terms, single = [], self.settings.precision == "mixed"
-        weighted = bool(len(self.exclusions.weighted))
+        terms, single, weighted = [], self.settings.precision == "mixed", bool(len(self.exclusions.weighted))
         for t in self.pair_terms:
             if self.mode == "cluster" and not self.expanded:
-                terms.append(made(PairRowsTerm, t.sites, t) if self.sparse else made(PairTerm, t.sites, t, single))
+                rows = (PairRowsTerm, t.sites, t) if self.sparse else (PairTerm, t.sites, t, single)
+                terms += [] if t.style.special_only else [made(*rows)]
                 if weighted:
                     terms.append(made(PairListTerm, t.sites, t.style, t.tables, t.style.parts, "special", owner=t))
             else:

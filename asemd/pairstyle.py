@@ -126,6 +126,7 @@ class PairStyle(Style):
     from_files = False
     takes_tables = True              # ``pair_modify table`` has an effect, as in LAMMPS
     tables: dict[Callable, Callable] = {}       # functions looked up in a table by others than their own ``table``
+    special_only = False             # pairs that are not special do not interact
     needs_newton = False             # newton off is refused, as by LAMMPS
     on_sites = False                 # it acts on charges that are not on atoms, see `asemd.charge_sites`
 
@@ -192,7 +193,6 @@ class PairStyle(Style):
         for p in self.settings:
             if p.name not in values and p.default is not None:
                 values[p.name] = values[p.default] if isinstance(p.default, str) else p.default
-        for p in self.settings:
             if p.name.startswith("cut") and values.get(p.name, 1.0) < 0.0:
                 raise InputError(f"pair_style {self.name}: cutoff {p.name} must not be negative, got {values[p.name]:g}")
         return values
