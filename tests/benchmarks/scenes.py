@@ -203,6 +203,30 @@ def eam(cells=(20, 20, 20)) -> str:
     return EAM.format(cells=cells, file=file)
 
 
+DPD = """
+units lj
+atom_style atomic
+comm_modify vel yes
+lattice sc 3.0
+region box block 0 {n} 0 {n} 0 {n}
+create_box 1 box
+create_atoms 1 box
+mass 1 1.0
+velocity all create 1.0 4711
+pair_style dpd 1.0 1.0 34387
+pair_coeff 1 1 25.0 4.5
+neighbor 0.3 bin
+neigh_modify delay 0 every 1 check yes
+timestep 0.04
+fix 1 all nve
+"""
+
+
+def dpd(cells: int = 15) -> str:
+    """A fluid of dissipative particle dynamics at density 3, with the parameters of Groot and Warren (1997)."""
+    return DPD.format(n=cells)
+
+
 def kept() -> Path:
     """The folder of data files that are built once."""
     folder = Path(tempfile.gettempdir()) / f"asemd-benchmarks-{os.getuid() if hasattr(os, 'getuid') else 0}"
