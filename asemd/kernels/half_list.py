@@ -9,6 +9,54 @@ from asemd.kernels.target import njit
 
 
 @njit(cache=True, nogil=True)
+def with_images(x, reach, periodic, low, high):
+    """Atoms at `x (n, 3)` and their images within `reach` of the box, in the order in which LAMMPS sends them: positions, atoms, and the
+    images as numbers (m, 3) of box lengths."""
+    last, room = len(x), 2 * len(x) + 1000
+    y, atom, image = np.empty((room, 3)), np.empty(room, np.int64), np.zeros((room, 3), np.int64)
+    for k in range(last):
+        atom[k] = k
+        for c in range(3):
+            y[k, c] = x[k, c]
+    for axis in range(3):
+        if not periodic[axis]:
+            continue
+        first, end, length, middle = 0, last, high[axis] - low[axis], 0.5 * (low[axis] + high[axis])
+        for swap in range(int(reach / length) + 1):
+            for way in (1, -1):
+                for k in range(first, end):
+                    at = y[k, axis]
+                    if not (at <= low[axis] + reach and (swap == 0 or at >= middle) if way > 0 else
+                            at >= high[axis] - reach and (swap == 0 or at <= middle)):
+                        continue
+                    if last == room:
+                        y, atom, image = np.concatenate((y, y)), np.concatenate((atom, atom)), np.concatenate((image, image))
+                        room *= 2
+                    atom[last] = atom[k]
+                    for c in range(3):
+                        y[last, c], image[last, c] = y[k, c], image[k, c]
+                    y[last, axis] += way * length
+                    image[last, axis] += way
+                    last += 1
+            first, end = end, last
+    return y[:last], atom[:last], image[:last]
+
+
+@njit(cache=True, nogil=True)
+def bins_of(x, low, high, count):
+    """(m, 3) bin of each place, of `count` between `low` and `high`; also beyond."""
+    out = np.empty(x.shape, np.int64)
+    for k in range(len(x)):
+        for c in range(3):
+            scale = count[c] / (high[c] - low[c])
+            if x[k, c] >= high[c]:
+                out[k, c] = int((x[k, c] - high[c]) * scale) + count[c]
+            else:
+                out[k, c] = min(math.floor((x[k, c] - low[c]) * scale), count[c] - 1)
+    return out
+
+
+@njit(cache=True, nogil=True)
 def spans(width, reach):
     """How many bins to go along x where the bin is `dz` and `dy` bins away, (dz, dy); -1: all of them are out of reach."""
     out = np.full((math.ceil(reach / width[2]) + 1, math.ceil(reach / width[1]) + 1), -1)

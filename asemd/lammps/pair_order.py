@@ -7,7 +7,7 @@ import numpy as np
 
 from asemd.fix import Fix
 from asemd.fix.atom_order import ListOrder, bin_counts
-from asemd.kernels.half_list import pairs
+from asemd.kernels import half_list
 
 if TYPE_CHECKING:
     from asemd.lammps.session import Session
@@ -38,36 +38,17 @@ class PairOrder(ListOrder):
         if not (self.bins and self.newton) or box.triclinic or not e.ortho:
             return False
         local = np.argsort(self.place)                     # rows in LAMMPS's order
-        x, row, image = self._with_ghosts(self.x[local], e.reach, e.periodic, self.high - self.low)
+        x, row, image = half_list.with_images(self.x[local], e.reach, e.periodic, self.low, self.high)
         code = codes(image, np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(np.int64))
-        width = (self.high - self.low) / bin_counts(self.high - self.low, 0.5 * e.reach, loop.system.dimension)
-        i, j, code = pairs(x, len(local), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12),
-                           e.slot_of[local[row]].astype(np.int32), code, len(e.plain[0]))
+        count = bin_counts(self.high - self.low, 0.5 * e.reach, loop.system.dimension)
+        bins = half_list.bins_of(x, self.low, self.high, count)
+        if loop.system.dimension == 2:
+            bins[:, 2] = 0
+        i, j, code = half_list.pairs(x, len(local), bins, (self.high - self.low) / count, e.reach * (1.0 + 1e-12),
+                                     e.slot_of[local[row]].astype(np.int32), code, len(e.plain[0]))
         s, term.shifts = e.state, e.plain_shifts        # they follow a box that moves
         term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, i, j, code, term.shifts, e.cell, e.periodic)
         return True
-
-    def _with_ghosts(self, x: np.ndarray, reach: float, periodic: np.ndarray, length: np.ndarray):
-        """Atoms and images within `reach` of the box, in the order in which they are sent: positions, atoms, images (m, 3)."""
-        row, image = np.arange(len(x)), np.zeros((len(x), 3), np.int64)
-        for axis in range(3):
-            if not periodic[axis]:
-                continue
-            first, last = 0, len(x)
-            middle = 0.5 * (self.low[axis] + self.high[axis])
-            for swap in range(int(reach / length[axis]) + 1):
-                low = self.low[axis] + reach
-                high = self.high[axis] - reach
-                at = x[first:last, axis]
-                left = np.flatnonzero((at >= (-np.inf if swap == 0 else middle)) & (at <= low)) + first
-                right = np.flatnonzero((at >= high) & (at <= (np.inf if swap == 0 else middle))) + first
-                for sent, way in ((left, 1), (right, -1)):
-                    moved, new = x[sent].copy(), image[sent].copy()
-                    moved[:, axis] += way * length[axis]
-                    new[:, axis] += way
-                    x, row, image = np.concatenate([x, moved]), np.concatenate([row, row[sent]]), np.concatenate([image, new])
-                first, last = last, len(x)
-        return x, row, image
 
 
 class KeepsOrder(Fix):
