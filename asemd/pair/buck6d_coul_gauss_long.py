@@ -56,7 +56,20 @@ def special(r2, qq, alpha, start_coul, width_coul, g_ewald, off):
             0.5 * rinv * ((bells - near + far) * rinv * switch + (near - far) * slope - off * (bell - near) * rinv))
 
 
-coul_gauss.special = special
+def coul_gauss_d2(r2, qq, alpha, start_coul, width_coul, g_ewald):
+    r = math.sqrt(r2)
+    near, far = alpha * math.exp(-alpha * alpha * r2), g_ewald * math.exp(-g_ewald * g_ewald * r2)
+    e = qq * (math.erfc(g_ewald * r) - math.erfc(alpha * r)) / r
+    d = (qq * 1.12837917 * (near - far) - e) / r
+    dd = -2.0 * qq * 1.12837917 * (alpha * alpha * near - g_ewald * g_ewald * far) - 2.0 * d / r
+    x = max(r - start_coul, 0.0) / width_coul
+    gap = 1.0 - x
+    switch, slope = gap * gap * gap * (1.0 + x * (3.0 + 6.0 * x)), -30.0 * x * x * gap * gap / width_coul
+    curve = -60.0 * x * gap * (1.0 - 2.0 * x) / (width_coul * width_coul)
+    return 0.25 * (dd * switch + 2.0 * d * slope + e * curve - (d * switch + e * slope) / r) / r2
+
+
+coul_gauss.special, coul_gauss.d2 = special, coul_gauss_d2
 pair_sum("buck6d/coul/gauss/long", (dsf.buck6d, "cut_lj"), (coul_gauss, "cut_coul"), settings="smooth smooth_coul cut_lj [cut_coul]",
          coeff="A rho C D alpha [cut_lj]", rows="start width start_coul width_coul", defaults={"cut_coul": "cut_lj"}, derived=derived,
          check=check, settings_example="0.9 0.8 8.0 10.0", example="10304.0 3.0612 457.18 4.06448 0.6108 7.5",
