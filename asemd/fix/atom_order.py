@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from asemd.fix import NEVER
+from asemd.kernels.half_list import bins_of
 from asemd.kernels.rows import of_ids
 
 SPREAD = 64     # the largest id over the number of atoms
@@ -149,9 +150,7 @@ class ListOrder(AtomOrder):
         count = bin_counts(length, width, loop.system.dimension)
         if x is None:
             return np.clip(((self.x - self.low) * (count / length)).astype(np.int64), 0, count - 1)
-        at = np.floor((x - self.low) * (count / length)).astype(np.int64)
-        beyond = ((x - self.high) * (count / length)).astype(np.int64) + count
-        at = np.where(x >= self.high, beyond, np.minimum(at, count - 1))
+        at = bins_of(x, self.low, self.high, count)
         if loop.system.dimension == 2:
             at[:, 2] = 0
         return at

@@ -1,6 +1,6 @@
 """What makes numba compile faster; the code that it makes is the same.
 
-Half of the time goes into finding the types of calls. numba looks for each addition of two numbers through all that can be added, arrays,
+Much of the time goes into finding the types of calls. numba looks for each addition of two numbers through all that can be added, arrays,
 dates and texts, as often as there is one; here what was found once is kept. Options of functions are compared each time with all their
 values, for their hashes are all equal; here they are not. And garbage is not collected while a function is compiled: there is hardly any
 that would go away, and looking for it takes longer the more is loaded.

@@ -40,12 +40,10 @@ class PairOrder(ListOrder):
         local = np.argsort(self.place)                     # rows in LAMMPS's order
         x, row, image = half_list.with_images(self.x[local], e.reach, e.periodic, self.low, self.high)
         code = codes(image, np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(np.int64))
-        count = bin_counts(self.high - self.low, 0.5 * e.reach, loop.system.dimension)
-        bins = half_list.bins_of(x, self.low, self.high, count)
-        if loop.system.dimension == 2:
-            bins[:, 2] = 0
-        i, j, code = half_list.pairs(x, len(local), bins, (self.high - self.low) / count, e.reach * (1.0 + 1e-12),
-                                     e.slot_of[local[row]].astype(np.int32), code, len(e.plain[0]))
+        length = self.high - self.low
+        width = length / bin_counts(length, 0.5 * e.reach, loop.system.dimension)
+        i, j, code = half_list.pairs(x, len(local), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12), e.slot_of[local[row]].astype(np.int32),
+                                     code, len(e.plain[0]))
         s, term.shifts = e.state, e.plain_shifts        # they follow a box that moves
         term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, i, j, code, term.shifts, e.cell, e.periodic)
         return True
