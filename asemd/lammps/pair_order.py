@@ -42,8 +42,9 @@ class PairOrder(ListOrder):
         code = codes(image, np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(np.int64))
         length = self.high - self.low
         width = length / bin_counts(length, 0.5 * e.reach, loop.system.dimension)
-        i, j, code = half_list.pairs(x, len(local), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12), e.slot_of[local[row]].astype(np.int32),
-                                     code, len(e.plain[0]))
+        slot = e.slot_of[local[row]].astype(np.int32)
+        i, j, code = half_list.pairs(x, len(local), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12), slot, code,
+                                     len(e.plain[0]))
         s, term.shifts = e.state, e.plain_shifts        # they follow a box that moves
         term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, i, j, code, term.shifts, e.cell, e.periodic)
         return True
