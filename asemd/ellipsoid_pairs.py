@@ -22,6 +22,7 @@ class OrientedPair(PairStyle):
     listed = True
     oriented = "ellipsoid"
     exact = True
+    shaped = True        # more of a body matters than its first axis
 
     def __init__(self, name: str, potential, **options):
         super().__init__(name, [(lj_cut, "cut")], **{**dict(see=f"LAMMPS manual, pair_style {name}"), **options})

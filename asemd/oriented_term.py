@@ -65,11 +65,11 @@ def ellipsoid_kernel(style, energy: bool, per_atom: bool):
     name = b.function(style.parts[0].function)
     b.text(f"def plain(r2, rows, ti, tj):\n    e, d = {name}(r2, rows[2, ti, tj], rows[3, ti, tj])\n"
            "    return e - rows[1, ti, tj], -2.0 * d")
-    for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FORM=4).items():
+    for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FORM=4, SHAPED=style.shaped).items():
         b.constant(key, value)
     pair_sums.use(b, "eight", "add", "halve")
-    for f in (turn_axes, pair_ellipsoid.lay, pair_ellipsoid.times, pair_ellipsoid.inverse,
-              pair_ellipsoid.skew, pair_ellipsoid.trace):
+    for f in (turn_axes, pair_ellipsoid.lay, pair_ellipsoid.stand, pair_ellipsoid.times, pair_ellipsoid.inverse, pair_ellipsoid.skew,
+              pair_ellipsoid.trace):
         b.function(f)
     b.function(style.potential, "potential")
     b.function(pair_ellipsoid.ellipsoid_forces)

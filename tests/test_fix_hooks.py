@@ -6,6 +6,7 @@ import os
 import pkgutil
 import subprocess
 import sys
+import types
 from typing import NamedTuple
 
 import numba
@@ -76,6 +77,30 @@ def test_memory_has_the_layout_of_the_compiler():
         return a.sum(), a.shape, b[3], b.size, c[4], c.strides[0], d
     assert look(block.ctypes.data) == (66.0 - 6.0 - 1.0, (3, 4), 3, 5, 8.0, 8, (0.25, -3.0, -7, 1e300))
     assert x[1, 2] == -1.0
+
+
+def _copied(thread, arguments):
+    out, bytes_, floats = read(arguments)      # noqa: F821
+    for k in range(len(out)):
+        out[k] = taken(bytes_, floats, k)      # noqa: F821
+
+
+@pytest.mark.skipif(packed.WITHOUT_COMPILER, reason="nothing is compiled")
+def test_references_to_arrays_are_not_counted():
+    """What is handed on from memory has no owner: no call in a loop counts references, and no array is taken for another."""
+    @numba.njit(no_cpython_wrapper=True)
+    def taken(bytes_, floats, k):
+        return bytes_[k] + floats[1][k, 0]
+
+    values = np.zeros(3), np.arange(3, dtype=np.uint8), (2.0, np.arange(6.0).reshape(3, 2))
+    block = packed.Block(values)
+    read = packed.reader(numba.typeof(values))
+    code = types.FunctionType(_copied.__code__, {"read": read, "taken": taken})
+    call = numba.cfunc(numba.void(numba.int64, numba.int64))(code)
+    packed.enter_at(call.address, 0, packed.handle(block.memory))
+    assert values[0].tolist() == [0.0, 3.0, 6.0]
+    text = call._library.get_llvm_str()
+    assert "@NRT_incref" not in text and "@NRT_decref" not in text
 
 
 def test_memory_takes_other_values_of_the_same_types():

@@ -30,6 +30,7 @@ LAYOUT = " ".join(State._fields + BoxState._fields)      # hooks are compiled fo
 _DOUBLE, _SINGLE, _BITS = struct.Struct("d"), struct.Struct("ff"), struct.Struct("q")
 WITHOUT_COMPILER = bool(config.DISABLE_JIT)
 HANDLE = object if WITHOUT_COMPILER else np.int64
+OWNERS = 2      # the first members of an array say whose its memory is
 
 
 def _members(array: np.ndarray) -> tuple[int, ...]:
@@ -173,28 +174,35 @@ def text_of_arguments(value) -> str:
 _texts: dict[bytes, str] = {}
 
 
-def _members_of(kind) -> list:
-    return list(kind.elements) if isinstance(kind, ir.BaseStructType) else [kind.element] * kind.count if _is_made_of(kind) else []
-
-
-def _is_made_of(kind) -> bool:
-    return isinstance(kind, (ir.BaseStructType, ir.ArrayType))
-
-
 def _size(kind) -> int:
-    return sum(map(_size, _members_of(kind))) if _is_made_of(kind) else 1
+    """How many members of 8 bytes a value of that type has in memory."""
+    if isinstance(kind, types.BaseTuple):
+        return sum(map(_size, kind.types))
+    return 5 + 2 * kind.ndim if isinstance(kind, types.Array) else 1
 
 
-def _read(builder, first, at: int, kind, only=None):
-    """The value whose members are 8 bytes each from place `at` on; `only` some of them, whose loads are all that is written."""
-    if not _is_made_of(kind):
-        return builder.load(builder.bitcast(builder.gep(first, [ir.Constant(ir.IntType(64), at)]), kind.as_pointer()))
-    value = ir.Constant(kind, None)      # zeros: an array that is not read has no owner to be counted
-    for k, member in enumerate(_members_of(kind)):
+def _read(context, builder, first, at: int, kind, only=None):
+    """The value of a type that begins at place `at`; of a tuple `only` some members, whose loads are all that is written."""
+    whole = context.get_value_type(kind)
+    if not isinstance(kind, types.BaseTuple | types.Array):
+        return _load(builder, first, at, whole)
+    value = ir.Constant(whole, None)      # zeros: an array that is not read has no owner to be counted
+    if isinstance(kind, types.Array):
+        for k, member in enumerate(whole.elements):
+            if k >= OWNERS:      # nor has any other, as the compiler shall know: it leaves the counting out
+                value = builder.insert_value(value, _load(builder, first, at + k, member), k)
+                at += getattr(member, "count", 1) - 1
+        return value
+    for k, member in enumerate(kind.types):
         if only is None or k in only:
-            value = builder.insert_value(value, _read(builder, first, at, member), k)
+            value = builder.insert_value(value, _read(context, builder, first, at, member), k)
         at += _size(member)
     return value
+
+
+def _load(builder, first, at: int, kind):
+    """What has that type of LLVM and begins at place `at`."""
+    return builder.load(builder.bitcast(builder.gep(first, [ir.Constant(ir.IntType(64), at)]), kind.as_pointer()))
 
 
 def reader(kind, fields=None):
@@ -206,7 +214,7 @@ def reader(kind, fields=None):
     def read(context, address):
         def generate(ctx, builder, signature, arguments):
             first = builder.inttoptr(arguments[0], ir.IntType(64).as_pointer())
-            return impl_ret_borrowed(ctx, builder, kind, _read(builder, first, 0, ctx.get_value_type(kind), only))
+            return impl_ret_borrowed(ctx, builder, kind, _read(ctx, builder, first, 0, kind, only))
         return kind(types.int64), generate
     return read
 

@@ -25,17 +25,19 @@ def dielectric_forces(x, f, q, epsilon, type_of, pair_i, pair_j, code, shifts, w
     `bad (4,)`: 1, the first pair whose energy is not finite, its distance.
     """
     for m in range(lo, hi):
-        i = pair_i[m]
-        j = pair_j[m]
-        kind = code[m] & 3
-        image = code[m] >> 2
+        i = np.uint32(pair_i[np.uint64(m)])
+        j = np.uint32(pair_j[np.uint64(m)])
+        kind = np.uint32(code[np.uint64(m)] & 3)
+        image = np.uint32(code[np.uint64(m)] >> 2)
         dx = x[0, i] - x[0, j] - shifts[image, 0]
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
         r2 = dx * dx + dy * dy + dz * dz
+        ti = np.uint32(type_of[i])
+        tj = np.uint32(type_of[j])
         qq = qqr2e * q[i] * q[j]
         fp, fc, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants,
-                                         arrays, type_of[i], type_of[j])
+                                         arrays, ti, tj)
         if not abs(ev + ec) < np.inf or not abs(fp + fc) < np.inf:
             if bad[0] == 0.0:
                 bad[0] = 1.0
@@ -52,8 +54,7 @@ def dielectric_forces(x, f, q, epsilon, type_of, pair_i, pair_j, code, shifts, w
         f[2, j] -= on_j * dz
         part = 0.5 * (1.0 / epsilon[i] + 1.0 / epsilon[j])
         if LONG and kind != 0:
-            whole = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[0], weight_coul[0], rows, constants, arrays, type_of[i],
-                                    type_of[j])[3]
+            whole = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[0], weight_coul[0], rows, constants, arrays, ti, tj)[3]
             ec = part * whole - (whole - ec) / (epsilon[i] * epsilon[j])
         else:
             ec *= part

@@ -28,21 +28,22 @@ def dipole_forces(x, f, q, mu, row, torque, type_of, pair_i, pair_j, code, shift
     `bad (4,)`: 1, the first pair whose energy is not finite, its distance.
     """
     for m in range(lo, hi):
-        i = pair_i[m]
-        j = pair_j[m]
-        kind = code[m] & 3
-        image = code[m] >> 2
+        i = np.uint32(pair_i[np.uint64(m)])
+        j = np.uint32(pair_j[np.uint64(m)])
+        kind = np.uint32(code[np.uint64(m)] & 3)
+        image = np.uint32(code[np.uint64(m)] >> 2)
         dx = x[0, i] - x[0, j] - shifts[image, 0]
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
         r2 = dx * dx + dy * dy + dz * dz
-        ti = type_of[i]
-        tj = type_of[j]
+        ti = np.uint32(type_of[i])
+        tj = np.uint32(type_of[j])
         ec, gx, gy, gz = 0.0, 0.0, 0.0, 0.0
         a0, a1, a2, b0, b1, b2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0      # the electric fields at both
         fp, ev, _ = pair_energy_one(r2, 0.0, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays, ti, tj)
-        p0, p1, p2 = mu[row[i], 0], mu[row[i], 1], mu[row[i], 2]
-        s0, s1, s2 = mu[row[j], 0], mu[row[j], 1], mu[row[j], 2]
+        a, b = np.uint32(row[i]), np.uint32(row[j])
+        p0, p1, p2 = mu[a, 0], mu[a, 1], mu[a, 2]
+        s0, s1, s2 = mu[b, 0], mu[b, 1], mu[b, 2]
         if r2 < rows[FIRST, ti, tj]:
             f0, f1, f2, f3, g0, g1, g2, g3 = radial(r2, weight_coul[0], weight_coul[kind], rows[FIRST, ti, tj], constants)
             factor = qqr2e

@@ -1,7 +1,7 @@
 """Forces and torques between ellipsoids and spheres, for each pair of a list.
 
 Constants of the generated module: ENERGY, PER_ATOM, FORM (the row of the coefficients that says what a pair of types is: 0 for two spheres,
-whose energy is a function of the distance; others are for the style's function).
+whose energy is a function of the distance; others are for the style's function), SHAPED (more of a body matters than its first axis).
 From the style: `plain(r2, rows, ti, tj)` -> energy, force/r; `potential(d, r2, form, ti, tj, rows, constants, first, second, work, out)`
 -> energy; it writes the gradient by d = x_i - x_j and the derivatives by rotations of both, 9 numbers, to `out`; `work (4, 6)` is scratch.
 A body is 0 G = A^T S^2 A and 1 B = A^T E A with the semi-axes S and relative well depths E of its type along the rows of A, 2 the row of
@@ -14,7 +14,7 @@ import numpy as np
 from asemd.kernels.pair_sums import add, eight, halve
 from asemd.kernels.rigid import turn_axes
 
-ENERGY = PER_ATOM = False
+ENERGY = PER_ATOM = SHAPED = False
 FORM = 0
 plain = potential = None
 
@@ -28,6 +28,21 @@ def lay(e, sizes, k, out):
     out[3] = a * e[0, 0] * e[0, 1] + b * e[1, 0] * e[1, 1] + c * e[2, 0] * e[2, 1]
     out[4] = a * e[0, 0] * e[0, 2] + b * e[1, 0] * e[1, 2] + c * e[2, 0] * e[2, 2]
     out[5] = a * e[0, 1] * e[0, 2] + b * e[1, 1] * e[1, 2] + c * e[2, 1] * e[2, 2]
+
+
+def stand(body, q, kind, bodies, e):
+    """A body of that type with the orientation q; `e (3, 3)` is scratch."""
+    if not SHAPED:
+        a, b, c, d = q[0], q[1], q[2], q[3]
+        body[3, 6], body[3, 7], body[3, 8] = a * a + b * b - c * c - d * d, 2.0 * (b * c + a * d), 2.0 * (b * d - a * c)
+    else:
+        turn_axes(q, e)
+        body[3, 6], body[3, 7], body[3, 8] = e[0, 0], e[0, 1], e[0, 2]
+        for k in range(9):
+            body[2, k] = bodies[kind, k]
+        lay(e, body[2], 0, body[0])
+        lay(e, body[2], 3, body[1])
+        lay(e, body[2], 6, body[3])
 
 
 def times(m, x, y, z):
@@ -65,17 +80,18 @@ def ellipsoid_forces(x, f, quaternions, row, torque, type_of, pair_i, pair_j, co
     """
     e, out, d = np.zeros((3, 3)), np.zeros(9), np.zeros(3)
     first, second, work = np.zeros((4, 9)), np.zeros((4, 9)), np.zeros((4, 6))
+    at = np.uint32(0xFFFFFFFF)
     for m in range(lo, hi):
-        i = pair_i[m]
-        j = pair_j[m]
-        kind = code[m] & 3
-        image = code[m] >> 2
+        i = np.uint32(pair_i[np.uint64(m)])
+        j = np.uint32(pair_j[np.uint64(m)])
+        kind = np.uint32(code[np.uint64(m)] & 3)
+        image = np.uint32(code[np.uint64(m)] >> 2)
         dx = x[0, i] - x[0, j] - shifts[image, 0]
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
         r2 = dx * dx + dy * dy + dz * dz
-        ti = type_of[i]
-        tj = type_of[j]
+        ti = np.uint32(type_of[i])
+        tj = np.uint32(type_of[j])
         weight = weight_lj[kind]
         if not r2 < rows[0, ti, tj] or weight == 0.0:
             continue
@@ -84,14 +100,10 @@ def ellipsoid_forces(x, f, quaternions, row, torque, type_of, pair_i, pair_j, co
             ev, fp = plain(r2, rows, ti, tj)
             gx, gy, gz = -fp * dx, -fp * dy, -fp * dz
         else:
-            for own, slot, kind_of in ((first, i, ti), (second, j, tj)):
-                for k in range(9):
-                    own[2, k] = bodies[kind_of, k]
-                turn_axes(quaternions[row[slot]], e)
-                lay(e, own[2], 0, own[0])
-                lay(e, own[2], 3, own[1])
-                lay(e, own[2], 6, own[3])
-                own[3, 6], own[3, 7], own[3, 8] = e[0, 0], e[0, 1], e[0, 2]
+            if i != at:      # pairs of one atom mostly follow each other
+                at = i
+                stand(first, quaternions[np.uint32(row[i])], ti, bodies, e)
+            stand(second, quaternions[np.uint32(row[j])], tj, bodies, e)
             d[0], d[1], d[2] = dx, dy, dz
             ev = potential(d, r2, form, ti, tj, rows, constants, first, second, work, out)
             gx, gy, gz = out[0], out[1], out[2]

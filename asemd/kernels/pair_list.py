@@ -37,15 +37,17 @@ def list_forces(th, x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, w
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
         r2 = dx * dx + dy * dy + dz * dz
+        ti = np.uint32(type_of[i])
+        tj = np.uint32(type_of[j])
         qq = 0.0
         if CHARGED:
             qq = qqr2e * q[i] * q[j]
         if SIZED:
             fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays,
-                                         type_of[i], type_of[j], arrays[-1][i], arrays[-1][j])
+                                         ti, tj, arrays[-1][i], arrays[-1][j])
         else:
             fp, ev, ec = pair_energy_one(r2, qq, weight_lj[kind], weight_coul[kind], weight_coul[0], rows, constants, arrays,
-                                         type_of[i], type_of[j])
+                                         ti, tj)
         if FACTOR or not WANTED:       # energies that nobody asks for: the compiler leaves them out
             ev = ec = 0.0
         if not abs(ev + ec) < np.inf or not abs(fp) < np.inf:
@@ -59,12 +61,12 @@ def list_forces(th, x, f, q, type_of, pair_i, pair_j, code, shifts, weight_lj, w
         gz = dz * fp
         a = arrays[-1][i] if FACTOR else 1.0
         b = arrays[-1][j] if FACTOR else 1.0
-        f[0, np.uint32(i)] += a * gx
-        f[1, np.uint32(i)] += a * gy
-        f[2, np.uint32(i)] += a * gz
-        f[0, np.uint32(j)] -= b * gx
-        f[1, np.uint32(j)] -= b * gy
-        f[2, np.uint32(j)] -= b * gz
+        f[0, i] += a * gx
+        f[1, i] += a * gy
+        f[2, i] += a * gz
+        f[0, j] -= b * gx
+        f[1, j] -= b * gy
+        f[2, j] -= b * gz
         if WANTED:
             mean = 0.5 * (a + b)
             add(acc, eight(ev, ec, dx, dy, dz, mean * gx, mean * gy, mean * gz))

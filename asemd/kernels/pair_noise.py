@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from asemd.kernels.marsaglia import gaussian
 from asemd.kernels.pair_sums import add, eight, halve
 
@@ -32,16 +34,16 @@ def noisy_forces(th, x, f, v, type_of, mask, pair_i, pair_j, code, shifts, image
     scale = 1.0 / math.sqrt(dt)
     factor = control[5]
     for m in range(lo, hi):
-        i = pair_i[m]
-        j = pair_j[m]
-        kind = code[m] & 3
-        image = code[m] >> 2
+        i = np.uint32(pair_i[np.uint64(m)])
+        j = np.uint32(pair_j[np.uint64(m)])
+        kind = np.uint32(code[np.uint64(m)] & 3)
+        image = np.uint32(code[np.uint64(m)] >> 2)
         dx = x[0, i] - x[0, j] - shifts[image, 0]
         dy = x[1, i] - x[1, j] - shifts[image, 1]
         dz = x[2, i] - x[2, j] - shifts[image, 2]
         r2 = dx * dx + dy * dy + dz * dz
-        ti = type_of[i]
-        tj = type_of[j]
+        ti = np.uint32(type_of[i])
+        tj = np.uint32(type_of[j])
         if r2 >= rows[0, ti, tj]:
             continue
         r = math.sqrt(r2)

@@ -10,6 +10,8 @@ Source: J. G. Gay, B. J. Berne, J. Chem. Phys. 74, 3316 (1981); R. Everaers, M. 
 """
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from asemd.ellipsoid_pairs import EllipsoidPair
@@ -21,7 +23,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     epsilon, sigma = rows[2, ti, tj], rows[3, ti, tj]
     gamma, upsilon, mu = constants[0], 0.5 * constants[1], constants[2]
     x, y, z = d[0], d[1], d[2]
-    r = r2**0.5
+    r = math.sqrt(r2)
     g, b = work[0], work[1]
     for k in range(6):
         work[2, k], work[3, k] = first[0, k] + second[0, k], first[1, k] + second[1, k]
@@ -30,7 +32,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     ux, uy, uz = times(g, x, y, z)
     wx, wy, wz = times(b, x, y, z)
     p, t = x * ux + y * uy + z * uz, x * wx + y * wy + z * wz
-    ratio = (2.0 / p) ** 0.5            # of the distance of contact to r
+    ratio = math.sqrt(2.0 / p)          # of the distance of contact to r
     touch = r * ratio / p
     rho = sigma / (r - r * ratio + gamma * sigma)
     r6 = rho * rho * rho
@@ -38,7 +40,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     u = 4.0 * epsilon * (r6 * r6 - r6)
     du = -24.0 * epsilon * rho / sigma * (2.0 * r6 * r6 - r6)
     a, c = first[2], second[2]
-    s1, s2 = (a[6] * a[7] + a[8] * a[8]) * (a[6] * a[7]) ** 0.5, (c[6] * c[7] + c[8] * c[8]) * (c[6] * c[7]) ** 0.5
+    s1, s2 = (a[6] * a[7] + a[8] * a[8]) * math.sqrt(a[6] * a[7]), (c[6] * c[7] + c[8] * c[8]) * math.sqrt(c[6] * c[7])
     eta, chi = (2.0 * s1 * s2 / det) ** upsilon, (2.0 * t / r2) ** mu
     k = eta * chi * du
     v = 2.0 * mu * eta * chi * u

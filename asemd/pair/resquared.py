@@ -15,6 +15,8 @@ Source: R. Everaers, M. R. Ejtehadi, Phys. Rev. E 67, 041710 (2003); M. Babadi, 
 """
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from asemd.ellipsoid_pairs import EllipsoidPair
@@ -25,7 +27,7 @@ from asemd.style import register
 def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     a12, sigma = rows[2, ti, tj], rows[3, ti, tj]
     x, y, z = d[0], d[1], d[2]
-    r = r2**0.5
+    r = math.sqrt(r2)
     one = second if form == 3.0 else first          # the ellipsoid, of an ellipsoid and a point
     g, b, h_inverse, both = work[0], work[1], work[2], work[3]
     for k in range(9):
@@ -49,7 +51,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     ux, uy, uz = times(g, x, y, z)
     wx, wy, wz = times(b, x, y, z)
     p, t = x * ux + y * uy + z * uz, x * wx + y * wy + z * wz
-    ratio = (share / p) ** 0.5
+    ratio = math.sqrt(share / p)
     touch = r * ratio / p
     h = r - r * ratio
     chi, eta = 2.0 * t / r2, 1.0
@@ -62,12 +64,12 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
         inverse(second[0], both)
         cx, cy, cz = times(both, x, y, z)
         q1, q2 = x * ax + y * ay + z * az, x * cx + y * cy + z * cz
-        e1, e2 = r / q1**0.5, r / q2**0.5
+        e1, e2 = r / math.sqrt(q1), r / math.sqrt(q2)
         for k in range(6):
             both[k] = first[0, k] / e1 + second[0, k] / e2
         det = inverse(both, h_inverse)
         d1, d2 = s1[6] * s1[7] * s1[8] / (e1 * e1), s2[6] * s2[7] * s2[8] / (e2 * e2)
-        eta = (d1 + d2) / (det / (e1 + e2)) ** 0.5
+        eta = (d1 + d2) / math.sqrt(det / (e1 + e2))
         l1 = -2.0 * d1 / (e1 * (d1 + d2)) + 0.5 * trace(h_inverse, first[0]) / (e1 * e1) + 0.5 / (e1 + e2)
         l2 = -2.0 * d2 / (e2 * (d1 + d2)) + 0.5 * trace(h_inverse, second[0]) / (e2 * e2) + 0.5 / (e1 + e2)
     # attraction and repulsion, their slopes by h and by ln(eta chi)

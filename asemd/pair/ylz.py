@@ -25,7 +25,7 @@ from asemd.style import register
 
 def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     epsilon, mu, beta = rows[2, ti, tj], rows[7, ti, tj], rows[8, ti, tj]
-    r, cut, near = r2**0.5, rows[0, ti, tj]**0.5, 1.122462048309373 * rows[3, ti, tj]
+    r, cut, near = math.sqrt(r2), math.sqrt(rows[0, ti, tj]), 1.122462048309373 * rows[3, ti, tj]
     x, y, z = d[0] / r, d[1] / r, d[2] / r
     ax, ay, az = first[3, 6], first[3, 7], first[3, 8]
     bx, by, bz = second[3, 6], second[3, 7], second[3, 8]
@@ -37,7 +37,12 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     else:
         rate = 0.5 * math.pi / (cut - near)
         cosine = math.cos(rate * (r - near))
-        power = cosine ** (rows[5, ti, tj] - 1.0)
+        power, factor, left = 1.0, cosine, int(rows[5, ti, tj]) - 1         # cosine**left
+        while left > 0:
+            if left % 2 == 1:
+                power *= factor
+            factor *= factor
+            left //= 2
         by_phi = -epsilon * cosine * power
         energy = by_phi * phi
         slope = rows[6, ti, tj] * epsilon * power * math.sin(rate * (r - near)) * rate * phi
@@ -53,6 +58,8 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
 
 
 class YLZ(OrientedPair):
+    shaped = False
+
     def check(self, coeff, settings):
         if coeff["sigma"] <= 0.0:
             raise InputError(f"pair_coeff ylz: sigma must be positive, got {coeff['sigma']:g}")
