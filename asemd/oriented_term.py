@@ -10,6 +10,7 @@ from asemd.kernels import pair_dipole, pair_ellipsoid, pair_sums
 from asemd.kernels.generate import Builder
 from asemd.kernels.pair import paste_one
 from asemd.kernels.rigid import turn_axes
+from asemd.kernels.whole_power import whole_power
 from asemd.term import PairListTerm
 
 
@@ -69,7 +70,7 @@ def ellipsoid_kernel(style, energy: bool, per_atom: bool):
         b.constant(key, value)
     pair_sums.use(b, "eight", "add", "halve")
     for f in (turn_axes, pair_ellipsoid.lay, pair_ellipsoid.stand, pair_ellipsoid.times, pair_ellipsoid.inverse, pair_ellipsoid.skew,
-              pair_ellipsoid.trace):
+              pair_ellipsoid.trace, whole_power):
         b.function(f)
     b.function(style.potential, "potential")
     b.function(pair_ellipsoid.ellipsoid_forces)

@@ -98,39 +98,39 @@ def lj_coul(x, cell, periodic, type_, q, epsilon, sigma, cut, cut_coul=0.0, qqr2
     shifts = images(cell, periodic, max(float(np.max(cut)), cut_coul))
     total = Sum(0.0, 0.0, np.zeros((n, 3)), np.zeros(n), np.zeros((n, 6)))
     for i in range(n):
-        for j in range(i, n):
-            if excluded is not None and excluded[i, j]:
-                continue
-            d = x[i] - x[j]
-            d = d - np.where(periodic, np.floor(d @ inverse), 0.0) @ cell
-            d = d - shifts
-            r2 = (d * d).sum(1)
-            wl, wc = np.ones(len(d)), np.ones(len(d))
-            if i == j:
-                keep = r2 > 0.0
-                wl, wc = wl * 0.5, wc * 0.5            # every self image is met twice
-            else:
-                keep = np.ones(len(d), bool)
-                if special and (i, j) in special:
-                    near = int(np.argmin(r2))
-                    wl[near], wc[near] = special[i, j]
-            ti, tj = type_[i], type_[j]
-            e, s, c = epsilon[ti, tj], sigma[ti, tj], cut[ti, tj]
-            inside, near = keep & (r2 < c * c), keep & (r2 < cut_coul**2)
-            d, r2, wl, wc, inside, near = (a[inside | near] for a in (d, r2, wl, wc, inside, near))
-            s6 = (s * s / r2) ** 3
-            el = np.where(inside, wl * 4 * e * (s6 * s6 - s6), 0.0)
-            fl = np.where(inside, wl * 24 * e * (2 * s6 * s6 - s6) / r2, 0.0)
-            ec = np.where(near, wc * qqr2e * q[i] * q[j] / np.sqrt(r2), 0.0) if cut_coul else np.zeros(len(r2))
-            f = ((fl + ec / r2)[:, None] * d)
-            total.lj += el.sum()
-            total.coul += ec.sum()
-            total.forces[i] += f.sum(0)
-            total.forces[j] -= f.sum(0)
-            v = np.stack([d[:, a] * f[:, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], 1).sum(0)
-            for k in (i, j):
-                total.energies[k] += 0.5 * (el + ec).sum()
-                total.virials[k] += 0.5 * v
+        j = np.arange(i, n)
+        if excluded is not None:
+            j = j[~excluded[i, i:]]
+        d = x[i] - x[j]
+        d -= np.where(periodic, np.floor(d @ inverse), 0.0) @ cell
+        d = d[:, None] - shifts
+        r2 = (d * d).sum(2)
+        share = np.where(j == i, 0.5, 1.0)[:, None] * np.ones(len(shifts))        # every self image is met twice
+        wl, wc = share.copy(), share.copy()
+        for k, partner in enumerate(j.tolist()):
+            if special and (i, partner) in special:
+                near = int(np.argmin(r2[k]))
+                wl[k, near], wc[k, near] = special[i, partner]
+        ti, tj = type_[i], type_[j]
+        apart = (j != i)[:, None] | (r2 > 0.0)
+        inside, near = apart & (r2 < cut[ti, tj][:, None] ** 2), apart & (r2 < cut_coul**2)
+        k, image = np.nonzero(inside | near)
+        j, tj = j[k], tj[k]
+        d, r2, wl, wc, inside, near = (a[k, image] for a in (d, r2, wl, wc, inside, near))
+        e, s6 = epsilon[ti, tj], (sigma[ti, tj] ** 2 / r2) ** 3
+        el = np.where(inside, wl * 4 * e * (s6 * s6 - s6), 0.0)
+        fl = np.where(inside, wl * 24 * e * (2 * s6 * s6 - s6) / r2, 0.0)
+        ec = np.where(near, wc * qqr2e * q[i] * q[j] / np.sqrt(r2), 0.0) if cut_coul else np.zeros(len(r2))
+        f = (fl + ec / r2)[:, None] * d
+        total.lj += el.sum()
+        total.coul += ec.sum()
+        total.forces[i] += f.sum(0)
+        np.subtract.at(total.forces, j, f)
+        v = np.stack([d[:, a] * f[:, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], 1)
+        total.energies[i] += 0.5 * (el + ec).sum()
+        total.virials[i] += 0.5 * v.sum(0)
+        np.add.at(total.energies, j, 0.5 * (el + ec))
+        np.add.at(total.virials, j, 0.5 * v)
     return total
 
 

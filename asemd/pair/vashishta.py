@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 from asemd import units as unit_styles
-from asemd.kernels.manybody import add_bend, add_stretch, directions
+from asemd.kernels.manybody import add_bend, add_stretch
+from asemd.kernels.whole_power import whole_power
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -21,7 +22,8 @@ def two_body(r, h, eta, zz, k1, d, k4, w):
     """Energy of a pair before it is shifted, and the derivative."""
     ir = 1.0 / r
     i2 = ir * ir
-    a = h * math.pow(r, -eta)
+    n = int(eta) if 0.0 <= eta <= 64.0 else 0
+    a = h * (whole_power(ir, n) if n == eta else math.pow(r, -eta))
     b = zz * math.exp(-r * k1) * ir
     c = d * math.exp(-r * k4) * i2 * i2
     v = w * i2 * i2 * i2
@@ -47,11 +49,13 @@ def pairs(n, m, ti, near, types, room, grad, three, constants, arrays, shares):
 def vashishta(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     three = arrays[0]
     inside = 0
-    directions(n, near, room)
     for k in range(n):
-        r = math.sqrt(near[3, k])
-        room[4, k] = r
         p = three[ti, types[k], types[k]]
+        r = math.sqrt(near[3, k])
+        if k >= m and r >= p[1]:
+            continue
+        ir = 1.0 / r
+        room[0, k], room[1, k], room[2, k], room[3, k], room[4, k] = near[0, k] * ir, near[1, k] * ir, near[2, k] * ir, ir, r
         if r < p[1]:
             s = 1.0 / (r - p[1])
             room[5, inside] = math.exp(p[11] * s)
@@ -93,5 +97,5 @@ class Vashishta(TripleStyle):
         return out
 
 
-register(Vashishta("vashishta", site=vashishta, helpers=(two_body, pairs), rooms=8, example="SiC.vashishta Si",
+register(Vashishta("vashishta", site=vashishta, helpers=(whole_power, two_body, pairs), rooms=8, example="SiC.vashishta Si",
                    see="P. Vashishta, R. K. Kalia, J. P. Rino, I. Ebbsjo, Phys. Rev. B 41, 12197 (1990)"))

@@ -12,6 +12,7 @@ import numpy as np
 from asemd import words as read
 from asemd.errors import InputError
 from asemd.kernels.manybody import add_stretch
+from asemd.kernels.whole_power import whole_power
 from asemd.pair.vashishta import Vashishta, two_body, vashishta
 from asemd.style import register
 
@@ -73,6 +74,6 @@ class VashishtaTable(Vashishta):
         return replace(tables, constants=np.array([inner2, 1.0 / delta]), arrays=(three, looked))
 
 
-register(VashishtaTable("vashishta/table", site=vashishta, helpers=(two_body, pairs), rooms=8, doc=__doc__, settings="N inner",
+register(VashishtaTable("vashishta/table", site=vashishta, helpers=(whole_power, two_body, pairs), rooms=8, doc=__doc__, settings="N inner",
                         settings_example="10000 0.2", units={"N": "integer", "inner": "distance"}, example="SiC.vashishta Si",
                         see="LAMMPS manual, pair_style vashishta/table"))

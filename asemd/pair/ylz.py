@@ -20,6 +20,7 @@ import numpy as np
 
 from asemd.ellipsoid_pairs import OrientedPair
 from asemd.errors import InputError
+from asemd.kernels.whole_power import whole_power
 from asemd.style import register
 
 
@@ -37,12 +38,7 @@ def potential(d, r2, form, ti, tj, rows, constants, first, second, work, out):
     else:
         rate = 0.5 * math.pi / (cut - near)
         cosine = math.cos(rate * (r - near))
-        power, factor, left = 1.0, cosine, int(rows[5, ti, tj]) - 1         # cosine**left
-        while left > 0:
-            if left % 2 == 1:
-                power *= factor
-            factor *= factor
-            left //= 2
+        power = whole_power(cosine, int(rows[5, ti, tj]) - 1)
         by_phi = -epsilon * cosine * power
         energy = by_phi * phi
         slope = rows[6, ti, tj] * epsilon * power * math.sin(rate * (r - near)) * rate * phi
