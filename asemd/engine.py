@@ -25,7 +25,7 @@ from asemd.manybody_term import all_pairs, many_term
 from asemd.neighbor import SMALL, BinCell, ClusterList, PlainList, Rows, close_images, kernels
 from asemd.noise_term import list_term
 from asemd.own_term import own_terms
-from asemd.result import Result, Settings, Snapshot
+from asemd.result import Result, Settings
 from asemd.site_terms import made
 from asemd.term import BONDED_KEY, PairListTerm, PairRowsTerm, bonded_terms, look, store_torques
 
@@ -62,8 +62,7 @@ class Engine:
         self.timings = dict.fromkeys(("Pair", "Bond", "Kspace", "Neigh", "Comm", "Output", "Modify", "Other"), 0.0)
         self.parallel = Team(self.threads)
         self.meeting = Meeting(self.threads, np.zeros(8, np.int64))      # for terms whose threads wait for each other
-        self.groups: dict[str, np.ndarray] = {}
-        self.bits: dict[str, int] = {"all": 1}
+        self.groups, self.bits = {}, {"all": 1}
         self.result: Result | None = None
         self._bound = BoundKernels(0), BoundKernels(1)
         self.units = unit_styles.get(system.units)
@@ -245,9 +244,10 @@ class Engine:
                  self.mask_row, s.type, s.mass, s.inverse_mass, s.q, s.mask, s.x, self.held)
         if self.mode == "cluster":
             hide = None if self.expanded or self.sparse else self.exclusions.partners
-            self.list.build(k, s, self.ns, self.cell, self.periodic, hide, self.slot_of, self.parallel)
-            if self.expanded:
-                self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
+            if not (self.expanded and self.in_order()):
+                self.list.build(k, s, self.ns, self.cell, self.periodic, hide, self.slot_of, self.parallel)
+                if self.expanded:
+                    self.mark(*self.list.expand(k, s, self.reach), self.list.shifts)
             for molecules, rows in self.rows.items():
                 self.list.fill(rows, k, s, self.ns, self.slot_of, self.exclusions.left_out, self.exclusions.rules_within(molecules),
                                self.parallel)
@@ -260,6 +260,7 @@ class Engine:
         elif self.mode == "plain":
             bins = BinCell(self.vectors, self.origin, self.inverse, self.periodic, shares)
             self.mark(*self.list.build(k, s, self.ns, bins, self.vectors, self.periodic), self.list.shifts)
+            self.in_order()
         self.moved[:], self.listed = 0.0, None
         new = self.state._replace(slot=self.slot_of, image=self.system.image, box=live_box.live(self))
         self.state = new if any(a is not b for a, b in zip(new, self.state)) else self.state      # the same one is packed in memory
@@ -268,6 +269,11 @@ class Engine:
         self.thread_arguments = None
         self.builds += 1
         self.timings["Neigh"] += time.perf_counter() - began
+
+    def in_order(self) -> bool:
+        """Whether the loop has made the plain list, with the pairs in an order that pair styles need on one thread."""
+        order = getattr(getattr(self, "loop", None), "pair_order", None)
+        return order is not None and self.threads == 1 and order.arrange(self.loop)
 
     def mark(self, i, j, code, shifts) -> None:
         """Keep a plain list, special pairs and exclusions marked."""
@@ -322,13 +328,10 @@ class Engine:
 
     def check(self) -> None:
         """Raise for the first item outside its style's domain."""
-        if self.bad[:, :, 0].any():
-            for tid in range(self.threads):
-                for t in self.terms:
-                    if self.bad[tid, t.index, 0]:
-                        item, value = int(self.bad[tid, t.index, 1]), float(self.bad[tid, t.index, 2])
-                        self.bad[:] = 0.0
-                        raise t.describe(self, item, value)
+        for tid, n in np.argwhere(self.bad[:, :, 0]).tolist():
+            item, value = int(self.bad[tid, n, 1]), float(self.bad[tid, n, 2])
+            self.bad[:] = 0.0
+            raise self.terms[n].describe(self, item, value)
 
     def collect(self, late: bool = False) -> Result:
         """The result of the last evaluation with energies; `late` as for `store`."""
@@ -395,6 +398,3 @@ class Engine:
         self.load()
         self.forces(True)
         return self.per_atom(self.collect(), ["energies"] * energies + ["virials"] * virials)
-
-
-__all__ = ["Engine", "Result", "Settings", "Snapshot"]

@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 
 from asemd import atom_shares, hook_order, population
-from asemd.engine import Engine, Result, Settings, Snapshot
+from asemd.engine import Engine
 from asemd.errors import InputError, InputWarning, LostAtoms, SimulationError
 from asemd.fix import NEVER, Fix, first_forces
 from asemd.interrupt import Interrupt
@@ -17,6 +17,7 @@ from asemd.kernels import timeloop as tl
 from asemd.kernels.box import corner_moves
 from asemd.kernels.state import Thread, aligned
 from asemd.relist import NO_CALLS, Relist
+from asemd.result import Result, Settings, Snapshot
 from asemd.watchdog import Watchdog
 
 IN_A_STEP = ("initial_integrate", "post_integrate", "pre_force", "post_force", "final_integrate")
@@ -56,8 +57,7 @@ class Loop:
         moves = {f.box_moves for f in self.fixes} - {""}
         self.engine = Engine(system, interactions, settings, "shape" if "shape" in moves else "".join(moves))
         self.units, self.result, self.engine.loop = self.engine.units, None, self
-        self.gone: dict[str, int] = {}        # atoms of each group that left since `setup`, less those that joined
-        self.natoms = system.n                # how many there should be: lost ones count
+        self.gone, self.natoms = {}, system.n       # what left each group since `setup`, less what joined; atoms that there should be
         self.warn, self.say, self.fix_data, self._collected = warn, str, (), -1       # `say` is told what fixes print: nobody listens yet
         self.engine.set_groups(groups, {name: self.group_bit(name) for name in groups})
         self._sync, self._scratch = np.zeros(8, np.int64), aligned((self.engine.threads, 8))

@@ -272,7 +272,7 @@ class ClusterList:
         self.slots = max(self.slots, -found * 17 // 16)
         return found
 
-    def _see(self, cell: Cell, periodic: np.ndarray) -> None:
+    def see(self, cell: Cell, periodic: np.ndarray) -> None:
         """Take the images of a cell, unless they are known."""
         if cell is not self.cell:
             self.cell, widths2 = cell, 1.0 / (np.linalg.inv(cell.vectors)[:, periodic] ** 2).sum(axis=0)
@@ -282,8 +282,8 @@ class ClusterList:
 
     def build(self, k, state, ns: int, cell: Cell, periodic: np.ndarray, partners, slot_of, parallel) -> None:
         """Build the list and its exclusions in the sorted slots."""
-        ncl = ns // CLUSTER
-        self._see(cell, periodic)
+        ncl, self.parallel = ns // CLUSTER, parallel
+        self.see(cell, periodic)
         again, cells = self.shares is None and self.threads > 1, self.bins.k or k
         while True:
             if self.marked and self.hide.shape[1] < self.entries.shape[1]:
@@ -350,20 +350,19 @@ class ClusterList:
         return sum(int(k.count(held, state.row, self.first[t], self.entries[t], int(self.bounds[t]), int(self.bounds[t + 1]), self.shifts,
                                self.reach**2, *partners, *self.near)) for t in range(self.threads))
 
-    def expand(self, k, state, reach: float, room: int = 0):
+    def expand(self, k, state, reach: float):
         """The same pairs as plain arrays (i, j, code), closer than `reach`."""
-        parts = []
-        for t in range(self.threads):
-            c0, c1 = int(self.bounds[t]), int(self.bounds[t + 1])
-            size = max(room, 4 * int(self.first[t, c1]) + 1024)
-            while True:
-                out = [np.empty(size, np.int32) for _ in range(3)]
-                n = k.expand(state.x, state.row, self.first[t], self.entries[t], c0, c1, self.shifts, reach * reach, *out)
-                if n >= 0:
-                    break
+        parts = [[]] * self.threads
+
+        def work(t):
+            n, size, edges = -1, 2 * int(self.first[t, self.bounds[t + 1]]) + 512, self.bounds[t:t + 2]
+            while n < 0:
                 size *= 2
-            parts.append([a[:n] for a in out])
-        return [np.concatenate([p[a] for p in parts]) for a in range(3)]
+                out = [np.empty(size, np.int32) for _ in range(3)]
+                n = k.expand(state.x, state.row, self.first[t], self.entries[t], *edges, self.shifts, reach * reach, *out)
+            parts[t] = [a[:n] for a in out]
+        self.parallel(work)
+        return [np.concatenate([p[a] for p in parts]) for a in range(3)] if self.threads > 1 else parts[0]
 
 
 class PlainList:

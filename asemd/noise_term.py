@@ -46,9 +46,6 @@ class NoiseTerm(PairListTerm):
             raise InputError(f"pair style {self.style.name} cannot have a factor for each atom")
         if loop.dt == 0.0:
             raise InputError(f"pair style {self.style.name}: noise grows without bound as time steps become short, and timestep is 0")
-        order = getattr(loop, "pair_order", None)
-        if order is not None and engine.threads == 1:
-            order.arrange(loop, self)
         if self.streams is None:
             if len(settings.get("streams", ((),))[0]) < engine.threads:       # they go on from run to run; what they are and what they were
                 settings["streams"] = np.array([[stream(settings["seed"] + k) for k in range(engine.threads)]] * 2)

@@ -157,7 +157,7 @@ def close_pairs(case, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]
         e.load()
     s = e.state
     reach = min(reach, e.reach)
-    if e.mode == "cluster":
+    if e.mode == "cluster" and not e.expanded:
         i, j, code = e.exclusions.mark(e.k, s.x, s.row, *e.list.expand(e.k, s, reach), e.list.shifts, e.cell, e.periodic)
         shifts = e.list.shifts
     else:

@@ -88,7 +88,7 @@ def in_slots(state, reach: float) -> SimpleNamespace:
     engine = state.engine
     if engine is not None and _serves(engine, state.system, reach):
         s = engine.state
-        if engine.mode == "plain":
+        if engine.mode == "plain" or engine.expanded:
             (i, j, code), shifts = engine.plain, engine.plain_shifts
         else:
             shifts = engine.list.shifts
@@ -101,9 +101,10 @@ def in_slots(state, reach: float) -> SimpleNamespace:
 def cluster_list(state, reach: float):
     """The engine's `asemd.neighbor.ClusterList`, if it has all pairs within `reach` and nothing is to be left out of it; else None."""
     engine = state.engine
-    if engine is None or engine.mode != "cluster" or engine.exclusions.partners is not None or len(engine.exclusions.rules):
+    if engine is None or engine.mode != "cluster" or engine.expanded:
         return None
-    return engine.list if _serves(engine, state.system, reach) else None
+    left_out = engine.exclusions.partners is not None or len(engine.exclusions.rules)
+    return engine.list if not left_out and _serves(engine, state.system, reach) else None
 
 
 def of_slots(values: np.ndarray, row: np.ndarray) -> np.ndarray:

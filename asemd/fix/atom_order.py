@@ -122,12 +122,14 @@ class ListOrder(AtomOrder):
     ----------
     place : (n,) int array
         Place of each atom row.
+    stored : (n,) int array
+        The row at each place.
     """
 
     def __init__(self, every: int = 1000, width: float = 0.0, bins: bool = True, newton: bool = True, order=None):
         super().__init__(every, width, order)
         self.bins, self.newton = bins, newton
-        self.place = np.zeros(0, np.int64)
+        self.place = self.stored = np.zeros(0, np.int64)
 
     def begin(self, loop) -> None:
         """A run begins."""
@@ -142,7 +144,9 @@ class ListOrder(AtomOrder):
         self.made = None
         if loop.step >= self.due:
             self.sort(loop, self.x)
-        self.place = np.argsort(self.rows(loop.system))
+        self.stored = self.rows(loop.system)
+        self.place = np.empty(len(self.stored), np.int64)
+        self.place[self.stored] = np.arange(len(self.stored))
 
     def _bin(self, loop, width: float, x: np.ndarray | None = None) -> np.ndarray:
         """(n, 3) bin of each atom, or of other places, also beyond the box."""

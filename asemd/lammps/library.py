@@ -241,7 +241,7 @@ class NeighborList:
 
     def __init__(self, engine):
         row = engine.state.row
-        if engine.mode == "cluster":
+        if engine.mode == "cluster" and not engine.expanded:
             i, j, _ = engine.list.expand(engine.k, engine.state, engine.reach)
         else:
             i, j = engine.plain[:2]

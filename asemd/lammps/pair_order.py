@@ -28,25 +28,25 @@ def codes(image: np.ndarray, known: np.ndarray) -> np.ndarray:
 class PairOrder(ListOrder):
     """Pairs of a half list from bins, in LAMMPS's order."""
 
-    def arrange(self, loop: Loop, term) -> bool:
-        """Make the pairs of a term those of the present positions, in this order; False if lists of this kind are not known.
+    guess = 0       # how many pairs there may be
 
-        The term gets ``i, j, code, shifts`` as a plain list has them.
-        """
+    def arrange(self, loop: Loop) -> bool:
+        """Make the pairs of the present positions, in this order, as the engine's plain list; False if lists of this kind are not known."""
         self.listed(loop)
         box, e = loop.system.box, loop.engine
         if not (self.bins and self.newton) or box.triclinic or not e.ortho:
             return False
-        local = np.argsort(self.place)                     # rows in LAMMPS's order
-        x, row, image = half_list.with_images(self.x[local], e.reach, e.periodic, self.low, self.high)
-        code = codes(image, np.rint(e.plain_shifts @ np.linalg.inv(e.vectors)).astype(np.int64))
+        if e.mode == "cluster":
+            e.list.see(e.cell, e.periodic)
+        self.guess = self.guess or int(2.1 * e.reach**3 * len(self.x) ** 2 / e.volume)
+        x, row, image = half_list.with_images(self.x[self.stored], e.reach, e.periodic, self.low, self.high)
+        code = codes(image, np.rint(e.list.shifts @ np.linalg.inv(e.vectors)).astype(np.int64))
         length = self.high - self.low
         width = length / bin_counts(length, 0.5 * e.reach, loop.system.dimension)
-        slot = e.slot_of[local[row]].astype(np.int32)
-        i, j, code = half_list.pairs(x, len(local), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12), slot, code,
-                                     len(e.plain[0]))
-        s, term.shifts = e.state, e.plain_shifts        # they follow a box that moves
-        term.i, term.j, term.code = e.exclusions.mark(e.k, s.x, s.row, i, j, code, term.shifts, e.cell, e.periodic)
+        slot = e.slot_of[self.stored[row]].astype(np.int32)
+        found = half_list.pairs(x, len(self.x), self._bin(loop, 0.5 * e.reach, x), width, e.reach * (1.0 + 1e-12), slot, code, self.guess)
+        self.guess = len(found[0])
+        e.mark(*found, e.list.shifts)
         return True
 
 
