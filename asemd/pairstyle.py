@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import inspect
 import math
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -384,17 +385,15 @@ def pair(name: str, **options):
 
     `d2`, a function with the same arguments, gives the second derivative of the energy by the function's coordinate (for `asemd.hessian`).
     """
-    cls = options.pop("cls", PairStyle)
-
     def decorate(function):
-        function.d2 = options.pop("d2", None)
-        cut = options.pop("cut", "cut")
-        register(cls(name, [(function, cut)], doc=inspect.getdoc(inspect.getmodule(function)) or "", **options))
+        cls, function.d2 = options.pop("cls", PairStyle), options.pop("d2", None)
+        doc = inspect.cleandoc(function.__globals__["__doc__"] or "")
+        register(cls(name, [(function, options.pop("cut", "cut"))], doc=doc, **options))
         return function
     return decorate
 
 
 def pair_sum(name: str, *parts: tuple[Callable, str], **options) -> PairStyle:
     """Register the fused sum of `parts` (function, name of its cutoff) as pair style `name`."""
-    doc = inspect.getdoc(inspect.getmodule(inspect.stack()[1][0])) or ""
+    doc = inspect.cleandoc(sys._getframe(1).f_globals["__doc__"] or "")
     return register(options.pop("cls", PairStyle)(name, list(parts), doc=doc, **options))

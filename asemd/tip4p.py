@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 import inspect
 import math
+import sys
 
 from asemd.charge_sites import ChargeSites
 from asemd.errors import InputError
@@ -106,5 +107,5 @@ class TIP4PSoft(TIP4P, SoftPair):
 
 def tip4p(name: str, *parts, cls=TIP4P, **options) -> TIP4P:
     """Register the sum of `parts` (function, name of its cutoff) as a pair style of four-site water."""
-    doc = inspect.getdoc(inspect.getmodule(inspect.stack()[1][0])) or ""
+    doc = inspect.cleandoc(sys._getframe(1).f_globals["__doc__"] or "")
     return register(cls(name, list(parts), doc=doc, **options))
