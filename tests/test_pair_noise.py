@@ -109,6 +109,18 @@ def test_two_dimensions():
         assert_same(asemd(text), theirs[name], x=1e-10, v=1e-10)
 
 
+def test_lattices():
+    """Atoms on the edges of bins are in those where LAMMPS has them."""
+    texts = {}
+    for kind, width, flat in (("sq2 3", 10, True), ("hex 3", 7, True), ("sc 3", 5, False), ("bcc 3", 4, False)):
+        text = FLUID.format(pair="dpd 1.0 1.0 34387", coeff="pair_coeff * * 25 4.5", more="fix 2 all enforce2d" * flat, size=width, steps=3)
+        text = text.replace("sc 0.8", kind).replace("displace_atoms", "#").replace("0 5 0 5", f"0 {width} -0.5 0.5" if flat else "0 5 0 4")
+        texts[kind] = "dimension 2\n" * flat + text
+    theirs = lammps(texts)
+    for name, text in texts.items():
+        assert_same(asemd(text), theirs[name], x=1e-10, v=1e-10)
+
+
 def test_momentum_is_conserved_and_the_temperature_comes():
     lmp = ran(script("dpd", 400).replace("create 1.0", "create 0.1").splitlines())
     v = np.array(lmp.gather_atoms("v", 1, 3)).reshape(-1, 3)

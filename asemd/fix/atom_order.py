@@ -153,7 +153,7 @@ class ListOrder(AtomOrder):
         length = self.high - self.low
         count = bin_counts(length, width, loop.system.dimension)
         if x is None:
-            return np.clip(((self.x - self.low) * (count / length)).astype(np.int64), 0, count - 1)
+            return np.clip(((self.x - self.low) * (1.0 / (length / count))).astype(np.int64), 0, count - 1)
         at = bins_of(x, self.low, self.high, count)
         if loop.system.dimension == 2:
             at[:, 2] = 0

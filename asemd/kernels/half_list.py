@@ -44,15 +44,18 @@ def with_images(x, reach, periodic, low, high):
 
 @njit(cache=True, nogil=True)
 def bins_of(x, low, high, count):
-    """(m, 3) bin of each place, of `count` between `low` and `high`; also beyond."""
+    """(m, 3) bin of each place, of `count` between `low` and `high`; also beyond. Atoms of a lattice stand on edges of bins: numbers are
+    rounded as LAMMPS rounds them."""
     out = np.empty(x.shape, np.int64)
     for k in range(len(x)):
         for c in range(3):
-            scale = count[c] / (high[c] - low[c])
+            scale = 1.0 / ((high[c] - low[c]) / count[c])
             if x[k, c] >= high[c]:
                 out[k, c] = int((x[k, c] - high[c]) * scale) + count[c]
+            elif x[k, c] >= low[c]:
+                out[k, c] = min(int((x[k, c] - low[c]) * scale), count[c] - 1)
             else:
-                out[k, c] = min(math.floor((x[k, c] - low[c]) * scale), count[c] - 1)
+                out[k, c] = int((x[k, c] - low[c]) * scale) - 1
     return out
 
 
