@@ -14,6 +14,7 @@ import pytest
 
 from asemd.kernels import bits, vector_math
 from asemd.kernels.generate import Builder, plain_source
+from asemd.kernels.whole_power import whole_power
 
 LOOPS = """
 def loop_{name}(x, out):
@@ -220,3 +221,10 @@ def test_roots_of_doubles(count):
     b.build().roots(x, out)
     exact = np.array([float(1 / mp.sqrt(mp.mpf(float(v)))) for v in x])
     assert np.abs(out / exact - 1.0).max() < 4.5e-16
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 3, 7, 8, 11, 63, 64])
+def test_whole_powers(n):
+    for x in np.random.default_rng(3).uniform(-3.0, 3.0, 50).tolist():
+        exact = mp.mpf(x) ** n
+        assert abs(whole_power(x, n) - exact) <= 1.2e-16 * n * abs(exact)
