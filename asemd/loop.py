@@ -83,8 +83,8 @@ class Loop:
         return self.engine.ns
 
     # ---- set-up -------------------------------------------------------------------------------------------------------------------------
-    def setup(self, begin: int | None = None, end: int | None = None, virial: bool = True, needs=()) -> Result:
-        """Lists, first forces, the fixes' part in them; compiles what the run needs. The first step's result, with what `needs` names."""
+    def setup(self, begin: int | None = None, end: int | None = None, needs=(), moves: bool = True) -> Result:
+        """Lists, first forces with what `needs` names, the fixes' part in them; compiles what steps need, if the loop `moves` by itself."""
         e, self.fix_data, self.begin = self.engine, (), self.step if begin is None else int(begin)
         self.end = self.begin if end is None else int(end)
         for f in self.fixes:
@@ -96,6 +96,8 @@ class Loop:
         e.store()       # fixes see positions that fit the image flags
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
         self._make_module()
+        if moves and self._next_whole(self.step) > self.step + 1 <= self.end:
+            self._enter(0, False)       # which moves nothing
         self._wanted = needs
         first_forces.settle(self)
         self._set_up_fixes()
@@ -129,8 +131,6 @@ class Loop:
         self._kinds = [f.hooks() for f in self.fixes]
         self._sort_hooks()
         self._calls, self._packed = tl.hooks_of(self.fixes, self._kinds), [None] * self.engine.threads
-        if self._next_whole(self.step) > self.step + 1:
-            self._enter(0, False)     # compiles, or loads from the cache, without moving anything
 
     def _sort_hooks(self) -> None:
         """Which fixes act in Python, and when; which of them want a virial."""

@@ -180,7 +180,7 @@ class Driver:
             loop.warn, loop.say, loop.watchdog.on = session.warn, session.later.append, session.switches.watchdog     # said after the list
             loop.watchdog.path = f"{session.log.path}.last_good.dump" if os.path.isfile(session.log.path or "") else ""
             with session.in_a_run(Progress(begin=begin, first=plan.first, last=begin + plan.steps, stop=plan.last)):
-                loop.setup(plan.first, plan.last, virial=True, needs=self._needs(begin, begin))
+                loop.setup(plan.first, plan.last, needs=self._needs(begin, begin))
             if state is not None:
                 checkpoint.resume(loop, state)
             setup_log.report_list(session, loop.engine)

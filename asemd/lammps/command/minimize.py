@@ -67,7 +67,7 @@ class Minimization(Driver):
         loop = session.loop = Loop(scene.system, scene.interactions, scene.settings(), fixes, scene.groups, scene.dt, step=begin)
         loop.warn, loop.say = session.warn, session.print
         with session.at_step(begin):
-            loop.setup(begin, begin + self.plan.steps)
+            loop.setup(begin, begin + self.plan.steps, moves=False)
         setup_log.report_list(session, loop.engine)
         if scene.min_style == "fire":
             session.log.write(find("fire").parameters(scene.min_modify) + "\n")

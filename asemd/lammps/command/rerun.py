@@ -116,7 +116,7 @@ class Rerun(Driver):
             self.loop.engine.update(scene.system)       # the box is another one
         loop = session.loop = self.loop
         loop.step = step
-        loop.setup(self.plan.first, min(self.plan.last, FOREVER), virial=True)
+        loop.setup(self.plan.first, min(self.plan.last, FOREVER), moves=False)
         loop.end_of_step()
         if fresh:
             setup_log.report_list(session, loop.engine)
