@@ -12,6 +12,7 @@ import numpy as np
 
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import denominator, folded
+from asemd.kernels.whole_power import whole_power
 
 ORDER = 5
 WIDE = 8
@@ -19,15 +20,7 @@ WIDE = 8
 
 def power(u, n):
     """(sin u / u)^n, by squares, so that it is rounded as in LAMMPS."""
-    p = 1.0
-    if u != 0.0:
-        s = math.sin(u) / u
-        while n > 0:
-            if n % 2 == 1:
-                p *= s
-            s *= s
-            n //= 2
-    return p
+    return whole_power(math.sin(u) / u, n) if u != 0.0 else 1.0
 
 
 def one_direction(n, length, g, images, out):
@@ -152,7 +145,7 @@ def gather_ad(x, f, q, least, lo, hi, numbers, lengths, scale, own, wrap, base, 
             f[d, i] += scale * ((e0 if d == 0 else e1 if d == 1 else e2) * inverse * q[i] - back)
 
 
-FUNCTIONS = (power, make_green_ad, overlaps, own_force, gather_ad)
+FUNCTIONS = (whole_power, power, make_green_ad, overlaps, own_force, gather_ad)
 
 
 @cache
@@ -160,6 +153,6 @@ def quality_of(order: int):
     """`quality` for weights of that order."""
     b = Builder(f"error of differentiated weights, order {order}")
     b.constant("ORDER", order)
-    for f in (folded, power, one_direction, quality):
+    for f in (folded, whole_power, power, one_direction, quality):
         b.function(f)
     return b.build().quality
