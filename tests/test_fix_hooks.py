@@ -57,6 +57,21 @@ def test_two_functions_of_one_name_are_refused():
     assert b.source().count("import twice") == 1
 
 
+def test_what_a_function_calls_must_be_there():
+    """Compiled or not, and before anything runs."""
+    def half(x):
+        return 0.5 * x
+
+    def quarter(x):
+        return half(half(x))
+    b = Builder("without half")
+    b.function(quarter)
+    with pytest.raises(NameError, match="quarter needs half, which this module of kernels lacks"):
+        b.build()
+    b.function(half)
+    assert b.build().quarter(2.0) == 0.5
+
+
 def test_memory_has_the_layout_of_the_compiler():
     """What is packed by Python is read back by compiled code, member by member."""
     x = np.arange(12.0).reshape(3, 4)

@@ -183,6 +183,7 @@ class Builder:
         self.constants: dict[str, object] = {}
         self._have: dict[str, Callable] = {}
         self._lines_of: dict[str, str] = {}      # name -> the line that defines it
+        self._needs: dict[str, set[str]] = {}      # name of a function -> names that it takes from the module
 
     def line(self, text: str) -> None:
         self.lines.append(text)
@@ -233,6 +234,7 @@ class Builder:
         nodes = [n for n in ast.walk(tree) if isinstance(n, (ast.Name, ast.arg))]
         own = {n.arg if isinstance(n, ast.arg) else n.id for n in nodes if isinstance(n, ast.arg) or isinstance(n.ctx, ast.Store)}
         needed = {n.id for n in nodes if isinstance(n, ast.Name)} - own - _EVERYWHERE - {tree.name}
+        self._needs[tree.name] = needed
         if not needed <= self._lines_of.keys():
             return False
         b = Builder(tree.name)
@@ -250,6 +252,17 @@ class Builder:
         return "\n".join(self.lines) + "\n"
 
     def build(self) -> types.ModuleType:
+        """The module of all that.
+
+        Raises
+        ------
+        NameError
+            A function pasted here calls something that is not.
+        """
+        have = {*self._lines_of, *self._have, *re.findall(r"^def (\w+)", self.source(), re.M)}
+        for name, needed in self._needs.items():
+            if missing := needed - have:
+                raise NameError(f"{name} needs {', '.join(sorted(missing))}, which this module of kernels lacks: {self.lines[0]}")
         return load(self.source())
 
 

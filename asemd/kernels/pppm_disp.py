@@ -18,6 +18,7 @@ from asemd.kernels.matrix import invert
 from asemd.kernels.pppm import add_bricks, gather, gather_shares, interleave, multiply, spread
 from asemd.kernels.pppm_ad import gather_ad, own_force, power
 from asemd.kernels.threads import barrier
+from asemd.kernels.whole_power import whole_power
 
 ORDER = 5
 ENERGY = PER_ATOM = AD = False
@@ -248,7 +249,7 @@ def quality_of(order: int, ad: bool):
     b = Builder(f"error of meshes of dispersion, order {order}")
     b.constant("ORDER", order)
     b.constant("AD", ad)
-    for f in (folded, power, attraction, quality):
+    for f in (folded, whole_power, power, attraction, quality):
         b.function(f, fast=True)
     return b.build().quality
 
@@ -264,8 +265,8 @@ def kernel(level: int, order: int, ad: bool):
     b.constant("PER_ATOM", level > 1)
     b.constant("AD", ad)
     b.line("from asemd.kernels.stencil import SUMS, WIDE, collect, deposit, weigh")
-    for f in (denominator, folded, opposite, power, attraction, shape, mean_shape, make_green_disp, energies_disp, multiply_shares_disp,
-              spread, add_bricks, multiply, interleave, gather, gather_shares, is_same, slab,
+    for f in (denominator, folded, opposite, whole_power, power, attraction, shape, mean_shape, make_green_disp, energies_disp,
+              multiply_shares_disp, spread, add_bricks, multiply, interleave, gather, gather_shares, is_same, slab,
               *((pppm_ad.overlaps, own_force, gather_ad) if ad else ())):
         b.function(f, fast=True)
     b.function(invert)

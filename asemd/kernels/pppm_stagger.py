@@ -12,6 +12,7 @@ import numpy as np
 from asemd.kernels.generate import Builder
 from asemd.kernels.influence import folded
 from asemd.kernels.pppm_ad import one_direction, power
+from asemd.kernels.whole_power import whole_power
 
 ORDER = 5
 AD = False
@@ -106,6 +107,6 @@ def quality_of(order: int, ad: bool):
     b = Builder(f"error of two meshes, order {order}")
     b.constant("ORDER", order)
     b.constant("AD", ad)
-    for f in (rounded, folded, power, one_direction, quality):
+    for f in (rounded, folded, whole_power, power, one_direction, quality):
         b.function(f)
     return b.build().quality
