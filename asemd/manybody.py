@@ -57,9 +57,9 @@ class ManyBody(PairStyle, ABC):
     name : str
     site, forces, parts
         One of the three, see above; `helpers` are functions that `site` or `forces` calls.
-    block : callable, optional
-        ``block(i, n, m, full, b, constants)``, the same energy for tables that `fits` agrees to, on ``full`` neighbours, a multiple of
-        eight, in vector code: see `asemd.kernels.manybody.site_forces`. Loops without branches, indices ``b[place(row * ROW + k)]``.
+    eight : callable, optional
+        ``eight(end, b, constants)``, the same energy for tables that `fits` agrees to, of eight sites at once with `eight_rows` rows of
+        work space: see `asemd.kernels.eight_sites`.
     rooms, shares : int
         Rows of work space by neighbour of a thread, and by slot for all threads.
     elements : bool
@@ -70,7 +70,6 @@ class ManyBody(PairStyle, ABC):
 
     many = True
     restarts = False               # potential files are not kept
-    block_helpers: tuple[Callable, ...] = ()       # functions that `block` calls
     kernel_constants: Mapping[str, Any] = MappingProxyType({})      # module constants of `forces` and `helpers`
     flat_room = False         # `room` is one row
     head_words = "FILE"       # words of ``pair_coeff`` before the elements of the types
@@ -78,14 +77,15 @@ class ManyBody(PairStyle, ABC):
     usual = ""                     # words of its settings that a calculator has by default
     whole = False                  # one kernel, with energies, for all steps: where the compiler takes long
 
-    def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, block: Callable | None = None,
-                 parts=(), helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True, settings="", coeff="",
-                 example="", **options):
+    def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, eight: Callable | None = None,
+                 eight_rows: int = 0, parts=(), helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True,
+                 settings="", coeff="", example="", **options):
         coeff, notes = ("file element", {"file": "path", "element": "word"}) if elements else (coeff, {})
         options["units"] = {**notes, **options.get("units", {})}
         options.setdefault("doc", inspect.getdoc(inspect.getmodule(site or forces or parts[0][0])) or "")
         super().__init__(name, parts, settings=settings, coeff=coeff, example=example, **options)
-        self.site, self.forces, self.block, self.helpers = site, forces, block, tuple(helpers)
+        self.site, self.forces, self.helpers = site, forces, tuple(helpers)
+        self.eight, self.eight_rows = eight, eight_rows
         self.reads = name.partition("/")[0]      # the word for it in LAMMPS's log
         self.rooms, self.shares, self.elements, self.converts = rooms, shares, elements, converts
 
@@ -118,7 +118,7 @@ class ManyBody(PairStyle, ABC):
         """Squared cutoffs by pair of types as ``rows[0]`` (0: no interaction), constants and arrays of the kernel."""
 
     def fits(self, tables: PairTables) -> bool:
-        """Whether `block` can compute with these tables."""
+        """Whether `eight` can compute with these tables."""
         return False
 
     def room_for(self, tables: PairTables, width: int) -> int:

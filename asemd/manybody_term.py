@@ -5,7 +5,8 @@ import numpy as np
 
 from asemd.errors import InputError, SimulationError
 from asemd.hydrogen_bond import HydrogenBond
-from asemd.kernels import manybody
+from asemd.kernels import eight_sites, manybody
+from asemd.kernels.eight_sites import EIGHT
 from asemd.kernels.state import aligned
 from asemd.neighbor import IMAGES
 from asemd.term import FactorTerm
@@ -47,11 +48,13 @@ class ManyBodyTerm(FactorTerm):
         self.uniform = bool((cut2[1:, 1:] == cut2[1, 1]).all())
         self.first = self.middle = self.last = np.zeros(0, np.int64)
         self.neighbors, self.codes = np.zeros(0, np.int32), np.zeros(0, np.uint8)
-        self.width, self.blocks = 0, self.style.block is not None and bool(self.style.fits(self.tables))
+        self.width, self.eights = 0, self.style.eight is not None and bool(self.style.fits(self.tables))
 
     def kernel(self, energy, per_atom):
-        row = self.width if self.blocks and not per_atom else 0
-        made = manybody.kernel(self.style, energy=energy or self.style.whole, per_atom=per_atom, uniform=self.uniform, row=row)
+        if self.eights and not per_atom:
+            made = eight_sites.kernel(self.style, energy=energy, uniform=self.uniform, width=self.width)
+        else:
+            made = manybody.kernel(self.style, energy=energy or self.style.whole, per_atom=per_atom, uniform=self.uniform)
         return made if per_atom else self._scaled(made, energy)
 
     def rebuild(self, engine):
@@ -76,8 +79,8 @@ class ManyBodyTerm(FactorTerm):
         self.edges[0], self.edges[-1] = 0, self.ns
         longest = int(lengths.max(initial=0)) + 1
         if longest > self.width or len(self.near) != engine.threads:
-            if self.blocks:       # kernels know how wide it is; not a power of two, to spare the cache's sets
-                self.width = next((w for w in (40, 72, 136, 264, 520, 1032, 2056, 4104, 8200, 16392) if w > longest + 8), 0)
+            if self.eights:       # kernels know how wide it is; an odd number, to spare the cache's sets
+                self.width = next((w for w in (41, 73, 137, 265, 521, 1033, 2057, 4105, 8201, 16393) if w > longest), 0)
                 if not self.width:
                     raise InputError(f"pair style {self.style.name}: an atom has {longest - 1} neighbours within cutoff plus skin, more "
                                      "than 16380: are positions and cutoff in the units of the scene?")
@@ -87,8 +90,11 @@ class ManyBodyTerm(FactorTerm):
             nth = engine.threads
             work = aligned((nth, 7 + self.style.room_for(self.tables, self.width), self.width))
             self.near, self.grad, self.room = work[:, :4], work[:, 4:7], work[:, 7:]
-            self.flat = work.reshape(nth, -1)
-            self.types, self.slots = np.zeros((nth, self.width), np.int32), np.zeros((nth, self.width), np.int32)
+            self.flat = work.reshape(nth, -1)[:, 7 * self.width:]
+            self.types = np.zeros((nth, self.width), np.int32)
+            self.slots = np.zeros((nth, self.width * (EIGHT if self.eights else 1)), np.int32)
+            if self.eights:
+                self.flat = aligned((nth, self.style.eight_rows * EIGHT * self.width))
         if self.style.shares and getattr(self, "shared", np.zeros((0, 0))).shape[1] != capacity:
             self.shared = aligned((self.style.shares, capacity))
         elif not self.style.shares:
@@ -106,7 +112,7 @@ class ManyBodyTerm(FactorTerm):
     def arguments(self, engine, tid, shares: bool = False):
         s = engine.state
         f, acc = (engine.buffers[tid], engine.acc[tid, self.index]) if shares else self._sums(engine, tid)
-        room = self.flat[tid] if self.blocks and not shares else self.flat[tid, 7 * self.width:] if self.style.flat_room else self.room[tid]
+        room = self.flat[tid] if self.eights and not shares or self.style.flat_room else self.room[tid]
         arguments = (
             s.x, f, s.q, s.type, self.first, self.middle, self.last, self.neighbors, self.codes, self.shifts, int(self.edges[tid]),
             int(self.edges[tid + 1]), self.tables.rows[0], self.tables.constants, self.tables.arrays, self.near[tid], self.types[tid],

@@ -15,12 +15,9 @@ from functools import cache
 
 import numpy as np
 
-from asemd.kernels import vector_math
 from asemd.kernels.generate import Builder
 
 ENERGY = PER_ATOM = UNIFORM = ALONE = False
-ROW = 0
-place = int
 site = None
 
 
@@ -238,9 +235,6 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
     `cut2` are squared cutoffs by pair of types, `constants` and `arrays` the style's; `near (4, w)`, `types (w,)`, `slots (w,)`,
     `grad (3, w)` and `room (rooms, w)` work space of the thread for the longest row, `shared (shares, cap)` of all threads.
     `bad (4,)`: 1, the first slot whose energy or force is not finite, its energy.
-
-    With ROW sites compute on eight neighbours at a time: `room` is the whole work space in one row, `near` its first four rows of ROW
-    numbers, `grad` the next three, and neighbours are filled up to eights with far ones.
     """
     for i in range(lo, hi):
         if last[i] == first[i] and not ALONE:
@@ -249,22 +243,11 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
         n = gather_near(i, middle[i], last[i], m, x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
         if n == 0 and not (ALONE and cut2[type_of[i], type_of[i]] > 0.0):      # types of other styles, and empty slots, have no cutoff
             continue
-        full = n
-        if ROW:
-            full = (n + 7) & -8
-            for k in range(n, full):
-                near[0, k] = 1e10
-                near[1, k] = 0.0
-                near[2, k] = 0.0
-                near[3, k] = 1e20
-        for k in range(full):
+        for k in range(n):
             grad[0, k] = 0.0
             grad[1, k] = 0.0
             grad[2, k] = 0.0
-        if ROW:
-            e = site(i, n, m, full, room, constants)
-        else:
-            e = site(i, type_of[i], n, m, near, types, room, grad, constants, arrays, (atom_energy, atom_virial, np.int32(i), near, slots))
+        e = site(i, type_of[i], n, m, near, types, room, grad, constants, arrays, (atom_energy, atom_virial, np.int32(i), near, slots))
         if not abs(e) < np.inf:
             if bad[0] == 0.0:
                 bad[0] = 1.0
@@ -287,23 +270,17 @@ def rows_module():
 
 
 @cache
-def kernel(style, *, energy: bool, per_atom: bool, uniform: bool, row: int = 0):
-    """The compiled kernel of a many-body style; with `row` that of its blocks, which has so many places for neighbours."""
+def kernel(style, *, energy: bool, per_atom: bool, uniform: bool):
+    """The compiled kernel of a many-body style."""
     b = Builder(f"pair {style.name}: rows of neighbours")
     b.line("from asemd.kernels.threads import barrier")
     for name, value in {"ENERGY": energy, "PER_ATOM": per_atom, "UNIFORM": uniform, "ALONE": False, **style.kernel_constants}.items():
         b.constant(name, value)
-    b.constant("ROW", row)
-    if row:
-        b.line("place = np.uint64")
-        vector_math.paste(b)
-    shared = (gather_near, add_virial, scatter)
-    own = style.block_helpers if row else (share_pair, share_triple, directions, add_stretch, add_bend, *style.helpers)
-    for f in (*shared, *own):
+    for f in (gather_near, add_virial, scatter, share_pair, share_triple, directions, add_stretch, add_bend, *style.helpers):
         b.function(f, fast=True)
     if style.forces is not None:
         b.function(style.forces, "forces", fast=True)
         return b.build().forces
-    b.function(style.block if row else style.site, "site", fast=True, vector=bool(row))
+    b.function(style.site, "site", fast=True)
     b.function(site_forces, fast=True)
     return b.build().site_forces

@@ -1,8 +1,9 @@
 """Vectors of eight doubles or whole numbers as values of compiled code, for kernels that no compiler vectorises.
 
-Inside compiled code a `Vector` is a register: ``+ - *`` and the functions here work on all eight places at once. Without compiler vectors
-are arrays of eight. Multiplications and additions may be contracted. *Places* are where atoms begin in flat tables ``(n * 4,)`` of x, y, z
-and one more number; they are read from memory, for taking them out of a vector costs more.
+Inside compiled code a `Vector` is a register: ``+ - * /`` and the functions here work on all eight places at once, and a number with a
+vector of doubles stands for eight. Without compiler vectors are arrays of eight. Multiplications and additions may be contracted. *Places*
+are where atoms begin in flat tables ``(n * 4,)`` of x, y, z and one more number; they are read from memory, for taking them out of a
+vector costs more.
 """
 from __future__ import annotations
 
@@ -135,20 +136,33 @@ else:
 
     DOUBLES, WHOLES = Vector("float64"), Vector("int32")
 
+    def _numbers(*args):
+        """Types to which arguments are made: all vectors of whole numbers, or vectors of doubles and numbers; None for others."""
+        if all(a == WHOLES for a in args):
+            return [WHOLES] * len(args)
+        ok = all(a == DOUBLES or isinstance(a, (types.Float, types.Integer)) for a in args)
+        return [a if a == DOUBLES else types.float64 for a in args] if ok else None
+
+    def _eights(builder, args):
+        return [v if isinstance(v.type, ir.VectorType) else _all(builder, v) for v in args]
+
     def _operator(symbol, name):
         @infer_global(symbol)
         class Typing(AbstractTemplate):
             def generic(self, args, keywords):
-                ok = len(args) == 2 and args[0] == args[1] and args[0] in (DOUBLES, WHOLES)
-                return signature(args[0], *args) if ok else None
+                if len(args) != 2 or not any(isinstance(a, Vector) for a in args) or not (found := _numbers(*args)):
+                    return None
+                return signature(WHOLES if WHOLES in found else DOUBLES, *found)
 
+        @lower_builtin(symbol, Vector, types.float64)
+        @lower_builtin(symbol, types.float64, Vector)
         @lower_builtin(symbol, Vector, Vector)
         def lower(ctx, builder, sig, args):
             if sig.return_type == DOUBLES:
-                return getattr(builder, "f" + name)(*args, flags=FUSE)
+                return getattr(builder, "f" + name)(*_eights(builder, args), flags=FUSE)
             return getattr(builder, name)(*args)
 
-    for _symbol, _name in ((operator.add, "add"), (operator.sub, "sub"), (operator.mul, "mul")):
+    for _symbol, _name in ((operator.add, "add"), (operator.sub, "sub"), (operator.mul, "mul"), (operator.truediv, "div")):
         _operator(_symbol, _name)
 
     def _all(builder, scalar, lanes=LANES):
@@ -158,9 +172,6 @@ else:
     def _calls(builder, name, kind, values):
         function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [v.type for v in values]), name)
         return builder.call(function, values)
-
-    def _alike(a, *others):
-        return a in (DOUBLES, WHOLES) and all(b == a for b in others)
 
     @intrinsic
     def load8(typing, b, at):
@@ -191,9 +202,9 @@ else:
     @intrinsic
     def madd8(typing, a, b, c):
         """``a * b + c``, in one rounding where the processor can."""
-        if not a == b == c == DOUBLES:
-            return None
-        return a(a, b, c), lambda ctx, builder, sig, args: _calls(builder, "llvm.fmuladd.v8f64", OCT, args)
+        def generate(ctx, builder, sig, args):
+            return _calls(builder, "llvm.fmuladd.v8f64", OCT, _eights(builder, args))
+        return (DOUBLES(*found), generate) if WHOLES not in (found := _numbers(a, b, c) or [WHOLES]) else None
 
     @intrinsic
     def inverse_root8(typing, v):
@@ -222,22 +233,28 @@ else:
     def _less(builder, a, b):
         return builder.fcmp_ordered("<", a, b) if a.type == OCT else builder.icmp_signed("<", a, b)
 
+    def _chosen(choose, *pairs):
+        """An intrinsic that chooses between the last two of its arguments, place by place."""
+        found = [_numbers(*pair) for pair in pairs]
+        if None in found:
+            return None
+        return (WHOLES if WHOLES in found[-1] else DOUBLES)(*sum(found, [])), \
+            lambda ctx, builder, sig, args: choose(builder, *_eights(builder, args))
+
     @intrinsic
     def smaller8(typing, a, b):
         """The smaller one, place by place; `b` for what is not a number."""
-        return (a(a, a), lambda ctx, builder, sig, args: builder.select(_less(builder, *args), *args)) if _alike(a, b) else None
+        return _chosen(lambda builder, a, b: builder.select(_less(builder, a, b), a, b), (a, b))
 
     @intrinsic
     def larger8(typing, a, b):
         """The larger one, place by place; `b` for what is not a number."""
-        return (a(a, a), lambda ctx, builder, sig, args: builder.select(_less(builder, args[1], args[0]), *args)) if _alike(a, b) else None
+        return _chosen(lambda builder, a, b: builder.select(_less(builder, b, a), a, b), (a, b))
 
     @intrinsic
     def below8(typing, a, b, yes, no):
         """`yes` where a < b, else `no`."""
-        if not _alike(a, b) or not _alike(yes, no):
-            return None
-        return yes(a, a, yes, yes), lambda ctx, builder, sig, args: builder.select(_less(builder, *args[:2]), *args[2:])
+        return _chosen(lambda builder, a, b, yes, no: builder.select(_less(builder, a, b), yes, no), (a, b), (yes, no))
 
     def _halved(builder, rows):
         while len(rows) > 1:

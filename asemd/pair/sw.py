@@ -14,7 +14,10 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.manybody import ROW, add_bend, add_stretch, directions, place
+from asemd.kernels.eight_sites import ROW
+from asemd.kernels.functions8 import exp8
+from asemd.kernels.manybody import add_bend, add_stretch, directions
+from asemd.kernels.vectors8 import all8, below8, inverse_root8, load8, smaller8, store8
 from asemd.manybody import element_of
 from asemd.pairstyle import PairTables
 from asemd.style import register
@@ -78,58 +81,60 @@ def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
-def sw_block(i, n, m, full, b, constants):
-    """The same for one kind of atoms with p = 4 and q = 0; each triple comes twice, for its force on one neighbour and on the other."""
+def sw_eight(end, b, constants):
+    """The same for one kind of atoms with p = 4 and q = 0, on eight sites at a time (`asemd.kernels.eight_sites`). Rows of the work space:
+    8 to 10 unit vectors, 11 inverse distances, 12 the exponential of triples, 13 its logarithm's slope."""
     sigma, cut, width, pairs, flat = constants[1], constants[2], constants[3], constants[4], constants[5]
     triples, c0 = constants[6], constants[7]
-    energy = 0.0
-    for k in range(full):
-        r = math.sqrt(b[place(3 * ROW + k)])
-        ir = 1.0 / r
-        ux = b[place(k)] * ir
-        uy = b[place(ROW + k)] * ir
-        uz = b[place(2 * ROW + k)] * ir
-        s = 1.0 / (r - cut)
+    own = load8(b, 7 * ROW)
+    energy = all8(0.0)
+    for k in range(0, end, 8):
+        r2 = load8(b, 3 * ROW + k)
+        ir = inverse_root8(r2)
+        ux, uy, uz = load8(b, k) * ir, load8(b, ROW + k) * ir, load8(b, 2 * ROW + k) * ir
+        s = 1.0 / smaller8(r2 * ir - cut, -1e-12 * cut)      # where it ends, and for far neighbours, exponentials become 0
         g = width * s
-        inside = k < n
-        b[place(7 * ROW + k)] = ux
-        b[place(8 * ROW + k)] = uy
-        b[place(9 * ROW + k)] = uz
-        b[place(10 * ROW + k)] = ir
-        b[place(11 * ROW + k)] = math.exp(g) if inside else 0.0
-        b[place(12 * ROW + k)] = g * s
+        store8(b, 8 * ROW + k, ux)
+        store8(b, 9 * ROW + k, uy)
+        store8(b, 10 * ROW + k, uz)
+        store8(b, 11 * ROW + k, ir)
+        store8(b, 12 * ROW + k, exp8(g))
+        store8(b, 13 * ROW + k, g * s)
         x = sigma * ir
         x2 = x * x
-        a = pairs * x2 * x2
-        e = math.exp(sigma * s) if k < m else 0.0
-        energy += (a - flat) * e
-        d = -(4.0 * a * ir + (a - flat) * sigma * s * s) * e
-        b[place(4 * ROW + k)] = d * ux
-        b[place(5 * ROW + k)] = d * uy
-        b[place(6 * ROW + k)] = d * uz
-    bent = 0.0
-    for k in range(n):
-        vx = b[place(7 * ROW + k)]
-        vy = b[place(8 * ROW + k)]
-        vz = b[place(9 * ROW + k)]
-        h = triples * b[place(11 * ROW + k)]
-        for j in range(full):
-            ux = b[place(7 * ROW + j)]
-            uy = b[place(8 * ROW + j)]
-            uz = b[place(9 * ROW + j)]
-            ir = b[place(10 * ROW + j)]
+        a = pairs * (x2 * x2)
+        e = below8(0.125 * k, own, exp8(sigma * s), 0.0)
+        energy = energy + (a - flat) * e
+        d = (0.0 - (4.0 * a * ir + (a - flat) * sigma * (s * s))) * e
+        store8(b, 4 * ROW + k, d * ux)
+        store8(b, 5 * ROW + k, d * uy)
+        store8(b, 6 * ROW + k, d * uz)
+    for j in range(0, end, 8):
+        ux, uy, uz = load8(b, 8 * ROW + j), load8(b, 9 * ROW + j), load8(b, 10 * ROW + j)
+        ij, gj, h = load8(b, 11 * ROW + j), load8(b, 13 * ROW + j), triples * load8(b, 12 * ROW + j)
+        sx, sy, sz = load8(b, 4 * ROW + j), load8(b, 5 * ROW + j), load8(b, 6 * ROW + j)
+        for k in range(j + 8, end, 8):
+            vx, vy, vz = load8(b, 8 * ROW + k), load8(b, 9 * ROW + k), load8(b, 10 * ROW + k)
             c = ux * vx + uy * vy + uz * vz
             delta = c - c0
-            w = h * delta * b[place(11 * ROW + j)]
-            w = w if j != k else 0.0
+            w = h * load8(b, 12 * ROW + k) * delta
             e = w * delta
-            bent += e
-            w = 2.0 * w * ir
-            a = -e * b[place(12 * ROW + j)] - w * c
-            b[place(4 * ROW + j)] += a * ux + w * vx
-            b[place(5 * ROW + j)] += a * uy + w * vy
-            b[place(6 * ROW + j)] += a * uz + w * vz
-    return energy + 0.5 * bent
+            energy = energy + e
+            w = w + w
+            t = w * ij
+            a = e * gj + t * c
+            sx = sx + t * vx - a * ux
+            sy = sy + t * vy - a * uy
+            sz = sz + t * vz - a * uz
+            t = w * load8(b, 11 * ROW + k)
+            a = e * load8(b, 13 * ROW + k) + t * c
+            store8(b, 4 * ROW + k, load8(b, 4 * ROW + k) + (t * ux - a * vx))
+            store8(b, 5 * ROW + k, load8(b, 5 * ROW + k) + (t * uy - a * vy))
+            store8(b, 6 * ROW + k, load8(b, 6 * ROW + k) + (t * uz - a * vz))
+        store8(b, 4 * ROW + j, sx)
+        store8(b, 5 * ROW + j, sy)
+        store8(b, 6 * ROW + j, sz)
+    return energy
 
 
 class SW(TripleStyle):
@@ -190,6 +195,6 @@ def ends_at(p) -> float:
     return p["sigma"] * p["a"] + (width / math.log(tol) if tol > 0.0 else 0.0)
 
 
-register(SW("sw", site=sw, block=sw_block, helpers=(power, bend, neighbours), rooms=6, settings="[threebody] [on|off]",
-            units={"threebody": "word", "on|off": "word"}, example="Si.sw Si",
+register(SW("sw", site=sw, eight=sw_eight, eight_rows=14, helpers=(power, bend, neighbours), rooms=6,
+            settings="[threebody] [on|off]", units={"threebody": "word", "on|off": "word"}, example="Si.sw Si",
             see="F. H. Stillinger and T. A. Weber, Phys. Rev. B 31, 5262 (1985)"))

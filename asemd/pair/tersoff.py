@@ -18,7 +18,7 @@ import numpy as np
 from asemd import words as read
 from asemd.errors import InputError
 from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
-from asemd.pair.tersoff_block import copy_rows, tersoff_block
+from asemd.pair.tersoff_eight import tersoff_eight
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -166,7 +166,6 @@ class Tersoff(TripleStyle):
     columns = COLUMNS
     positive = "c d n beta lambda2 B R D lambda1 A gamma"
     energies = ("A", "B")
-    block_helpers = (copy_rows,)
 
     def parse_settings(self, words):
         what = f"pair_style {self.name}"
@@ -211,7 +210,7 @@ class Tersoff(TripleStyle):
         return [settings["shift"]]
 
 
-OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=62)
-register(Tersoff("tersoff", site=tersoff, block=tersoff_block, helpers=(taper, repulsion, attraction, angular, order, longer),
-                 example="Si.tersoff Si",
+OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)
+register(Tersoff("tersoff", site=tersoff, eight=tersoff_eight, eight_rows=41,
+                 helpers=(taper, repulsion, attraction, angular, order, longer), example="Si.tersoff Si",
                  see="J. Tersoff, Phys. Rev. B 37, 6991 (1988); 39, 5566 (1989)", **OPTIONS))

@@ -1,0 +1,103 @@
+"""Tersoff's potential of one kind of atoms on eight sites at a time; formulas as in `asemd.pair.tersoff`."""
+from __future__ import annotations
+
+from asemd.kernels.eight_sites import ROW
+from asemd.kernels.functions8 import exp8, log8, sine8
+from asemd.kernels.vectors8 import all8, below8, inverse_root8, larger8, load8, smaller8, store8, sum8
+
+
+def tersoff_eight(end, b, constants):
+    """Rows of the work space: 8 to 10 unit vectors, 11 inverse distances, 12 distances, 13 and 14 the cutoff function and its slope, 15
+    zeta, 16 its slope by r_ij; from 17 on for each of eight neighbours j what k does to zeta: by the cosine, by r_ik, and the cosine."""
+    reach, inner, middle, width = constants[1], constants[2], constants[3], constants[4]
+    ca, l1, cb, l2, l3 = constants[5], constants[6], constants[7], constants[8], constants[9]
+    cubic = constants[10] == 3.0
+    gamma, c2, d2, h = constants[11], constants[12] * constants[12], constants[13] * constants[13], constants[14]
+    nn, beta = constants[15], constants[16]
+    g0 = gamma * (1.0 + c2 / d2)
+    for k in range(0, end, 8):
+        r2 = load8(b, 3 * ROW + k)
+        ir = inverse_root8(r2)
+        r = r2 * ir + constants[0]
+        for d in range(3):
+            store8(b, (8 + d) * ROW + k, load8(b, d * ROW + k) * ir)
+        store8(b, 11 * ROW + k, ir)
+        store8(b, 12 * ROW + k, r)
+        fc = below8(r, reach, all8(1.0), 0.0)
+        slope = all8(0.0)
+        if sum8(below8(inner, r, fc, 0.0)) > 0.0:
+            a = smaller8(1.5707963267948966, larger8(-1.5707963267948966, (1.5707963267948966 / width) * (r - middle)))
+            fc = fc * (0.5 - 0.5 * sine8(a))
+            slope = below8(r, reach, -0.7853981633974483 / width * sine8(1.5707963267948966 - larger8(a, 0.0 - a)), 0.0)
+        store8(b, 13 * ROW + k, fc)
+        store8(b, 14 * ROW + k, slope)
+    own = load8(b, 7 * ROW)
+    energy = all8(0.0)
+    for start in range(0, end, 64):
+        stop = min(start + 64, end)
+        for j in range(start, stop, 8):
+            row = (17 + 3 * ((j - start) // 8)) * ROW
+            ux, uy, uz, rj = load8(b, 8 * ROW + j), load8(b, 9 * ROW + j), load8(b, 10 * ROW + j), load8(b, 12 * ROW + j)
+            zeta = all8(0.0)
+            zj = all8(0.0)
+            for k in range(0, end, 8):
+                if k == j:
+                    continue
+                x = ux * load8(b, 8 * ROW + k) + uy * load8(b, 9 * ROW + k) + uz * load8(b, 10 * ROW + k)
+                u = h - x
+                w = 1.0 / (u * u + d2)
+                g = g0 - (gamma * c2) * w
+                dg = (-2.0 * gamma * c2) * (u * w * w)
+                fc, dfc = load8(b, 13 * ROW + k), load8(b, 14 * ROW + k)
+                if l3 != 0.0:
+                    t = l3 * (rj - load8(b, 12 * ROW + k))
+                    a = t * t * t if cubic else t
+                    slope = (3.0 * l3) * (t * t) if cubic else all8(l3)
+                    ex = below8(a, -69.0776, 0.0, below8(69.0776, a, 1e30, exp8(a)))
+                    dex = below8(0.0, ex, slope * ex, 0.0)
+                    dfc = dfc * ex - fc * dex
+                    zj = zj + fc * g * dex
+                    fc = fc * ex
+                zeta = zeta + fc * g
+                store8(b, row + k, fc * dg)
+                store8(b, row + ROW + k, g * dfc)
+                store8(b, row + 2 * ROW + k, x)
+            store8(b, 15 * ROW + j, zeta)
+            store8(b, 16 * ROW + j, zj)
+        for j in range(start, stop, 8):
+            z = larger8(load8(b, 15 * ROW + j), 1e-290)
+            y = nn * log8(larger8(beta * z, 1e-300))
+            tn = exp8(smaller8(y, 50.0))
+            bond = exp8((-0.5 / nn) * below8(40.0, y, y, log8(tn + 1.0)))
+            db = -0.5 * bond * below8(40.0, y, 1.0, tn / (tn + 1.0)) / z
+            r, fc, dfc = load8(b, 12 * ROW + j), load8(b, 13 * ROW + j), load8(b, 14 * ROW + j)
+            fa = -cb * exp8(-l2 * r)
+            fr = below8(0.125 * j, own, ca * exp8(-l1 * r), 0.0)
+            energy = energy + (0.5 * fa * bond + fr) * fc
+            w = 0.5 * fa * fc * db
+            store8(b, 15 * ROW + j, w)
+            store8(b, 16 * ROW + j, 0.5 * bond * fa * (dfc - l2 * fc) + w * load8(b, 16 * ROW + j) + fr * (dfc - l1 * fc))
+        for j in range(start, stop, 8):
+            row = (17 + 3 * ((j - start) // 8)) * ROW
+            ux, uy, uz, ij = load8(b, 8 * ROW + j), load8(b, 9 * ROW + j), load8(b, 10 * ROW + j), load8(b, 11 * ROW + j)
+            w, s = load8(b, 15 * ROW + j), load8(b, 16 * ROW + j)
+            sx, sy, sz = s * ux, s * uy, s * uz
+            for k in range(0, end, 8):
+                if k == j:
+                    continue
+                vx, vy, vz = load8(b, 8 * ROW + k), load8(b, 9 * ROW + k), load8(b, 10 * ROW + k)
+                x = load8(b, row + 2 * ROW + k)
+                a = w * load8(b, row + k)
+                c = a * load8(b, 11 * ROW + k)
+                d = w * load8(b, row + ROW + k) - c * x
+                store8(b, 4 * ROW + k, load8(b, 4 * ROW + k) + (c * ux + d * vx))
+                store8(b, 5 * ROW + k, load8(b, 5 * ROW + k) + (c * uy + d * vy))
+                store8(b, 6 * ROW + k, load8(b, 6 * ROW + k) + (c * uz + d * vz))
+                a = a * ij
+                sx = sx + a * (vx - x * ux)
+                sy = sy + a * (vy - x * uy)
+                sz = sz + a * (vz - x * uz)
+            store8(b, 4 * ROW + j, load8(b, 4 * ROW + j) + sx)
+            store8(b, 5 * ROW + j, load8(b, 5 * ROW + j) + sy)
+            store8(b, 6 * ROW + j, load8(b, 6 * ROW + j) + sz)
+    return energy
