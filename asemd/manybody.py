@@ -58,8 +58,8 @@ class ManyBody(PairStyle, ABC):
     site, forces, parts
         One of the three, see above; `helpers` are functions that `site` or `forces` calls.
     eight : callable, optional
-        ``eight(end, b, constants)``, the same energy for tables that `fits` agrees to, of eight sites at once with `eight_rows` rows of
-        work space: see `asemd.kernels.eight_sites`.
+        ``eight(end, b, types, arrays, constants)``, the same energy for tables that `fits` agrees to, of eight sites at once with
+        `eight_rows` rows of work space: see `asemd.kernels.eight_sites`.
     rooms, shares : int
         Rows of work space by neighbour of a thread, and by slot for all threads.
     elements : bool
@@ -120,6 +120,10 @@ class ManyBody(PairStyle, ABC):
     def fits(self, tables: PairTables) -> bool:
         """Whether `eight` can compute with these tables."""
         return False
+
+    def alike(self, tables: PairTables) -> bool:
+        """Whether all atoms have the same coefficients, those of the first type."""
+        return True
 
     def room_for(self, tables: PairTables, width: int) -> int:
         """Rows of work space of a thread, each as wide as the longest row of neighbours."""

@@ -6,7 +6,7 @@ import numpy as np
 from asemd.errors import InputError, SimulationError
 from asemd.hydrogen_bond import HydrogenBond
 from asemd.kernels import eight_sites, manybody
-from asemd.kernels.eight_sites import EIGHT
+from asemd.kernels.eight_sites import EIGHT, PLACES
 from asemd.kernels.state import aligned
 from asemd.neighbor import IMAGES
 from asemd.term import FactorTerm
@@ -52,7 +52,8 @@ class ManyBodyTerm(FactorTerm):
 
     def kernel(self, energy, per_atom):
         if self.eights and not per_atom:
-            made = eight_sites.kernel(self.style, energy=energy, uniform=self.uniform, width=self.width)
+            made = eight_sites.kernel(self.style, energy=energy, uniform=self.uniform, width=self.width,
+                                      alike=self.style.alike(self.tables))
         else:
             made = manybody.kernel(self.style, energy=energy or self.style.whole, per_atom=per_atom, uniform=self.uniform)
         return made if per_atom else self._scaled(made, energy)
@@ -91,8 +92,8 @@ class ManyBodyTerm(FactorTerm):
             work = aligned((nth, 7 + self.style.room_for(self.tables, self.width), self.width))
             self.near, self.grad, self.room = work[:, :4], work[:, 4:7], work[:, 7:]
             self.flat = work.reshape(nth, -1)[:, 7 * self.width:]
-            self.types = np.zeros((nth, self.width), np.int32)
-            self.slots = np.zeros((nth, self.width * (EIGHT if self.eights else 1)), np.int32)
+            self.types = np.zeros((nth, self.width if not self.eights else PLACES + EIGHT * self.width), np.int32)
+            self.slots = np.zeros_like(self.types)
             if self.eights:
                 self.flat = aligned((nth, self.style.eight_rows * EIGHT * self.width))
         if self.style.shares and getattr(self, "shared", np.zeros((0, 0))).shape[1] != capacity:

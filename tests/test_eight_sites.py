@@ -10,9 +10,11 @@ import mpmath as mp
 import numpy as np
 import pytest
 from ase import Atoms
+from wheel import ask, start
 
 import asemd
 from asemd import style
+from asemd.engine import Engine, Settings
 from asemd.errors import SimulationError
 from asemd.kernels import functions8
 from asemd.kernels.generate import Builder, plain_source
@@ -42,7 +44,7 @@ def test_digits(name, true, limit, functions):
     rng = np.random.default_rng(3)
     x = {"exp": np.concatenate([rng.uniform(-708, 709, 800), rng.uniform(-1, 1, 400), [0.0, 1e-9, -1e-9, 1.0, -708.0, 709.0, 50.0, -69.0]]),
          "log": np.concatenate([10.0 ** rng.uniform(-300, 300, 800), rng.uniform(0.6, 1.6, 400), np.full(8, 1.0)]),
-         "sine": np.concatenate([rng.uniform(-math.pi / 2, math.pi / 2, 800), 10.0 ** rng.uniform(-9, 0, 392), np.linspace(-1.5, 1.5, 8)])}[name]
+         "sine": np.concatenate([rng.uniform(-1.57, 1.57, 800), 10.0 ** rng.uniform(-9, 0, 392), np.linspace(-1.5, 1.5, 8)])}[name]
     out = np.empty_like(x)
     getattr(functions, f"loop_{name}")(x, out)
     with mp.workdps(40):
@@ -91,26 +93,76 @@ def changed(file: str, folder: Path, **numbers: str) -> str:
     return str(path)
 
 
+def one_by_one(atoms: Atoms, name: str, monkeypatch, file: str, **options) -> tuple:
+    """Energies, forces and stress that do not depend on who shares an eight; the first is the term of eights."""
+    found = []
+    for fits in (True, False):
+        if not fits:
+            monkeypatch.setattr(type(style.find("pair", name)), "fits", lambda self, tables: False)
+        atoms.calc = asemd.Potential(file, style=name, **options)
+        found.append((atoms.get_potential_energy(), atoms.get_forces(), atoms.get_stress(), atoms.calc.engine.terms[0]))
+        assert found[-1][-1].eights == fits
+    (e, f, s, term), (want_e, want_f, want_s, _) = found
+    assert e == pytest.approx(want_e, rel=0, abs=1e-12 * np.abs(atoms.get_potential_energies()).sum())
+    assert np.allclose(f, want_f, rtol=1e-11, atol=1e-12 * np.abs(want_f).max())
+    assert np.allclose(s, want_s, rtol=1e-11, atol=1e-12 * np.abs(want_s).max())
+    return term, f
+
+
 @pytest.mark.parametrize(("name", "settings", "numbers"), [
     ("sw", "", None), ("tersoff", "", {}), ("tersoff", "shift 0.2", {}), ("tersoff", "", {"m": "1", "lambda3": "0.9", "D": "0.4"}),
     ("tersoff", "", {"lambda3": "0", "n": "22.9"})])
 def test_like_one_by_one(name, settings, numbers, tmp_path, monkeypatch):
-    """Energies, forces and stress do not depend on who shares an eight."""
     file = str(POTENTIALS / "Si.sw") if numbers is None else changed("Si.tersoff", tmp_path, **numbers)
-    atoms, found = uneven(18), []
-    for fits in (True, False):
-        if not fits:
-            monkeypatch.setattr(type(style.find("pair", name)), "fits", lambda self, tables: False)
-        atoms.calc = asemd.Potential(file, style=name, settings=settings)
-        found.append((atoms.get_potential_energy(), atoms.get_forces(), atoms.get_stress()))
-        term = atoms.calc.engine.terms[0]
-        assert term.eights == fits and (term.last - term.first).max() > 12
-    (e, f, s), (want_e, want_f, want_s) = found
-    assert e == pytest.approx(want_e, rel=1e-12)
-    assert np.allclose(f, want_f, rtol=1e-11, atol=1e-12 * np.abs(want_f).max())
-    assert np.allclose(s, want_s, rtol=1e-11, atol=1e-12 * np.abs(want_s).max())
+    atoms = uneven(18)
+    term, f = one_by_one(atoms, name, monkeypatch, file, settings=settings)
+    assert (term.last - term.first).max() > 12 and term.style.alike(term.tables)
     lone = np.flatnonzero(np.linalg.norm(atoms.positions - [30.0, 5.0, 5.0], axis=1) < 1e-9)
     assert not f[lone].any()
+
+
+@pytest.mark.parametrize(("file", "symbols"), [("SiC.tersoff", "Si C"), ("GaN.tersoff", "Ga N"), ("SiC_Erhart-Albe.tersoff", "Si C")])
+def test_several_elements(file, symbols, monkeypatch):
+    atoms = uneven(9)
+    atoms.symbols = np.random.default_rng(2).choice(symbols.split(), len(atoms))
+    term, _ = one_by_one(atoms, "tersoff", monkeypatch, str(POTENTIALS / file))
+    assert not term.style.alike(term.tables)
+
+
+@pytest.mark.parametrize("file", ["BNC.tersoff", "SiC_1989.tersoff"])
+def test_coefficients_that_depend_on_the_second_atom(file):
+    """Sites go one by one then."""
+    atoms = uneven(9)
+    atoms.symbols = np.random.default_rng(2).choice(["C", "B" if "B" in file else "Si"], len(atoms))
+    atoms.calc = asemd.Potential(str(POTENTIALS / file))
+    assert np.abs(atoms.get_forces()).max() > 0.1 and not atoms.calc.engine.terms[0].eights
+
+
+def test_some_types_only():
+    """Types that a hybrid style gives to others are no neighbours."""
+    lines = """units metal
+lattice diamond 5.0
+region box block 0 3 0 3 0 3
+create_box 3 box
+create_atoms 1 box
+set group all type/fraction 2 0.3 4711
+set group all type/fraction 3 0.2 4712
+mass * 28
+displace_atoms all random 0.04 0.04 0.04 4711
+pair_style hybrid/overlay tersoff lj/cut 4.0
+pair_coeff * * tersoff SiC.tersoff NULL Si C
+pair_coeff 1 * lj/cut 0.01 2.5
+fix 1 all nve
+timestep 0.0005
+run 5"""
+    script = "lmp = ran(given['lines'])\nanswer = [lmp.get_thermo('pe'), lmp.get_thermo('press'), lmp.numpy.extract_atom('f').tolist()]"
+    lines = lines.replace("SiC.tersoff", str(POTENTIALS / "SiC.tersoff"))
+    energy, pressure, _ = ask(script, lines=lines)
+    lmp = start()
+    lmp.commands_string(lines)
+    terms = Engine(lmp.scene.system, lmp.scene.interactions, Settings(skin=1.0)).terms
+    assert [t.style.alike(t.tables) for t in terms if getattr(t, "eights", False)] == [False]
+    assert lmp.get_thermo("pe") == pytest.approx(energy, rel=1e-11) and lmp.get_thermo("press") == pytest.approx(pressure, rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["sw", "tersoff"])

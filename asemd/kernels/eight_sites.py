@@ -4,6 +4,9 @@ The work space `b` of a thread is flat. A row of it has ROW numbers: eights for 
 to 2 are the vectors to the neighbours, 3 the squared distances, 4 to 6 the derivatives of the energy by the neighbours' positions; row 7
 begins with how many neighbours of each site are there with a pair that counts as the site's own, and the rows of the style follow. A site
 with fewer neighbours than another has some that are far away, so that formulas need no conditions for them.
+
+Constants: ENERGY, UNIFORM (one cutoff for all pairs of types), ALIKE (all atoms have the same coefficients). Unless ALIKE, `types` has
+eights too, after its first PLACES numbers, which are the kernel's own: PLACE times the number of the pair of types.
 """
 from __future__ import annotations
 
@@ -16,15 +19,16 @@ from asemd.kernels.generate import Builder, plain_source
 from asemd.kernels.vector_math import OPTIONS
 from asemd.kernels.vectors8 import load8, store8, sum8
 
-ENERGY = UNIFORM = False
+ENERGY = UNIFORM = ALIKE = False
 ROW = 0
+PLACES = PLACE = 16
 EIGHT = 8
 place = np.uint64
 site = None
-VECTORS = "all8 below8 inverse_root8 larger8 load8 madd8 smaller8 store8 sum8"
+VECTORS = "all8 below8 inverse_root8 larger8 load8 madd8 rows8 smaller8 store8 sum8"
 
 
-def gather_lane(i, begin, end, n, lane, x, type_of, neighbors, codes, shifts, cut2, b, slots):
+def gather_lane(i, begin, end, n, lane, x, type_of, neighbors, codes, shifts, cut2, b, types, slots):
     """Neighbours of site i within the cutoff, to place `lane` of the eights from the `n`-th on; returns the number then."""
     xi = x[0, i]
     yi = x[1, i]
@@ -44,6 +48,8 @@ def gather_lane(i, begin, end, n, lane, x, type_of, neighbors, codes, shifts, cu
         b[place(2 * ROW + k)] = dz
         b[place(3 * ROW + k)] = r2
         slots[place(k)] = j
+        if not ALIKE:
+            types[place(PLACES + k)] = PLACE * (ti * cut2.shape[1] + type_of[j])
         if UNIFORM:
             n += r2 < limit
         else:
@@ -51,13 +57,15 @@ def gather_lane(i, begin, end, n, lane, x, type_of, neighbors, codes, shifts, cu
     return n
 
 
-def fill(n, lane, most, b):
+def fill(n, lane, most, b, types):
     """Far neighbours for a site with n where another has `most`."""
     for k in range(EIGHT * n + lane, EIGHT * most, EIGHT):
         b[place(k)] = 1e10
         b[place(ROW + k)] = 0.0
         b[place(2 * ROW + k)] = 0.0
         b[place(3 * ROW + k)] = 1e20
+        if not ALIKE:
+            types[place(PLACES + k)] = 0
 
 
 def scatter_lane(i, n, lane, f, b, slots):
@@ -97,8 +105,8 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
     while i < hi:
         sites, most = 0, 0
         while i < hi and sites < EIGHT:
-            m = gather_lane(i, first[i], middle[i], 0, sites, x, type_of, neighbors, codes, shifts, cut2, b, slots)
-            n = gather_lane(i, middle[i], last[i], m, sites, x, type_of, neighbors, codes, shifts, cut2, b, slots)
+            m = gather_lane(i, first[i], middle[i], 0, sites, x, type_of, neighbors, codes, shifts, cut2, b, types, slots)
+            n = gather_lane(i, middle[i], last[i], m, sites, x, type_of, neighbors, codes, shifts, cut2, b, types, slots)
             if n > 0:
                 types[sites] = i
                 types[EIGHT + sites] = n
@@ -107,12 +115,12 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
                 sites += 1
             i += 1
         for lane in range(EIGHT):
-            fill(types[EIGHT + lane] if lane < sites else 0, lane, most, b)
+            fill(types[EIGHT + lane] if lane < sites else 0, lane, most, b, types)
         for k in range(EIGHT * most):
             b[place(4 * ROW + k)] = 0.0
             b[place(5 * ROW + k)] = 0.0
             b[place(6 * ROW + k)] = 0.0
-        e = site(EIGHT * most, b, constants)
+        e = site(EIGHT * most, b, types, arrays, constants)
         total = sum8(e)
         if not abs(total) < np.inf:
             store8(b, 7 * ROW, e)
@@ -130,13 +138,14 @@ def site_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shifts,
 
 
 @cache
-def kernel(style, *, energy: bool, uniform: bool, width: int):
+def kernel(style, *, energy: bool, uniform: bool, alike: bool, width: int):
     """The compiled kernel of a style whose `eight` is a function of eight sites; `width`: places for neighbours."""
     b = Builder(f"pair {style.name}: eight sites at a time")
     b.line("place = np.uint64")
     b.line(f"from asemd.kernels.vectors8 import {', '.join(VECTORS.split())}")
     b.line(f"from asemd.kernels.functions8 import {', '.join(functions8.NAMES)}")
-    for name, value in dict(ENERGY=energy, UNIFORM=uniform, EIGHT=EIGHT, ROW=EIGHT * width).items():
+    constants = dict(ENERGY=energy, UNIFORM=uniform, ALIKE=alike, EIGHT=EIGHT, ROW=EIGHT * width, PLACES=PLACES, PLACE=PLACE)
+    for name, value in constants.items():
         b.constant(name, value)
     for f in functions8.FUNCTIONS:
         b.text(plain_source(f), OPTIONS)

@@ -81,7 +81,7 @@ def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
-def sw_eight(end, b, constants):
+def sw_eight(end, b, types, arrays, constants):
     """The same for one kind of atoms with p = 4 and q = 0, on eight sites at a time (`asemd.kernels.eight_sites`). Rows of the work space:
     8 to 10 unit vectors, 11 inverse distances, 12 the exponential of triples, 13 its logarithm's slope."""
     sigma, cut, width, pairs, flat = constants[1], constants[2], constants[3], constants[4], constants[5]

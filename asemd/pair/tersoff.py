@@ -17,6 +17,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
+from asemd.kernels.eight_sites import PLACE
 from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
 from asemd.pair.tersoff_eight import tersoff_eight
 from asemd.style import register
@@ -50,12 +51,12 @@ def attraction(r, p):
 
 
 def angular(x, p):
-    """g and its derivative by the cosine."""
+    """g and its derivative by the cosine; the difference of its large terms is written out, which else takes six digits in some files."""
     u = p[13] - x
-    c2 = p[11] * p[11]
     d2 = p[12] * p[12]
     w = 1.0 / (d2 + u * u)
-    return p[10] * (1.0 + c2 / d2 - c2 * w), -2.0 * p[10] * c2 * u * w * w
+    steep = p[10] * (p[11] / p[12]) ** 2
+    return p[10] + steep * (u * u * w), -2.0 * steep * (u * w) * (d2 * w)
 
 
 def order(zeta, p):
@@ -159,6 +160,27 @@ def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
+def by_pairs(three):
+    """What `tersoff_eight` needs of the table of triples: its coefficients by pairs of types, and m. None where a triple's depend on its
+    second atom, or numbers are not positive whose logarithm or inverse is taken."""
+    served = np.flatnonzero(three[..., 0].any(axis=(1, 2)))
+    rows = three[np.ix_(served, served, served)]
+    pairs = np.array([[rows[i, k, k] for k in range(len(served))] for i in range(len(served))])
+    of_triples = [COLUMNS.index(name) for name in "reach inner R D lambda3 m gamma c d h".split()]
+    p = dict(zip(COLUMNS, np.moveaxis(pairs, -1, 0)))
+    if (rows[..., of_triples] != pairs[:, None, :, of_triples]).any() or np.ptp(p["m"]) != 0.0:
+        return None
+    if min(p["B"].min(), p["d"].min(), p["beta"].min()) <= 0.0:
+        return None
+    steep = p["gamma"] * (p["c"] / p["d"])**2
+    columns = [p[name] for name in "reach inner R D A lambda1 B lambda2 n beta lambda3 h".split()]
+    numbers = np.stack([*columns, p["d"]**2, p["gamma"], steep, np.zeros_like(steep)], axis=-1)
+    table = np.empty((*three.shape[:2], PLACE))
+    table[...] = numbers[0, 0]      # what a far neighbour has, and types that never meet
+    table[np.ix_(served, served)] = numbers
+    return table.ravel(), p["m"][0, 0]
+
+
 class Tersoff(TripleStyle):
     """Tersoff's entries and the shift of distances."""
 
@@ -196,12 +218,20 @@ class Tersoff(TripleStyle):
         return {"reach": p["R"] + p["D"], "inner": p["R"] - p["D"]}
 
     def fits(self, tables):
-        table = tables.arrays[0][1:, 1:, 1:].reshape(-1, len(self.columns))
-        return bool((table == table[0]).all()) and min(table[0, 6], table[0, 12], table[0, 15]) > 0.0
+        return len(tables.arrays) > 1
+
+    def alike(self, tables):
+        rows = tables.arrays[1].reshape(-1, PLACE)
+        return bool((tables.rows[0][1:, 1:] > 0.0).all() and (rows == rows[0]).all())
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, shift)
-        return replace(tables, constants=np.append(tables.constants, tables.arrays[0][-1, -1, -1]))
+        found = by_pairs(tables.arrays[0]) if self.eight else None
+        if found is None:
+            return tables
+        table, power = found
+        constants = np.array([settings["shift"], power, np.abs(table[10::PLACE]).max()])
+        return replace(tables, arrays=(*tables.arrays, table), constants=constants)
 
     def shortened(self, settings):
         return settings["shift"]
@@ -211,6 +241,6 @@ class Tersoff(TripleStyle):
 
 
 OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)
-register(Tersoff("tersoff", site=tersoff, eight=tersoff_eight, eight_rows=41,
+register(Tersoff("tersoff", site=tersoff, eight=tersoff_eight, eight_rows=46,
                  helpers=(taper, repulsion, attraction, angular, order, longer), example="Si.tersoff Si",
                  see="J. Tersoff, Phys. Rev. B 37, 6991 (1988); 39, 5566 (1989)", **OPTIONS))

@@ -1,21 +1,36 @@
-"""Tersoff's potential of one kind of atoms on eight sites at a time; formulas as in `asemd.pair.tersoff`."""
+"""Tersoff's potential on eight sites at a time; formulas as in `asemd.pair.tersoff`."""
 from __future__ import annotations
 
-from asemd.kernels.eight_sites import ROW
+from asemd.kernels.eight_sites import ALIKE, PLACES, ROW
 from asemd.kernels.functions8 import exp8, log8, sine8
-from asemd.kernels.vectors8 import all8, below8, inverse_root8, larger8, load8, smaller8, store8, sum8
+from asemd.kernels.vectors8 import all8, below8, inverse_root8, larger8, load8, rows8, smaller8, store8, sum8
 
 
-def tersoff_eight(end, b, constants):
+def tersoff_eight(end, b, types, arrays, constants):
     """Rows of the work space: 8 to 10 unit vectors, 11 inverse distances, 12 distances, 13 and 14 the cutoff function and its slope, 15
-    zeta, 16 its slope by r_ij; from 17 on for each of eight neighbours j what k does to zeta: by the cosine, by r_ik, and the cosine."""
-    reach, inner, middle, width = constants[1], constants[2], constants[3], constants[4]
-    ca, l1, cb, l2, l3 = constants[5], constants[6], constants[7], constants[8], constants[9]
-    cubic = constants[10] == 3.0
-    gamma, c2, d2, h = constants[11], constants[12] * constants[12], constants[13] * constants[13], constants[14]
-    nn, beta = constants[15], constants[16]
-    g0 = gamma * (1.0 + c2 / d2)
+    zeta, 16 its slope by r_ij; from 17 on for each of eight neighbours j what k does to zeta: by the cosine, by r_ik, and the cosine; from
+    41 on coefficients of k: lambda3, h, d^2, gamma and gamma c^2 / d^2.
+
+    ``arrays[1]``: coefficients of a pair of types as `asemd.pair.tersoff.by_pairs` has them.
+    """
+    table = arrays[1]
+    cubic = constants[1] == 3.0
+    if ALIKE:
+        reach, inner, middle, width = all8(table[0]), all8(table[1]), all8(table[2]), all8(table[3])
+        ca, l1, cb, l2 = all8(table[4]), all8(table[5]), all8(table[6]), all8(table[7])
+        nn, beta, l3, h = all8(table[8]), all8(table[9]), all8(table[10]), all8(table[11])
+        d2, gamma, steep = all8(table[12]), all8(table[13]), all8(table[14])
+    longer = constants[2] != 0.0
     for k in range(0, end, 8):
+        if not ALIKE:
+            reach, inner, middle, width = rows8(table, types, PLACES + k, 0)
+            _, _, l3, h = rows8(table, types, PLACES + k, 8)
+            d2, gamma, steep, _ = rows8(table, types, PLACES + k, 12)
+            store8(b, 41 * ROW + k, l3)
+            store8(b, 42 * ROW + k, h)
+            store8(b, 43 * ROW + k, d2)
+            store8(b, 44 * ROW + k, gamma)
+            store8(b, 45 * ROW + k, steep)
         r2 = load8(b, 3 * ROW + k)
         ir = inverse_root8(r2)
         r = r2 * ir + constants[0]
@@ -26,9 +41,11 @@ def tersoff_eight(end, b, constants):
         fc = below8(r, reach, all8(1.0), 0.0)
         slope = all8(0.0)
         if sum8(below8(inner, r, fc, 0.0)) > 0.0:
-            a = smaller8(1.5707963267948966, larger8(-1.5707963267948966, (1.5707963267948966 / width) * (r - middle)))
-            fc = fc * (0.5 - 0.5 * sine8(a))
-            slope = below8(r, reach, -0.7853981633974483 / width * sine8(1.5707963267948966 - larger8(a, 0.0 - a)), 0.0)
+            w = 1.5707963267948966 / width
+            a = smaller8(1.5707963267948966, larger8(-1.5707963267948966, w * (r - middle)))
+            switched = below8(inner, r, fc, 0.0)
+            fc = fc - switched * (0.5 + 0.5 * sine8(a))
+            slope = switched * (-0.5 * w) * sine8(1.5707963267948966 - larger8(a, 0.0 - a))
         store8(b, 13 * ROW + k, fc)
         store8(b, 14 * ROW + k, slope)
     own = load8(b, 7 * ROW)
@@ -44,15 +61,18 @@ def tersoff_eight(end, b, constants):
                 if k == j:
                     continue
                 x = ux * load8(b, 8 * ROW + k) + uy * load8(b, 9 * ROW + k) + uz * load8(b, 10 * ROW + k)
+                if not ALIKE:
+                    l3, h, d2 = load8(b, 41 * ROW + k), load8(b, 42 * ROW + k), load8(b, 43 * ROW + k)
+                    gamma, steep = load8(b, 44 * ROW + k), load8(b, 45 * ROW + k)
                 u = h - x
                 w = 1.0 / (u * u + d2)
-                g = g0 - (gamma * c2) * w
-                dg = (-2.0 * gamma * c2) * (u * w * w)
+                g = gamma + steep * (u * u * w)
+                dg = -2.0 * steep * (u * w) * (d2 * w)
                 fc, dfc = load8(b, 13 * ROW + k), load8(b, 14 * ROW + k)
-                if l3 != 0.0:
+                if longer:
                     t = l3 * (rj - load8(b, 12 * ROW + k))
                     a = t * t * t if cubic else t
-                    slope = (3.0 * l3) * (t * t) if cubic else all8(l3)
+                    slope = 3.0 * l3 * (t * t) if cubic else l3
                     ex = below8(a, -69.0776, 0.0, below8(69.0776, a, 1e30, exp8(a)))
                     dex = below8(0.0, ex, slope * ex, 0.0)
                     dfc = dfc * ex - fc * dex
@@ -65,14 +85,17 @@ def tersoff_eight(end, b, constants):
             store8(b, 15 * ROW + j, zeta)
             store8(b, 16 * ROW + j, zj)
         for j in range(start, stop, 8):
+            if not ALIKE:
+                ca, l1, cb, l2 = rows8(table, types, PLACES + j, 4)
+                nn, beta, _, _ = rows8(table, types, PLACES + j, 8)
             z = larger8(load8(b, 15 * ROW + j), 1e-290)
             y = nn * log8(larger8(beta * z, 1e-300))
             tn = exp8(smaller8(y, 50.0))
-            bond = exp8((-0.5 / nn) * below8(40.0, y, y, log8(tn + 1.0)))
+            bond = exp8(-0.5 / nn * below8(40.0, y, y, log8(tn + 1.0)))
             db = -0.5 * bond * below8(40.0, y, 1.0, tn / (tn + 1.0)) / z
             r, fc, dfc = load8(b, 12 * ROW + j), load8(b, 13 * ROW + j), load8(b, 14 * ROW + j)
-            fa = -cb * exp8(-l2 * r)
-            fr = below8(0.125 * j, own, ca * exp8(-l1 * r), 0.0)
+            fa = -1.0 * cb * exp8(-1.0 * l2 * r)
+            fr = below8(0.125 * j, own, ca * exp8(-1.0 * l1 * r), 0.0)
             energy = energy + (0.5 * fa * bond + fr) * fc
             w = 0.5 * fa * fc * db
             store8(b, 15 * ROW + j, w)
