@@ -29,29 +29,30 @@ def angular_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
         if function_of[ti] < 0:
             continue
         n = gather_near(i, first[i], last[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
-        rho = 0.0
+        rho, mx, my, mz, xx, yy, zz, xy, xz, yz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for k in range(n):
             p = math.sqrt(near[3, k]) * rdr
             m = min(int(p), end)
             t = min(p - m, 1.0)
-            row = offset[ti, types[k]] + m
+            row = np.uint64(offset[ti, types[k]] + m)
             rho += ((table[row, 0] * t + table[row, 1]) * t + table[row, 2]) * t + table[row, 3]
             u = ((table[row, 8] * t + table[row, 9]) * t + table[row, 10]) * t + table[row, 11]
             w = ((table[row, 12] * t + table[row, 13]) * t + table[row, 14]) * t + table[row, 15]
             dx, dy, dz = near[0, k], near[1, k], near[2, k]
-            shared[1, i] += u * dx
-            shared[2, i] += u * dy
-            shared[3, i] += u * dz
-            shared[4, i] += w * dx * dx
-            shared[5, i] += w * dy * dy
-            shared[6, i] += w * dz * dz
-            shared[7, i] += w * dx * dy
-            shared[8, i] += w * dx * dz
-            shared[9, i] += w * dy * dz
+            mx += u * dx
+            my += u * dy
+            mz += u * dz
+            xx += w * dx * dx
+            yy += w * dy * dy
+            zz += w * dz * dz
+            xy += w * dx * dy
+            xz += w * dx * dz
+            yz += w * dy * dz
+        shared[1, i], shared[2, i], shared[3, i] = mx, my, mz
+        shared[4, i], shared[5, i], shared[6, i], shared[7, i], shared[8, i], shared[9, i] = xx, yy, zz, xy, xz, yz
         energy, shared[0, i] = embedding(rho, functions, function_of[ti], constants)
-        trace = shared[4, i] + shared[5, i] + shared[6, i]
-        energy += 0.5 * (shared[1, i] ** 2 + shared[2, i] ** 2 + shared[3, i] ** 2 + shared[4, i] ** 2 + shared[5, i] ** 2
-                         + shared[6, i] ** 2) + shared[7, i] ** 2 + shared[8, i] ** 2 + shared[9, i] ** 2 - trace * trace / 6.0
+        trace = xx + yy + zz
+        energy += 0.5 * (mx * mx + my * my + mz * mz + xx * xx + yy * yy + zz * zz) + xy * xy + xz * xz + yz * yz - trace * trace / 6.0
         if not abs(energy) < math.inf:
             if bad[0] == 0.0:
                 bad[0], bad[1], bad[2] = 1.0, i, energy
@@ -64,15 +65,17 @@ def angular_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
     for i in range(lo, hi):
         ti = type_of[i]
         n = gather_near(i, first[i], middle[i], np.int64(0), x, type_of, neighbors, codes, shifts, cut2, near, types, slots)
+        slope_of_i, m0, m1, m2 = shared[0, i], shared[1, i], shared[2, i], shared[3, i]
+        q0, q1, q2, q3, q4, q5 = shared[4, i], shared[5, i], shared[6, i], shared[7, i], shared[8, i], shared[9, i]
         for k in range(n):
-            j = slots[k]
+            j = np.uint32(slots[k])
             dx, dy, dz = near[0, k], near[1, k], near[2, k]
             r = math.sqrt(near[3, k])
             p = r * rdr
             m = min(int(p), end)
             t = min(p - m, 1.0)
-            row = offset[ti, types[k]] + m
-            back = offset[types[k], ti] + m
+            row = np.uint64(offset[ti, types[k]] + m)
+            back = np.uint64(offset[types[k], ti] + m)
             slope_i = ((3.0 * table[row, 0] * t + 2.0 * table[row, 1]) * t + table[row, 2]) * rdr
             slope_j = ((3.0 * table[back, 0] * t + 2.0 * table[back, 1]) * t + table[back, 2]) * rdr
             z = ((table[row, 4] * t + table[row, 5]) * t + table[row, 6]) * t + table[row, 7]
@@ -82,11 +85,11 @@ def angular_forces(x, f, q, type_of, first, middle, last, neighbors, codes, shif
             w = ((table[row, 12] * t + table[row, 13]) * t + table[row, 14]) * t + table[row, 15]
             slope_w = ((3.0 * table[row, 12] * t + 2.0 * table[row, 13]) * t + table[row, 14]) * rdr
             phi = z / r
-            mx, my, mz = shared[1, i] - shared[1, j], shared[2, i] - shared[2, j], shared[3, i] - shared[3, j]
-            xx, yy, zz = shared[4, i] + shared[4, j], shared[5, i] + shared[5, j], shared[6, i] + shared[6, j]
-            xy, xz, yz = shared[7, i] + shared[7, j], shared[8, i] + shared[8, j], shared[9, i] + shared[9, j]
+            mx, my, mz = m0 - shared[1, j], m1 - shared[2, j], m2 - shared[3, j]
+            xx, yy, zz = q0 + shared[4, j], q1 + shared[5, j], q2 + shared[6, j]
+            xy, xz, yz = q3 + shared[7, j], q4 + shared[8, j], q5 + shared[9, j]
             lx, ly, lz = xx * dx + xy * dy + xz * dz, xy * dx + yy * dy + yz * dz, xz * dx + yz * dy + zz * dz
-            along = (slope_z - phi) / r + shared[0, i] * slope_i + shared[0, j] * slope_j
+            along = (slope_z - phi) / r + slope_of_i * slope_i + shared[0, j] * slope_j
             along += slope_u * (mx * dx + my * dy + mz * dz) + slope_w * (lx * dx + ly * dy + lz * dz)
             along = along / r - (xx + yy + zz) * (2.0 * w + slope_w * r) / 3.0
             grad[0, k] = along * dx + u * mx + 2.0 * w * lx
