@@ -111,10 +111,11 @@ def one_by_one(atoms: Atoms, name: str, monkeypatch, file: str, **options) -> tu
 
 
 @pytest.mark.parametrize(("name", "settings", "numbers"), [
-    ("sw", "", None), ("tersoff", "", {}), ("tersoff", "shift 0.2", {}), ("tersoff", "", {"m": "1", "lambda3": "0.9", "D": "0.4"}),
+    ("sw", "", None), ("edip", "", None), ("edip/multi", "", None),
+    ("tersoff", "", {}), ("tersoff", "shift 0.2", {}), ("tersoff", "", {"m": "1", "lambda3": "0.9", "D": "0.4"}),
     ("tersoff", "", {"lambda3": "0", "n": "22.9"})])
 def test_like_one_by_one(name, settings, numbers, tmp_path, monkeypatch):
-    file = str(POTENTIALS / "Si.sw") if numbers is None else changed("Si.tersoff", tmp_path, **numbers)
+    file = str(POTENTIALS / f"Si.{name.partition('/')[0]}") if numbers is None else changed("Si.tersoff", tmp_path, **numbers)
     atoms = uneven(18)
     term, f = one_by_one(atoms, name, monkeypatch, file, settings=settings)
     assert (term.last - term.first).max() > 12 and term.style.alike(term.tables)
@@ -178,7 +179,7 @@ run 5"""
     assert lmp.get_thermo("pe") == pytest.approx(energy, rel=1e-11) and lmp.get_thermo("press") == pytest.approx(pressure, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", ["sw", "tersoff"])
+@pytest.mark.parametrize("name", ["sw", "edip", "tersoff"])
 def test_coinciding_atoms_are_named(name):
     atoms = uneven(4)
     atoms.positions[40] = atoms.positions[77]

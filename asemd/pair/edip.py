@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 
 from asemd.errors import InputError
+from asemd.pair.edip_eight import edip_eight
 from asemd.pair.edip_multi import EDIP, HELPERS, edip
 from asemd.style import register
 
@@ -28,5 +29,6 @@ class OneElement(EDIP):
         return twin
 
 
-register(OneElement("edip", site=edip, helpers=HELPERS, rooms=9, converts=False, example="Si.edip Si", doc=__doc__,
-                    see="J. F. Justo, M. Z. Bazant, E. Kaxiras, V. V. Bulatov, S. Yip, Phys. Rev. B 58, 2539 (1998)"))
+register(OneElement("edip", site=edip, eight=edip_eight, eight_rows=17, helpers=HELPERS, rooms=9, converts=False,
+                    example="Si.edip Si", doc=__doc__, see="J. F. Justo, M. Z. Bazant, E. Kaxiras, V. V. Bulatov, S. Yip, "
+                    "Phys. Rev. B 58, 2539 (1998)"))

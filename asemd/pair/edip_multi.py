@@ -12,6 +12,7 @@ import math
 from types import MappingProxyType
 
 from asemd.kernels.manybody import add_bend, add_stretch, directions
+from asemd.pair.edip_eight import edip_eight
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -136,11 +137,15 @@ class EDIP(TripleStyle):
     energies = ("A", "lambda")
     positive = "A B a c alpha beta eta gamma lambda mu rho sigma"
 
+    def fits(self, tables):
+        rows = tables.arrays[0][1:, 1:, 1:].reshape(-1, len(COLUMNS))
+        return not self.kernel_constants["TABLED"] and bool((rows == rows[0]).all())
+
     def check_entry(self, p, error):
         super().check_entry(p, error)
         if p["c"] >= p["a"]:
             raise error(f"cutoffC, {p['c']:g}, must be less than cutoffA, {p['a']:g}")
 
 
-register(EDIP("edip/multi", site=edip, helpers=HELPERS, rooms=9, converts=False, example="SiC.edip Si",
+register(EDIP("edip/multi", site=edip, eight=edip_eight, eight_rows=17, helpers=HELPERS, rooms=9, converts=False, example="SiC.edip Si",
               see="M. Z. Bazant, E. Kaxiras, J. F. Justo, Phys. Rev. B 56, 8542 (1997); C. Jiang et al., ibid. 86, 144118 (2012)"))
