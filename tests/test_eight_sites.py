@@ -123,11 +123,12 @@ def test_like_one_by_one(name, settings, numbers, tmp_path, monkeypatch):
     assert not f[lone].any()
 
 
-@pytest.mark.parametrize(("file", "symbols"), [("SiC.tersoff", "Si C"), ("GaN.tersoff", "Ga N"), ("SiC_Erhart-Albe.tersoff", "Si C")])
+@pytest.mark.parametrize(("file", "symbols"), [("SiC.tersoff", "Si C"), ("GaN.tersoff", "Ga N"), ("SiC_Erhart-Albe.tersoff", "Si C"),
+                                               ("GaN.sw", "Ga N"), ("CdTe.sw", "Cd Te")])
 def test_several_elements(file, symbols, monkeypatch):
     atoms = uneven(9)
     atoms.symbols = np.random.default_rng(2).choice(symbols.split(), len(atoms))
-    term, _ = one_by_one(atoms, "tersoff", monkeypatch, str(POTENTIALS / file))
+    term, _ = one_by_one(atoms, file.partition(".")[2], monkeypatch, str(POTENTIALS / file))
     assert not term.style.alike(term.tables)
 
 

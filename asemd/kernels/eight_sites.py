@@ -6,7 +6,8 @@ begins with how many neighbours of each site are there with a pair that counts a
 with fewer neighbours than another has some that are far away, so that formulas need no conditions for them.
 
 Constants: ENERGY, UNIFORM (one cutoff for all pairs of types), ALIKE (all atoms have the same coefficients). Unless ALIKE, `types` has
-eights too, after its first PLACES numbers, which are the kernel's own: PLACE times the number of the pair of types.
+eights too, after its first PLACES numbers: PLACE times the number of the pair of types. Of the first ones the style may use the eight from
+FREE on.
 """
 from __future__ import annotations
 
@@ -21,7 +22,8 @@ from asemd.kernels.vectors8 import load8, store8, sum8
 
 ENERGY = UNIFORM = ALIKE = False
 ROW = 0
-PLACES = PLACE = 16
+PLACE = FREE = 16
+PLACES = 24
 EIGHT = 8
 place = np.uint64
 site = None
@@ -144,7 +146,7 @@ def kernel(style, *, energy: bool, uniform: bool, alike: bool, width: int):
     b.line("place = np.uint64")
     b.line(f"from asemd.kernels.vectors8 import {', '.join(VECTORS.split())}")
     b.line(f"from asemd.kernels.functions8 import {', '.join(functions8.NAMES)}")
-    constants = dict(ENERGY=energy, UNIFORM=uniform, ALIKE=alike, EIGHT=EIGHT, ROW=EIGHT * width, PLACES=PLACES, PLACE=PLACE)
+    constants = dict(ENERGY=energy, UNIFORM=uniform, ALIKE=alike, EIGHT=EIGHT, ROW=EIGHT * width, PLACES=PLACES, PLACE=PLACE, FREE=FREE)
     for name, value in constants.items():
         b.constant(name, value)
     for f in functions8.FUNCTIONS:

@@ -14,10 +14,10 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.eight_sites import ROW
+from asemd.kernels.eight_sites import ALIKE, FREE, PLACE, PLACES, ROW
 from asemd.kernels.functions8 import exp8
 from asemd.kernels.manybody import add_bend, add_stretch, directions
-from asemd.kernels.vectors8 import all8, below8, inverse_root8, load8, smaller8, store8
+from asemd.kernels.vectors8 import all8, below8, inverse_root8, load8, rows8, smaller8, store8
 from asemd.manybody import element_of
 from asemd.pairstyle import PairTables
 from asemd.style import register
@@ -68,7 +68,7 @@ def neighbours(n, m, ti, near, types, room, grad, two, shares):
 
 
 def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
-    two, three = arrays
+    two, three = arrays[0], arrays[1]
     energy = neighbours(n, m, ti, near, types, room, grad, two, shares)
     for j in range(n - 1):
         for k in range(j + 1, n):
@@ -82,13 +82,18 @@ def sw(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
 
 
 def sw_eight(end, b, types, arrays, constants):
-    """The same for one kind of atoms with p = 4 and q = 0, on eight sites at a time (`asemd.kernels.eight_sites`). Rows of the work space:
-    8 to 10 unit vectors, 11 inverse distances, 12 the exponential of triples, 13 its logarithm's slope."""
-    sigma, cut, width, pairs, flat = constants[1], constants[2], constants[3], constants[4], constants[5]
-    triples, c0 = constants[6], constants[7]
+    """The same for p = 4 and q = 0, eight sites at a time (`asemd.kernels.eight_sites`), with the tables of `for_eights`. Rows of the work
+    space: 8 to 10 unit vectors, 11 inverse distances, 12 the exponential of triples, 13 its logarithm's slope."""
+    pair_table, triple_table, kinds = arrays[2], arrays[3], arrays[0].shape[0]
+    if ALIKE:
+        sigma, cut, width, pairs = pair_table[0], pair_table[1], pair_table[2], pair_table[3]
+        flat, triples, c0 = pair_table[4], pair_table[5], pair_table[6]
     own = load8(b, 7 * ROW)
     energy = all8(0.0)
     for k in range(0, end, 8):
+        if not ALIKE:
+            sigma, cut, width, pairs = rows8(pair_table, types, PLACES + k, 0)
+            flat, _, _, _ = rows8(pair_table, types, PLACES + k, 4)
         r2 = load8(b, 3 * ROW + k)
         ir = inverse_root8(r2)
         ux, uy, uz = load8(b, k) * ir, load8(b, ROW + k) * ir, load8(b, 2 * ROW + k) * ir
@@ -111,13 +116,16 @@ def sw_eight(end, b, types, arrays, constants):
         store8(b, 6 * ROW + k, d * uz)
     for j in range(0, end, 8):
         ux, uy, uz = load8(b, 8 * ROW + j), load8(b, 9 * ROW + j), load8(b, 10 * ROW + j)
-        ij, gj, h = load8(b, 11 * ROW + j), load8(b, 13 * ROW + j), triples * load8(b, 12 * ROW + j)
+        ij, gj, h = load8(b, 11 * ROW + j), load8(b, 13 * ROW + j), load8(b, 12 * ROW + j)
         sx, sy, sz = load8(b, 4 * ROW + j), load8(b, 5 * ROW + j), load8(b, 6 * ROW + j)
         for k in range(j + 8, end, 8):
             vx, vy, vz = load8(b, 8 * ROW + k), load8(b, 9 * ROW + k), load8(b, 10 * ROW + k)
             c = ux * vx + uy * vy + uz * vz
+            if not ALIKE:
+                store8(types, FREE, load8(types, PLACES + j) * all8(kinds) + load8(types, PLACES + k))
+                triples, c0, _, _ = rows8(triple_table, types, FREE, 0)
             delta = c - c0
-            w = h * load8(b, 12 * ROW + k) * delta
+            w = triples * h * load8(b, 12 * ROW + k) * delta
             e = w * delta
             energy = energy + e
             w = w + w
@@ -143,7 +151,12 @@ class SW(TripleStyle):
     names, positive = NAMES, "epsilon sigma a lambda gamma A B p q tol"
 
     def fits(self, tables):
-        return len(tables.constants) == 8
+        return len(tables.arrays) > 2
+
+    def alike(self, tables):
+        table = tables.arrays[2].reshape(-1, PLACE)
+        return bool((tables.rows[0][1:, 1:] > 0.0).all() and (table == table[0]).all()
+                    and (tables.arrays[1][1:, 1:, 1:] == tables.arrays[1][1, 1, 1]).all())
 
     def parse_settings(self, words):
         what = f"pair_style {self.name}"
@@ -177,15 +190,30 @@ class SW(TripleStyle):
                     if element[k] is not None and settings["threebody"] == "on":
                         q = c["data"][element[i], element[j], element[k]]
                         three[i, j, k] = [q["lambda"] * q["epsilon"] * unit, q["costheta"]]
-        constants = self.numbers(settings)
-        pair, triple = two[1:, 1:].reshape(-1, 8), three[1:, 1:, 1:].reshape(-1, 2)
-        if (pair == pair[0]).all() and (triple == triple[0]).all() and (pair[0, 5], pair[0, 6]) == (4.0, 0.0) and len(constants) == 1:
-            constants += [*pair[0, :3], pair[0, 4], pair[0, 7], *triple[0]]
-        return PairTables(rows, np.array(constants), (two, three))
+        more = for_eights(rows[0] > 0.0, two, three) if self.eight else ()
+        return PairTables(rows, np.array(self.numbers(settings)), (two, three, *more))
 
     def numbers(self, settings):
         """Constants of `bend`."""
         return [0.0]
+
+
+def for_eights(served, two, three) -> tuple[np.ndarray, ...]:
+    """Tables of `sw_eight`, if p = 4 and q = 0 in all pairs that are `served`: PLACE numbers for each pair of types, the last ones of the
+    triple with this neighbour twice, and as many for each triple, with number kinds (kinds i + j) + kinds i + k."""
+    pairs = two[served]
+    if len(pairs) == 0 or (pairs[:, 5] != 4.0).any() or (pairs[:, 6] != 0.0).any():
+        return ()
+    kinds = len(two)
+    first = tuple(np.argwhere(served)[0])
+    of_pairs = np.zeros((kinds, kinds, PLACE))
+    same = three[:, np.arange(kinds), np.arange(kinds)]
+    of_pairs[..., :5], of_pairs[..., 5:7] = two[..., [0, 1, 2, 4, 7]], same
+    of_pairs[~served] = of_pairs[first]      # what a far neighbour has, and types that never meet
+    of_triples = np.zeros((kinds * kinds * (kinds + 1), PLACE))
+    i, j, k = np.indices(three.shape[:3])
+    of_triples[kinds * (kinds * i + j) + kinds * i + k, :2] = three
+    return of_pairs.ravel(), of_triples.ravel()
 
 
 def ends_at(p) -> float:
