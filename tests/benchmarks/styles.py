@@ -30,7 +30,7 @@ thermo 1000
 """
 SIGNS = "variable sign atom {:g}*(2*(id%2)-1)\nset group all charge v_sign"
 SOLVER = "kspace_style {} 1e-3\nkspace_modify compute no gewald 0.3"
-MSM = "kspace_style msm 1e-3\nkspace_modify compute no cutoff/adjust no"
+MSM = "kspace_style msm 1e-3\nkspace_modify compute no cutoff/adjust no pressure/scalar no"
 LJ = dict(units="lj", atoms="atomic", spacing=1.1, cells=14, jitter=0.1, setup="mass * 1", solver="", dt=1e-9)
 METAL = dict(LJ, units="metal", spacing=2.5, setup="mass * 28")
 CHARGED = dict(LJ, atoms="charge", setup="mass * 1\n" + SIGNS.format(0.01))
@@ -72,7 +72,7 @@ def scene(name: str) -> str | None:
     if name in FILES:
         settings, coeff = {"airebo": "3.0"}.get(name, ""), potentials() + FILES[name].format(potentials())
         if name == "eim":
-            coeff = f"Na Cl {potentials()}ffield.eim Na"
+            coeff = f"Na {potentials()}ffield.eim Na"
         options = dict(METAL, spacing=SPACING.get(name, 2.5), cells=8 if name == "snap" else 14, jitter=0.05 if "rebo" in name else 0.1)
     elif name in SPECIAL:
         settings, coeff, options = SPECIAL[name]
