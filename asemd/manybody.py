@@ -59,7 +59,7 @@ class ManyBody(PairStyle, ABC):
         One of the three, see above; `helpers` are functions that `site` or `forces` calls.
     eight : callable, optional
         ``eight(end, b, types, arrays, constants)``, the same energy for tables that `fits` agrees to, of eight sites at once with
-        `eight_rows` rows of work space: see `asemd.kernels.eight_sites`.
+        `eight_rows` rows of work space; `eight_helpers` are functions that it calls: see `asemd.kernels.eight_sites`.
     rooms, shares : int
         Rows of work space by neighbour of a thread, and by slot for all threads.
     elements : bool
@@ -78,14 +78,14 @@ class ManyBody(PairStyle, ABC):
     whole = False                  # one kernel, with energies, for all steps: where the compiler takes long
 
     def __init__(self, name: str, *, site: Callable | None = None, forces: Callable | None = None, eight: Callable | None = None,
-                 eight_rows: int = 0, parts=(), helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True, converts: bool = True,
-                 settings="", coeff="", example="", **options):
+                 eight_rows: int = 0, eight_helpers=(), parts=(), helpers=(), rooms: int = 1, shares: int = 0, elements: bool = True,
+                 converts: bool = True, settings="", coeff="", example="", **options):
         coeff, notes = ("file element", {"file": "path", "element": "word"}) if elements else (coeff, {})
         options["units"] = {**notes, **options.get("units", {})}
         options.setdefault("doc", inspect.getdoc(inspect.getmodule(site or forces or parts[0][0])) or "")
         super().__init__(name, parts, settings=settings, coeff=coeff, example=example, **options)
         self.site, self.forces, self.helpers = site, forces, tuple(helpers)
-        self.eight, self.eight_rows = eight, eight_rows
+        self.eight, self.eight_rows, self.eight_helpers = eight, eight_rows, tuple(eight_helpers)
         self.reads = name.partition("/")[0]      # the word for it in LAMMPS's log
         self.rooms, self.shares, self.elements, self.converts = rooms, shares, elements, converts
 

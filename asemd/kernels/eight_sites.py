@@ -153,6 +153,8 @@ def kernel(style, *, energy: bool, uniform: bool, alike: bool, width: int):
         b.text(plain_source(f), OPTIONS)
     for f in (gather_lane, fill, scatter_lane, add_virial):
         b.function(f, fast=True)
+    for f in style.eight_helpers:
+        b.function(f, fast=True, inline=True)
     b.function(style.eight, "site", fast=True)
     b.function(site_forces, fast=True)
     return b.build().site_forces

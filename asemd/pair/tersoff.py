@@ -19,7 +19,7 @@ from asemd import words as read
 from asemd.errors import InputError
 from asemd.kernels.eight_sites import PLACE
 from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
-from asemd.pair.tersoff_eight import tersoff_eight
+from asemd.pair.tersoff_eight import taper8, tersoff_eight
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -160,25 +160,31 @@ def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
-def by_pairs(three):
-    """What `tersoff_eight` needs of the table of triples: its coefficients by pairs of types, and m. None where a triple's depend on its
-    second atom, or numbers are not positive whose logarithm or inverse is taken."""
+def for_eights(three):
+    """What `tersoff_eight` needs of the table of triples, or None where it cannot: m differs, or a number is not positive whose logarithm
+    or inverse is taken. PLACE numbers for each pair of types, those of the triple with this neighbour twice; as many for each triple, with
+    number kinds (kinds i + j) + kinds i + k, or none at all if what a triple takes does not depend on j; and m."""
+    kinds = len(three)
     served = np.flatnonzero(three[..., 0].any(axis=(1, 2)))
     rows = three[np.ix_(served, served, served)]
-    pairs = np.array([[rows[i, k, k] for k in range(len(served))] for i in range(len(served))])
-    of_triples = [COLUMNS.index(name) for name in "reach inner R D lambda3 m gamma c d h".split()]
-    p = dict(zip(COLUMNS, np.moveaxis(pairs, -1, 0)))
-    if (rows[..., of_triples] != pairs[:, None, :, of_triples]).any() or np.ptp(p["m"]) != 0.0:
+    n = np.arange(len(served))
+    twice = rows[:, n, n]
+    m, positive = rows[..., COLUMNS.index("m")], [COLUMNS.index(name) for name in ("B", "d", "beta")]
+    if len(served) == 0 or np.ptp(m) != 0.0 or twice[..., positive].min() <= 0.0 or rows[..., COLUMNS.index("d")].min() <= 0.0:
         return None
-    if min(p["B"].min(), p["d"].min(), p["beta"].min()) <= 0.0:
-        return None
-    steep = p["gamma"] * (p["c"] / p["d"])**2
+    p = dict(zip(COLUMNS, np.moveaxis(rows, -1, 0)))
     columns = [p[name] for name in "reach inner R D A lambda1 B lambda2 n beta lambda3 h".split()]
-    numbers = np.stack([*columns, p["d"]**2, p["gamma"], steep, np.zeros_like(steep)], axis=-1)
-    table = np.empty((*three.shape[:2], PLACE))
-    table[...] = numbers[0, 0]      # what a far neighbour has, and types that never meet
-    table[np.ix_(served, served)] = numbers
-    return table.ravel(), p["m"][0, 0]
+    numbers = np.stack([*columns, p["d"]**2, p["gamma"], p["gamma"] * (p["c"] / p["d"])**2, np.zeros_like(m)], axis=-1)
+    of_pairs, of_triples = np.empty((kinds, kinds, PLACE)), np.zeros((0, PLACE))
+    of_pairs[...] = numbers[0, 0, 0]      # what a far neighbour has, and types that never meet
+    of_pairs[np.ix_(served, served)] = numbers[:, n, n]
+    of_k = [0, 1, 2, 3, *range(10, PLACE)]
+    if (numbers[..., of_k] != numbers[:, n, n][:, None][..., of_k]).any():
+        of_triples = np.empty((kinds * kinds * (kinds + 1), PLACE))
+        of_triples[...] = numbers[0, 0, 0]
+        i, j, k = np.meshgrid(served, served, served, indexing="ij")
+        of_triples[kinds * (kinds * i + j) + kinds * i + k] = numbers
+    return of_pairs.ravel(), of_triples.ravel(), m.flat[0]
 
 
 class Tersoff(TripleStyle):
@@ -222,16 +228,16 @@ class Tersoff(TripleStyle):
 
     def alike(self, tables):
         rows = tables.arrays[1].reshape(-1, PLACE)
-        return bool((tables.rows[0][1:, 1:] > 0.0).all() and (rows == rows[0]).all())
+        return bool((tables.rows[0][1:, 1:] > 0.0).all() and (rows == rows[0]).all()) and len(tables.arrays[2]) == 0
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, shift)
-        found = by_pairs(tables.arrays[0]) if self.eight else None
+        found = for_eights(tables.arrays[0]) if self.eight else None
         if found is None:
             return tables
-        table, power = found
-        constants = np.array([settings["shift"], power, np.abs(table[10::PLACE]).max()])
-        return replace(tables, arrays=(*tables.arrays, table), constants=constants)
+        of_pairs, of_triples, power = found
+        constants = np.array([settings["shift"], power, max(np.abs(t[10::PLACE]).max(initial=0.0) for t in (of_pairs, of_triples))])
+        return replace(tables, arrays=(*tables.arrays, of_pairs, of_triples), constants=constants)
 
     def shortened(self, settings):
         return settings["shift"]
@@ -241,6 +247,6 @@ class Tersoff(TripleStyle):
 
 
 OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)
-register(Tersoff("tersoff", site=tersoff, eight=tersoff_eight, eight_rows=46,
+register(Tersoff("tersoff", site=tersoff, eight=tersoff_eight, eight_rows=46, eight_helpers=(taper8,),
                  helpers=(taper, repulsion, attraction, angular, order, longer), example="Si.tersoff Si",
                  see="J. Tersoff, Phys. Rev. B 37, 6991 (1988); 39, 5566 (1989)", **OPTIONS))

@@ -1,9 +1,22 @@
 """Tersoff's potential on eight sites at a time; formulas as in `asemd.pair.tersoff`."""
 from __future__ import annotations
 
-from asemd.kernels.eight_sites import ALIKE, PLACES, ROW
+from asemd.kernels.eight_sites import ALIKE, FREE, PLACES, ROW
 from asemd.kernels.functions8 import exp8, log8, sine8
 from asemd.kernels.vectors8 import all8, below8, inverse_root8, larger8, load8, rows8, smaller8, store8, sum8
+
+
+def taper8(r, reach, inner, middle, width):
+    """Cutoff function and its derivative."""
+    f = below8(r, reach, all8(1.0), 0.0)
+    slope = all8(0.0)
+    if sum8(below8(inner, r, f, 0.0)) > 0.0:
+        w = 1.5707963267948966 / width
+        a = smaller8(1.5707963267948966, larger8(-1.5707963267948966, w * (r - middle)))
+        switched = below8(inner, r, f, 0.0)
+        f = f - switched * (0.5 + 0.5 * sine8(a))
+        slope = switched * (-0.5 * w) * sine8(1.5707963267948966 - larger8(a, 0.0 - a))
+    return f, slope
 
 
 def tersoff_eight(end, b, types, arrays, constants):
@@ -11,9 +24,9 @@ def tersoff_eight(end, b, types, arrays, constants):
     zeta, 16 its slope by r_ij; from 17 on for each of eight neighbours j what k does to zeta: by the cosine, by r_ik, and the cosine; from
     41 on coefficients of k: lambda3, h, d^2, gamma and gamma c^2 / d^2.
 
-    ``arrays[1]``: coefficients of a pair of types as `asemd.pair.tersoff.by_pairs` has them.
+    ``arrays[1:]``: see `asemd.pair.tersoff.for_eights`.
     """
-    table = arrays[1]
+    table, of_triples, kinds = arrays[1], arrays[2], arrays[0].shape[0]
     cubic = constants[1] == 3.0
     if ALIKE:
         reach, inner, middle, width = all8(table[0]), all8(table[1]), all8(table[2]), all8(table[3])
@@ -38,14 +51,7 @@ def tersoff_eight(end, b, types, arrays, constants):
             store8(b, (8 + d) * ROW + k, load8(b, d * ROW + k) * ir)
         store8(b, 11 * ROW + k, ir)
         store8(b, 12 * ROW + k, r)
-        fc = below8(r, reach, all8(1.0), 0.0)
-        slope = all8(0.0)
-        if sum8(below8(inner, r, fc, 0.0)) > 0.0:
-            w = 1.5707963267948966 / width
-            a = smaller8(1.5707963267948966, larger8(-1.5707963267948966, w * (r - middle)))
-            switched = below8(inner, r, fc, 0.0)
-            fc = fc - switched * (0.5 + 0.5 * sine8(a))
-            slope = switched * (-0.5 * w) * sine8(1.5707963267948966 - larger8(a, 0.0 - a))
+        fc, slope = taper8(r, reach, inner, middle, width)
         store8(b, 13 * ROW + k, fc)
         store8(b, 14 * ROW + k, slope)
     own = load8(b, 7 * ROW)
@@ -61,14 +67,21 @@ def tersoff_eight(end, b, types, arrays, constants):
                 if k == j:
                     continue
                 x = ux * load8(b, 8 * ROW + k) + uy * load8(b, 9 * ROW + k) + uz * load8(b, 10 * ROW + k)
+                fc, dfc = load8(b, 13 * ROW + k), load8(b, 14 * ROW + k)
                 if not ALIKE:
-                    l3, h, d2 = load8(b, 41 * ROW + k), load8(b, 42 * ROW + k), load8(b, 43 * ROW + k)
-                    gamma, steep = load8(b, 44 * ROW + k), load8(b, 45 * ROW + k)
+                    if of_triples.shape[0] > 0:
+                        store8(types, FREE, load8(types, PLACES + j) * all8(kinds) + load8(types, PLACES + k))
+                        reach, inner, middle, width = rows8(of_triples, types, FREE, 0)
+                        _, _, l3, h = rows8(of_triples, types, FREE, 8)
+                        d2, gamma, steep, _ = rows8(of_triples, types, FREE, 12)
+                        fc, dfc = taper8(load8(b, 12 * ROW + k), reach, inner, middle, width)
+                    else:
+                        l3, h, d2 = load8(b, 41 * ROW + k), load8(b, 42 * ROW + k), load8(b, 43 * ROW + k)
+                        gamma, steep = load8(b, 44 * ROW + k), load8(b, 45 * ROW + k)
                 u = h - x
                 w = 1.0 / (u * u + d2)
                 g = gamma + steep * (u * u * w)
                 dg = -2.0 * steep * (u * w) * (d2 * w)
-                fc, dfc = load8(b, 13 * ROW + k), load8(b, 14 * ROW + k)
                 if longer:
                     t = l3 * (rj - load8(b, 12 * ROW + k))
                     a = t * t * t if cubic else t
