@@ -214,7 +214,7 @@ def _term(e: Engine, t) -> Item:
         blocks = "tables by pair of types" if t.varying else "the same tables for all types"
         return Item(f"pair {style.name}", f"cluster kernel, densities first, then forces, double precision, {blocks}{times}", "pair_style")
     if isinstance(t, ManyBodyTerm):
-        how = "rows of all neighbours of each atom" + ", eight at a time" * t.eights
+        how = "rows of all neighbours of each atom" + ", eight atoms at a time" * t.eights
         return Item(f"pair {style.name}", f"{how}, double precision{times}", "pair_style")
     if not isinstance(t, PairListTerm):
         what = "by atom: a constant of the energy, no forces" if isinstance(t, OwnTerm) else f"of {style.name}'s own, double precision"
