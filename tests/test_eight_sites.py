@@ -113,9 +113,10 @@ def one_by_one(atoms: Atoms, name: str, monkeypatch, file: str, **options) -> tu
 @pytest.mark.parametrize(("name", "settings", "numbers"), [
     ("sw", "", None), ("edip", "", None), ("edip/multi", "", None),
     ("tersoff", "", {}), ("tersoff", "shift 0.2", {}), ("tersoff", "", {"m": "1", "lambda3": "0.9", "D": "0.4"}),
-    ("tersoff", "", {"lambda3": "0", "n": "22.9"})])
+    ("tersoff", "", {"lambda3": "0", "n": "22.9"}), ("tersoff/mod", "", None), ("tersoff/mod/c", "shift -0.05", None)])
 def test_like_one_by_one(name, settings, numbers, tmp_path, monkeypatch):
-    file = str(POTENTIALS / f"Si.{name.partition('/')[0]}") if numbers is None else changed("Si.tersoff", tmp_path, **numbers)
+    given = {"edip/multi": "edip", "tersoff/mod": "tersoff.mod", "tersoff/mod/c": "tersoff.modc"}.get(name, name)
+    file = str(POTENTIALS / f"Si.{given}") if numbers is None else changed("Si.tersoff", tmp_path, **numbers)
     atoms = uneven(18)
     term, f = one_by_one(atoms, name, monkeypatch, file, settings=settings)
     assert (term.last - term.first).max() > 12 and term.style.alike(term.tables)
@@ -125,11 +126,12 @@ def test_like_one_by_one(name, settings, numbers, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(("file", "symbols"), [
     ("SiC.tersoff", "Si C"), ("GaN.tersoff", "Ga N"), ("SiC_Erhart-Albe.tersoff", "Si C"), ("GaN.sw", "Ga N"), ("CdTe.sw", "Cd Te"),
+    ("SiC.tersoff.zbl", "Si C"), ("SiC.gw", "Si C"), ("SiC.gw.zbl", "Si C"),
     ("BNC.tersoff", "B N C"), ("SiC_1989.tersoff", "Si C")])      # the last two depend on all three atoms of a triple
 def test_several_elements(file, symbols, monkeypatch):
     atoms = uneven(9)
     atoms.symbols = np.random.default_rng(2).choice(symbols.split(), len(atoms))
-    term, _ = one_by_one(atoms, name := file.partition(".")[2], monkeypatch, str(POTENTIALS / file))
+    term, _ = one_by_one(atoms, name := file.partition(".")[2].replace(".", "/"), monkeypatch, str(POTENTIALS / file))
     assert not term.style.alike(term.tables)
     assert name == "sw" or (len(term.tables.arrays[2]) > 0) == (file in ("BNC.tersoff", "SiC_1989.tersoff"))
 

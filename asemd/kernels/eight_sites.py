@@ -7,7 +7,7 @@ with fewer neighbours than another has some that are far away, so that formulas 
 
 Constants: ENERGY, UNIFORM (one cutoff for all pairs of types), ALIKE (all atoms have the same coefficients). Unless ALIKE, `types` has
 eights too, after its first PLACES numbers: PLACE times the number of the pair of types. Of the first ones the style may use the eight from
-FREE on.
+FREE on. Styles call `coefficients8` for what stands in such a table.
 """
 from __future__ import annotations
 
@@ -18,16 +18,23 @@ import numpy as np
 from asemd.kernels import functions8
 from asemd.kernels.generate import Builder, plain_source
 from asemd.kernels.vector_math import OPTIONS
-from asemd.kernels.vectors8 import load8, store8, sum8
+from asemd.kernels.vectors8 import all8, load8, rows8, store8, sum8
 
 ENERGY = UNIFORM = ALIKE = False
 ROW = 0
-PLACE = FREE = 16
-PLACES = 24
+FREE = 16
+PLACE = PLACES = 24
 EIGHT = 8
 place = np.uint64
 site = None
 VECTORS = "all8 below8 inverse_root8 larger8 load8 madd8 rows8 smaller8 store8 sum8"
+
+
+def coefficients8(table, types, at, first):
+    """Four coefficients, from the `first` on, of the neighbours whose places in the table are in ``types[at:]``."""
+    if ALIKE:
+        return all8(table[first]), all8(table[first + 1]), all8(table[first + 2]), all8(table[first + 3])
+    return rows8(table, types, at, first)
 
 
 def gather_lane(i, begin, end, n, lane, x, type_of, neighbors, codes, shifts, cut2, b, types, slots):
@@ -153,7 +160,7 @@ def kernel(style, *, energy: bool, uniform: bool, alike: bool, width: int):
         b.text(plain_source(f), OPTIONS)
     for f in (gather_lane, fill, scatter_lane, add_virial):
         b.function(f, fast=True)
-    for f in style.eight_helpers:
+    for f in (coefficients8, *style.eight_helpers):
         b.function(f, fast=True, inline=True)
     b.function(style.eight, "site", fast=True)
     b.function(site_forces, fast=True)

@@ -278,15 +278,12 @@ else:
         first = m.place(at)
         return [builder.zext(builder.load(builder.gep(m.pointer(k), [builder.add(first, I64(n))])), I64) for n in range(LANES)]
 
-    @intrinsic(prefer_literal=True)
+    @intrinsic
     def rows8(typing, table, places, at, first):
         """Four vectors: the numbers from `first` on behind ``places[at:at + 8]`` in the flat `table`."""
-        if not isinstance(first, types.Literal):
-            return None
-
         def generate(ctx, builder, sig, args):
             m = _Memory(ctx, builder, sig, args)
-            rows = [builder.load(m.at(m.pointer(0), QUAD, j, I64(first.literal_value)), align=8) for j in _places(m, builder, 1, 2)]
+            rows = [builder.load(m.at(m.pointer(0), QUAD, j, m.place(3)), align=8) for j in _places(m, builder, 1, 2)]
             return ctx.make_tuple(builder, sig.return_type, _columns(builder, rows))
         return types.UniTuple(DOUBLES, 4)(table, places, at, first), generate
 

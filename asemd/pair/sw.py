@@ -14,7 +14,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.eight_sites import ALIKE, FREE, PLACE, PLACES, ROW
+from asemd.kernels.eight_sites import ALIKE, FREE, PLACE, PLACES, ROW, coefficients8
 from asemd.kernels.functions8 import exp8
 from asemd.kernels.manybody import add_bend, add_stretch, directions
 from asemd.kernels.vectors8 import all8, below8, inverse_root8, load8, rows8, smaller8, store8
@@ -85,14 +85,12 @@ def sw_eight(end, b, types, arrays, constants):
     """The same for p = 4 and q = 0, eight sites at a time (`asemd.kernels.eight_sites`), with the tables of `for_eights`. Rows of the work
     space: 8 to 10 unit vectors, 11 inverse distances, 12 the exponential of triples, 13 its logarithm's slope."""
     pair_table, triple_table, kinds = arrays[2], arrays[3], arrays[0].shape[0]
-    if ALIKE:
-        sigma, cut, width, pairs = pair_table[0], pair_table[1], pair_table[2], pair_table[3]
-        flat, triples, c0 = pair_table[4], pair_table[5], pair_table[6]
+    flat, triples, c0, _ = coefficients8(pair_table, types, PLACES, 4)
     own = load8(b, 7 * ROW)
     energy = all8(0.0)
     for k in range(0, end, 8):
+        sigma, cut, width, pairs = coefficients8(pair_table, types, PLACES + k, 0)
         if not ALIKE:
-            sigma, cut, width, pairs = rows8(pair_table, types, PLACES + k, 0)
             flat, _, _, _ = rows8(pair_table, types, PLACES + k, 4)
         r2 = load8(b, 3 * ROW + k)
         ir = inverse_root8(r2)

@@ -19,7 +19,7 @@ from asemd import words as read
 from asemd.errors import InputError
 from asemd.kernels.eight_sites import PLACE
 from asemd.kernels.manybody import PER_ATOM, add_stretch, directions, share_pair, share_triple
-from asemd.pair.tersoff_eight import taper8, tersoff_eight
+from asemd.pair.tersoff_eight import angular8, order8, pair8, taper8, tersoff_eight
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -160,31 +160,31 @@ def tersoff(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
-def for_eights(three):
-    """What `tersoff_eight` needs of the table of triples, or None where it cannot: m differs, or a number is not positive whose logarithm
-    or inverse is taken. PLACE numbers for each pair of types, those of the triple with this neighbour twice; as many for each triple, with
-    number kinds (kinds i + j) + kinds i + k, or none at all if what a triple takes does not depend on j; and m."""
+def for_eights(style, three):
+    """What `tersoff_eight` needs of the table of triples, or None where it cannot: m differs, a number is not positive whose logarithm is
+    taken, or one is infinite. PLACE numbers for each pair of types, those of the triple with this neighbour twice; as many for each triple,
+    with number kinds (kinds i + j) + kinds i + k, or none at all if what a triple takes does not depend on j; and m."""
     kinds = len(three)
     served = np.flatnonzero(three[..., 0].any(axis=(1, 2)))
     rows = three[np.ix_(served, served, served)]
+    p = dict(zip(style.columns, np.moveaxis(rows, -1, 0)))
     n = np.arange(len(served))
-    twice = rows[:, n, n]
-    m, positive = rows[..., COLUMNS.index("m")], [COLUMNS.index(name) for name in ("B", "d", "beta")]
-    if len(served) == 0 or np.ptp(m) != 0.0 or twice[..., positive].min() <= 0.0 or rows[..., COLUMNS.index("d")].min() <= 0.0:
+    if len(served) == 0 or np.ptp(p["m"]) != 0.0 or min(p[name][:, n, n].min() for name in style.logarithms) <= 0.0:
         return None
-    p = dict(zip(COLUMNS, np.moveaxis(rows, -1, 0)))
-    columns = [p[name] for name in "reach inner R D A lambda1 B lambda2 n beta lambda3 h".split()]
-    numbers = np.stack([*columns, p["d"]**2, p["gamma"], p["gamma"] * (p["c"] / p["d"])**2, np.zeros_like(m)], axis=-1)
+    numbers = np.stack(np.broadcast_arrays(*style.numbers_of_eights(p)), axis=-1)
+    if not np.isfinite(numbers).all():
+        return None
+    twice = numbers[:, n, n]
     of_pairs, of_triples = np.empty((kinds, kinds, PLACE)), np.zeros((0, PLACE))
     of_pairs[...] = numbers[0, 0, 0]      # what a far neighbour has, and types that never meet
-    of_pairs[np.ix_(served, served)] = numbers[:, n, n]
-    of_k = [0, 1, 2, 3, *range(10, PLACE)]
-    if (numbers[..., of_k] != numbers[:, n, n][:, None][..., of_k]).any():
+    of_pairs[np.ix_(served, served)] = twice
+    of_k = [*range(4), *range(10, 17)]
+    if (numbers[..., of_k] != twice[:, None][..., of_k]).any():
         of_triples = np.empty((kinds * kinds * (kinds + 1), PLACE))
         of_triples[...] = numbers[0, 0, 0]
         i, j, k = np.meshgrid(served, served, served, indexing="ij")
         of_triples[kinds * (kinds * i + j) + kinds * i + k] = numbers
-    return of_pairs.ravel(), of_triples.ravel(), m.flat[0]
+    return of_pairs.ravel(), of_triples.ravel(), p["m"].flat[0]
 
 
 class Tersoff(TripleStyle):
@@ -194,6 +194,7 @@ class Tersoff(TripleStyle):
     columns = COLUMNS
     positive = "c d n beta lambda2 B R D lambda1 A gamma"
     energies = ("A", "B")
+    logarithms: tuple[str, ...] = ("beta",)      # numbers of pairs whose logarithm `eight` takes
 
     def parse_settings(self, words):
         what = f"pair_style {self.name}"
@@ -223,6 +224,13 @@ class Tersoff(TripleStyle):
         """Columns that are not numbers of the file."""
         return {"reach": p["R"] + p["D"], "inner": p["R"] - p["D"]}
 
+    def numbers_of_eights(self, p):
+        """PLACE columns of the tables of `tersoff_eight`: cutoff, pair, order with lambda3 and h, what g takes, and eight more of which the
+        first is for g too."""
+        return [*(p[name] for name in "reach inner R D A lambda1 B lambda2 n beta lambda3 h".split()),
+                p["d"]**2, p["gamma"],
+                p["gamma"] * np.divide(p["c"], p["d"], out=np.full_like(p["c"], np.inf), where=p["d"] > 0.0)**2, *[0.0] * 9]
+
     def fits(self, tables):
         return len(tables.arrays) > 1
 
@@ -232,7 +240,7 @@ class Tersoff(TripleStyle):
 
     def pack_pairs(self, settings, filled, ntypes, units, shift=False):
         tables = super().pack_pairs(settings, filled, ntypes, units, shift)
-        found = for_eights(tables.arrays[0]) if self.eight else None
+        found = for_eights(self, tables.arrays[0]) if self.eight else None
         if found is None:
             return tables
         of_pairs, of_triples, power = found
@@ -246,7 +254,7 @@ class Tersoff(TripleStyle):
         return [settings["shift"]]
 
 
-OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9)
-register(Tersoff("tersoff", site=tersoff, eight=tersoff_eight, eight_rows=46, eight_helpers=(taper8,),
+OPTIONS = dict(settings="[shift] [delta]", units={"shift": "word", "delta": "distance"}, rooms=9, eight=tersoff_eight, eight_rows=48)
+register(Tersoff("tersoff", site=tersoff, eight_helpers=(taper8, angular8, order8, pair8),
                  helpers=(taper, repulsion, attraction, angular, order, longer), example="Si.tersoff Si",
                  see="J. Tersoff, Phys. Rev. B 37, 6991 (1988); 39, 5566 (1989)", **OPTIONS))

@@ -10,7 +10,11 @@ from __future__ import annotations
 import math
 
 from asemd.errors import InputError
+from asemd.kernels.eight_sites import coefficients8
+from asemd.kernels.functions8 import exp8
+from asemd.kernels.vectors8 import below8
 from asemd.pair.tersoff import COLUMNS, OPTIONS, Tersoff, angular, longer, order, taper, tersoff
+from asemd.pair.tersoff_eight import angular8, order8, taper8
 from asemd.style import register
 
 
@@ -46,9 +50,31 @@ def attraction(r, p):
     return fc * f * e, (slope * f + fc * df - fc * f * p[7]) * e
 
 
+def pair8(r, fc, dfc, table, types, at):
+    """Repulsion and attraction of eight pairs, with their derivatives."""
+    reach, _, _, _ = coefficients8(table, types, at, 0)
+    ca, l1, cb, l2 = coefficients8(table, types, at, 4)
+    coulomb, screening, middle, scale = coefficients8(table, types, at, 20)
+    y = exp8(-1.0 * scale * (r - middle))
+    f = 1.0 / (y + 1.0)
+    df = scale * y * (f * f)
+    x = screening * r
+    a, b, c, d = 0.1818 * exp8(-3.2 * x), 0.5099 * exp8(-0.9423 * x), 0.2802 * exp8(-0.4029 * x), 0.02817 * exp8(-0.2016 * x)
+    ir = 1.0 / r
+    ez = coulomb * (a + b + c + d) * ir
+    dz = (0.0 - coulomb * screening * (3.2 * a + 0.9423 * b + 0.4029 * c + 0.2016 * d) - ez) * ir
+    et, e = ca * exp8(-1.0 * l1 * r), -1.0 * cb * exp8(-1.0 * l2 * r)
+    dt, et = et * (dfc - l1 * fc), et * fc
+    bare = below8(r, reach, 1.0 - f, 0.0)
+    return bare * ez + f * et, df * (et - below8(r, reach, ez, 0.0)) + bare * dz + f * dt, fc * f * e, (dfc * f + fc * df - fc * f * l2) * e
+
+
 class TersoffZBL(Tersoff):
     names = f"{Tersoff.names} Z_i Z_j ZBLcut ZBLexpscale"
     columns = (*COLUMNS, "coulomb", "screening", "ZBLcut", "ZBLexpscale")
+
+    def numbers_of_eights(self, p):
+        return [*super().numbers_of_eights(p)[:20], *(p[name] for name in ("coulomb", "screening", "ZBLcut", "ZBLexpscale"))]
 
     def check_entry(self, p, error):
         super().check_entry(p, error)
@@ -67,4 +93,5 @@ class TersoffZBL(Tersoff):
 
 
 register(TersoffZBL("tersoff/zbl", site=tersoff, helpers=(taper, fermi, repulsion, attraction, angular, order, longer),
+                    eight_helpers=(taper8, angular8, order8, pair8),
                     example="SiC.tersoff.zbl Si", doc=__doc__, see="LAMMPS manual, pair_style tersoff/zbl", **OPTIONS))
