@@ -92,7 +92,7 @@ class ManyBodyTerm(FactorTerm):
             work = aligned((nth, 7 + self.style.room_for(self.tables, self.width), self.width))
             self.near, self.grad, self.room = work[:, :4], work[:, 4:7], work[:, 7:]
             self.flat = work.reshape(nth, -1)[:, 7 * self.width:]
-            self.types = np.zeros((nth, self.width if not self.eights else PLACES + EIGHT * self.width), np.int32)
+            self.types = np.zeros((nth, self.width if not self.eights else PLACES + 3 * EIGHT * self.width), np.int32)
             self.slots = np.zeros_like(self.types)
             if self.eights:
                 self.flat = aligned((nth, self.style.eight_rows * EIGHT * self.width))

@@ -5,9 +5,9 @@ to 2 are the vectors to the neighbours, 3 the squared distances, 4 to 6 the deri
 begins with how many neighbours of each site are there with a pair that counts as the site's own, and the rows of the style follow. A site
 with fewer neighbours than another has some that are far away, so that formulas need no conditions for them.
 
-Constants: ENERGY, UNIFORM (one cutoff for all pairs of types), ALIKE (all atoms have the same coefficients). Unless ALIKE, `types` has
-eights too, after its first PLACES numbers: PLACE times the number of the pair of types. Of the first ones the style may use the eight from
-FREE on. Styles call `coefficients8` for what stands in such a table.
+Constants: ENERGY, UNIFORM (one cutoff for all pairs of types), ALIKE (all atoms have the same coefficients). Unless ALIKE, `types` has a
+row too, after its first PLACES numbers: PLACE times the number of the pair of types. The style may use the eight from FREE on, and two
+more rows of `types` behind. It calls `coefficients8` for what stands in such a table.
 """
 from __future__ import annotations
 

@@ -8,10 +8,15 @@ Energy and force of pairs are shifted to zero at the cutoff rc; triples end at r
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+
+import numpy as np
 
 from asemd import units as unit_styles
+from asemd.kernels.eight_sites import PLACE
 from asemd.kernels.manybody import add_bend, add_stretch
 from asemd.kernels.whole_power import whole_power
+from asemd.pair.vashishta_eight import pick_near, vashishta_eight
 from asemd.style import register
 from asemd.triples import TripleStyle
 
@@ -81,6 +86,19 @@ def vashishta(i, ti, n, m, near, types, room, grad, constants, arrays, shares):
     return energy
 
 
+def for_eights(served, three) -> tuple[np.ndarray, ...]:
+    """Tables of `vashishta_eight`: PLACE numbers for each pair of types, those of the triple with this neighbour twice, and B, C and the
+    cosine for each triple, with number kinds (kinds i + j) + kinds i + k."""
+    kinds, n = len(three), np.arange(len(three))
+    of_pairs, of_triples = np.zeros((kinds, kinds, PLACE)), np.zeros((kinds * kinds * (kinds + 1), PLACE))
+    of_pairs[..., :12] = three[:, n, n][..., :12]
+    of_pairs[..., 1] = np.maximum(of_pairs[..., 1], 1e-6)      # no triples: nobody is that near
+    of_pairs[~served] = of_pairs[tuple(np.argwhere(served)[0])]      # what a far neighbour has, and types that never meet
+    i, j, k = np.indices(three.shape[:3])
+    of_triples[kinds * (kinds * i + j) + kinds * i + k, :3] = three[..., 12:]
+    return of_pairs.ravel(), of_triples.ravel()
+
+
 class Vashishta(TripleStyle):
     names = "H eta Z_i Z_j lambda1 D lambda4 W rc B gamma r0 C costheta"
     columns = COLUMNS
@@ -96,6 +114,22 @@ class Vashishta(TripleStyle):
             out["edge"], out["slope"] = two_body(p["rc"], *numbers)
         return out
 
+    def fits(self, tables):
+        return len(tables.arrays) > 2
 
-register(Vashishta("vashishta", site=vashishta, helpers=(whole_power, two_body, pairs), rooms=8, example="SiC.vashishta Si",
+    def alike(self, tables):
+        three = tables.arrays[0][1:, 1:, 1:].reshape(-1, len(COLUMNS))
+        return bool((tables.rows[0][1:, 1:] > 0.0).all() and (three == three[0]).all())
+
+    def pack_pairs(self, settings, filled, ntypes, units, shift=False):
+        tables = super().pack_pairs(settings, filled, ntypes, units, shift)
+        if self.eight is None or not tables.rows[0].any():
+            return tables
+        three = tables.arrays[0]
+        more = for_eights(tables.rows[0] > 0.0, three)
+        return replace(tables, constants=np.array([0.0, three[..., 1].max() ** 2]), arrays=(three, *more))
+
+
+register(Vashishta("vashishta", site=vashishta, eight=vashishta_eight, eight_rows=17, eight_helpers=(pick_near,),
+                   helpers=(whole_power, two_body, pairs), rooms=8, example="SiC.vashishta Si",
                    see="P. Vashishta, R. K. Kalia, J. P. Rino, I. Ebbsjo, Phys. Rev. B 41, 12197 (1990)"))
