@@ -287,7 +287,8 @@ def test_command_with_own_styles(folder):
 @pytest.mark.parametrize(("text", "message"), [
     (None, "no such file"), ("x = 1\ny = x +\n", "SyntaxError: invalid syntax"), ("a = 1\nb = a / 0\n", "division by zero"),
     ("from asemd.style import bond\n@bond('harmonic')\ndef own(r, K: 'energy'):\n    return K * r, K\n", "bond style harmonic already")])
-def test_files_that_cannot_be_imported(text, message, tmp_path):
+def test_files_that_cannot_be_imported(text, message, tmp_path, monkeypatch):
+    monkeypatch.delitem(sys.modules, "imported_wrong_styles", raising=False)      # that of another of these tests
     file = tmp_path / "wrong_styles.py"
     if text is not None:
         file.write_text(text)
