@@ -37,6 +37,14 @@ def coefficients8(table, types, at, first):
     return rows8(table, types, at, first)
 
 
+def bend8(x, e, slope, ir, along, ux, uy, uz, vx, vy, vz):
+    """Derivative of a triple's energy e by the position of its neighbour in direction u: `slope` is that by the cosine x, and -e times
+    `along` that by the distance, whose inverse is `ir`."""
+    t = slope * ir
+    s = e * along + t * x
+    return t * vx - s * ux, t * vy - s * uy, t * vz - s * uz
+
+
 def gather_lane(i, begin, end, n, lane, x, type_of, neighbors, codes, shifts, cut2, b, types, slots):
     """Neighbours of site i within the cutoff, to place `lane` of the eights from the `n`-th on; returns the number then."""
     xi = x[0, i]
@@ -160,7 +168,7 @@ def kernel(style, *, energy: bool, uniform: bool, alike: bool, width: int):
         b.text(plain_source(f), OPTIONS)
     for f in (gather_lane, fill, scatter_lane, add_virial):
         b.function(f, fast=True)
-    for f in (coefficients8, *style.eight_helpers):
+    for f in (coefficients8, bend8, *style.eight_helpers):
         b.function(f, fast=True, inline=True)
     b.function(style.eight, "site", fast=True)
     b.function(site_forces, fast=True)

@@ -1,7 +1,7 @@
 """EDIP of one kind of atoms on eight sites at a time; formulas as in `asemd.pair.edip_multi`."""
 from __future__ import annotations
 
-from asemd.kernels.eight_sites import ROW
+from asemd.kernels.eight_sites import ROW, bend8
 from asemd.kernels.functions8 import exp8, log8
 from asemd.kernels.vectors8 import all8, below8, inverse_root8, larger8, load8, smaller8, store8
 
@@ -62,16 +62,12 @@ def edip_eight(end, b, types, arrays, constants):
             w = w * (g + eta)
             slope = 2.0 * w * (q * t)
             dz = dz + (slope * dtau - mu * (qt2 * w))
-            t = slope * ij
-            s = e * gj + t * x
-            sx = sx + (t * vx - s * ux)
-            sy = sy + (t * vy - s * uy)
-            sz = sz + (t * vz - s * uz)
-            t = slope * load8(b, 11 * ROW + k)
-            s = e * load8(b, 14 * ROW + k) + t * x
-            store8(b, 4 * ROW + k, load8(b, 4 * ROW + k) + (t * ux - s * vx))
-            store8(b, 5 * ROW + k, load8(b, 5 * ROW + k) + (t * uy - s * vy))
-            store8(b, 6 * ROW + k, load8(b, 6 * ROW + k) + (t * uz - s * vz))
+            gx, gy, gz = bend8(x, e, slope, ij, gj, ux, uy, uz, vx, vy, vz)
+            sx, sy, sz = sx + gx, sy + gy, sz + gz
+            gx, gy, gz = bend8(x, e, slope, load8(b, 11 * ROW + k), load8(b, 14 * ROW + k), vx, vy, vz, ux, uy, uz)
+            store8(b, 4 * ROW + k, load8(b, 4 * ROW + k) + gx)
+            store8(b, 5 * ROW + k, load8(b, 5 * ROW + k) + gy)
+            store8(b, 6 * ROW + k, load8(b, 6 * ROW + k) + gz)
         store8(b, 4 * ROW + j, sx)
         store8(b, 5 * ROW + j, sy)
         store8(b, 6 * ROW + j, sz)

@@ -14,7 +14,7 @@ import numpy as np
 
 from asemd import words as read
 from asemd.errors import InputError
-from asemd.kernels.eight_sites import ALIKE, FREE, PLACE, PLACES, ROW, coefficients8
+from asemd.kernels.eight_sites import ALIKE, FREE, PLACE, PLACES, ROW, bend8, coefficients8
 from asemd.kernels.functions8 import exp8
 from asemd.kernels.manybody import add_bend, add_stretch, directions
 from asemd.kernels.vectors8 import all8, below8, inverse_root8, load8, rows8, smaller8, store8
@@ -127,16 +127,12 @@ def sw_eight(end, b, types, arrays, constants):
             e = w * delta
             energy = energy + e
             w = w + w
-            t = w * ij
-            a = e * gj + t * c
-            sx = sx + t * vx - a * ux
-            sy = sy + t * vy - a * uy
-            sz = sz + t * vz - a * uz
-            t = w * load8(b, 11 * ROW + k)
-            a = e * load8(b, 13 * ROW + k) + t * c
-            store8(b, 4 * ROW + k, load8(b, 4 * ROW + k) + (t * ux - a * vx))
-            store8(b, 5 * ROW + k, load8(b, 5 * ROW + k) + (t * uy - a * vy))
-            store8(b, 6 * ROW + k, load8(b, 6 * ROW + k) + (t * uz - a * vz))
+            gx, gy, gz = bend8(c, e, w, ij, gj, ux, uy, uz, vx, vy, vz)
+            sx, sy, sz = sx + gx, sy + gy, sz + gz
+            gx, gy, gz = bend8(c, e, w, load8(b, 11 * ROW + k), load8(b, 13 * ROW + k), vx, vy, vz, ux, uy, uz)
+            store8(b, 4 * ROW + k, load8(b, 4 * ROW + k) + gx)
+            store8(b, 5 * ROW + k, load8(b, 5 * ROW + k) + gy)
+            store8(b, 6 * ROW + k, load8(b, 6 * ROW + k) + gz)
         store8(b, 4 * ROW + j, sx)
         store8(b, 5 * ROW + j, sy)
         store8(b, 6 * ROW + j, sz)

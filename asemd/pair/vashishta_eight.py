@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asemd.kernels.eight_sites import ALIKE, EIGHT, FREE, PLACES, ROW, coefficients8
+from asemd.kernels.eight_sites import ALIKE, EIGHT, FREE, PLACES, ROW, bend8, coefficients8
 from asemd.kernels.functions8 import exp8, log8
 from asemd.kernels.vectors8 import all8, below8, inverse_root8, load8, rows8, smaller8, store8
 
@@ -96,16 +96,12 @@ def vashishta_eight(end, b, types, arrays, constants):
             e = w * (d * d) * q
             energy = energy + e
             slope = 2.0 * w * d * (q * q)
-            t = slope * ij
-            s = e * gj + t * x
-            sx = sx + (t * vx - s * ux)
-            sy = sy + (t * vy - s * uy)
-            sz = sz + (t * vz - s * uz)
-            t = slope * load8(b, 11 * ROW + k)
-            s = e * load8(b, 13 * ROW + k) + t * x
-            store8(b, 14 * ROW + k, load8(b, 14 * ROW + k) + (t * ux - s * vx))
-            store8(b, 15 * ROW + k, load8(b, 15 * ROW + k) + (t * uy - s * vy))
-            store8(b, 16 * ROW + k, load8(b, 16 * ROW + k) + (t * uz - s * vz))
+            gx, gy, gz = bend8(x, e, slope, ij, gj, ux, uy, uz, vx, vy, vz)
+            sx, sy, sz = sx + gx, sy + gy, sz + gz
+            gx, gy, gz = bend8(x, e, slope, load8(b, 11 * ROW + k), load8(b, 13 * ROW + k), vx, vy, vz, ux, uy, uz)
+            store8(b, 14 * ROW + k, load8(b, 14 * ROW + k) + gx)
+            store8(b, 15 * ROW + k, load8(b, 15 * ROW + k) + gy)
+            store8(b, 16 * ROW + k, load8(b, 16 * ROW + k) + gz)
         store8(b, 14 * ROW + j, sx)
         store8(b, 15 * ROW + j, sy)
         store8(b, 16 * ROW + j, sz)
