@@ -19,6 +19,7 @@ from asemd.kernels import compiling
 PROGRAM = """
 import json
 import math
+import re
 import sys
 
 import numpy as np
@@ -60,7 +61,34 @@ def kernel(x, n):
     return out[:2].sum(), out.T.copy(), min(n), float(n[0])
 
 kernel(np.arange(5.0), np.arange(5))
-print(json.dumps([searches, [text for f in (loose, strict, kernel) for text in f.inspect_asm().values()]]))
+
+def code(f):      # what the function has, without wrappers; names are numbered, for they depend on options
+    (text,) = f.inspect_asm().values()
+    own = re.search(rf"^_ZN\\S*{f.__name__}\\S*:.*?^\\.Lfunc_end", text, re.M | re.S)[0]
+    names = {}
+    return re.sub(r"_ZN\\w+", lambda m: names.setdefault(m[0], f"name{len(names)}"), own)
+
+print(json.dumps([searches, [code(f) for f in (loose, strict, kernel)]]))
+"""
+WRAPPERS = """
+import sys
+
+from numba import njit
+from asemd.kernels.generate import Builder
+
+b = Builder("a function and one that calls it")
+b.text("def half(x):\\n    return 0.5 * x")
+b.text("def quarter(x):\\n    return half(half(x))")
+module = b.build()
+if sys.argv[1] == "caller":
+    assert module.quarter(3.0) == 0.75
+    assert "wrapper" not in "".join(module.half.inspect_asm().values())
+else:
+    assert module.half(3.0) == 1.5
+    stats = module.half.stats
+    assert [sum(stats.cache_hits.values()), sum(stats.cache_misses.values())] == [1, int(sys.argv[2])]
+    assert module.half(3) == 1.5 and len(module.half.signatures) == 2
+    assert module.quarter(3.0) == 0.75
 """
 
 
@@ -70,6 +98,30 @@ def test_the_code_is_the_same_and_made_with_fewer_searches():
                                                                  check=True, env=env).stdout) for how in ("plain", "faster"))
     assert len(theirs) == 3 and theirs == ours
     assert 0 < faster < 0.7 * plain
+
+
+def test_functions_for_other_functions_can_be_called_later(tmp_path):
+    env = {**os.environ, "NUMBA_DISABLE_JIT": "0", "ASEMD_CACHE_DIR": str(tmp_path)}
+    for how in (["caller"], ["function", "1"], ["function", "0"]):
+        subprocess.run([sys.executable, "-c", WRAPPERS, *how], check=True, env=env)
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_functions_are_compiled_again_with_a_wrapper():
+    @numba.njit
+    def half(x):
+        return 0.5 * x
+
+    @numba.njit
+    def quarter(x):
+        return half(half(x))
+
+    assert quarter(3.0) == 0.75
+    (first,) = half.overloads.values()
+    assert not compiling.has_wrapper(first) and half.nopython_signatures
+    assert half(3.0) == 1.5
+    (second,) = half.overloads.values()
+    assert compiling.has_wrapper(second) and half(5.0) == 2.5 and quarter(5.0) == 1.25
 
 
 def test_options_of_functions():

@@ -1,25 +1,40 @@
-"""What makes numba compile faster; the code that it makes is the same.
+"""What makes numba compile faster; the code of the kernels stays the same.
 
-Much of the time goes into finding the types of calls. numba looks for each addition of two numbers through all that can be added, arrays,
-dates and texts, as often as there is one; here what was found once is kept. Options of functions are compared each time with all their
-values, for their hashes are all equal; here they are not. And garbage is not collected while a function is compiled: there is hardly any
-that would go away, and looking for it takes longer the more is loaded.
+- Types of calls: numba looks for each addition of two numbers through all that can be added, arrays, dates and texts, as often as there is
+  one; here what was found once is kept. Options of functions are compared each time with all their values, for their hashes are all equal;
+  here they are not.
+- References: to count those of an array, numba takes all parts of it out, those too that hold none.
+- Each call of LLVM is announced, and all modules that register functions are looked for again and again.
+- What Python calls needs a wrapper, code that takes Python's objects apart, often more of it than the function has. Functions get one that
+  are compiled because Python calls them; those that other functions call are compiled once more if Python should call them later.
+- Garbage is not collected while a function is compiled: there is hardly any that would go away, and looking for it takes longer the more is
+  loaded.
 """
 from __future__ import annotations
 
 import gc
+from functools import cache
+from weakref import WeakSet
 
 from numba import types
-from numba.core import event
+from numba.core import event, ir, sigutils
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.cpu import CPUContext
+from numba.core.dispatcher import Dispatcher, _FunctionCompiler
+from numba.core.runtime.context import NRTContext
 from numba.core.targetconfig import ConfigStack, TargetConfig
 from numba.core.types.functions import BaseFunction
 
 # whose types alone say what a call is
 PLAIN = (types.Number, types.Boolean, types.IntegerLiteral, types.Array, types.BaseTuple, types.NoneType, types.SliceType)
-COMPILE = "numba:compile"      # within numba's lock for the compiler
+COMPILE, LLVM_LOCK = "numba:compile", "numba:llvm_lock"      # both within numba's lock for the compiler
+KINDS: dict[type, int] = {}      # what values of a class are to `collect`
 
-look_up, same_values = BaseFunction.get_call_type, TargetConfig.__eq__
+look_up, same_values, load_all = BaseFunction.get_call_type, TargetConfig.__eq__, CPUContext.load_additional_registries
+compile_core, compile_once, keep = _FunctionCompiler._compile_core, Dispatcher.compile, Dispatcher.add_overload
 found: dict[tuple, tuple] = {}
+loaded: WeakSet = WeakSet()
+depth = 0      # how many functions are being compiled, each for the one before
 
 
 def get_call_type(self, context, args, kws):
@@ -47,6 +62,107 @@ def options_equal(self, other):
     return (isinstance(other, TargetConfig) and self._values == other._values) or same_values(self, other)
 
 
+@cache
+def counts(model) -> bool:
+    """Whether values of that kind have references to count."""
+    return model.contains_nrt_meminfo()
+
+
+def get_meminfos(self, builder, kind, value):
+    """What counts the references of a value: pairs of a type and a pointer."""
+    models = self._context.data_model_manager
+    model = models[kind]
+    if not counts(model):
+        return []
+    own = [(kind, model.get_nrt_meminfo(builder, value))] if model.has_nrt_meminfo() else []
+    return own + [one for inner, part in model.traverse(builder) if counts(models[inner])
+                  for one in self.get_meminfos(builder, inner, part(value))]
+
+
+def list_vars(self, value) -> list:
+    """The variables of numba's intermediate code in a value, which are those of its parts."""
+    out: list = []
+    collect(value, out)
+    return out
+
+
+def collect(value, out: list) -> None:
+    kind = value.__class__
+    what = KINDS.get(kind)
+    if what is None:
+        what = KINDS[kind] = next((n for n, base in enumerate((ir.Var, (list, tuple), dict, ir.Inst)) if issubclass(kind, base)), 4)
+    if what == 0:
+        out.append(value)
+    elif what == 3:
+        out += value.list_vars()
+    elif what < 4:
+        for part in value if what == 1 else value.values():
+            collect(part, out)
+
+
+def load_registries(self) -> None:
+    """What was registered since; the modules that register are imported the first time."""
+    if self in loaded:
+        for registry in list(self._registries):
+            self.install_registry(registry)
+    else:
+        load_all(self)
+        loaded.add(self)
+
+
+def unless_of_locks(announce):
+    """Events without those of LLVM's lock, one for each call of LLVM."""
+    def announced(kind, *data, **more):
+        if kind != LLVM_LOCK:
+            announce(kind, *data, **more)
+    return announced
+
+
+def core(self, args, return_type):
+    """Compile a function, and within that those that it calls."""
+    global depth
+    depth += 1
+    try:
+        return compile_core(self, args, return_type)
+    finally:
+        depth -= 1
+
+
+def customize_flags(self, flags):
+    """Options of a function that is not for numba's callbacks."""
+    if depth > 1:
+        flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
+    return flags
+
+
+def has_wrapper(compiled) -> bool:
+    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cpython_wrapper_name) != 0
+
+
+def add_overload(self, compiled) -> None:
+    """Keep a compiled function; Python calls it only with a wrapper."""
+    if has_wrapper(compiled):
+        keep(self, compiled)
+    else:
+        self.overloads[tuple(compiled.signature.args)] = compiled
+
+
+def compile_signature(self, sig):
+    """The entry point of the function for a signature."""
+    with global_compiler_lock:
+        entry = compile_once(self, sig)
+        if depth:
+            return entry
+        args, return_type = sigutils.normalize_signature(sig)
+        if not has_wrapper(self.overloads[tuple(args)]):
+            self._cache_misses[sig] += 1
+            compiled = self._compiler.compile(args, return_type)
+            self.add_overload(compiled)
+            self._cache.save_overload(sig, compiled)
+            entry = compiled.entry_point
+        return entry
+
+
 class NoCollection(event.Listener):
     """Garbage waits while a function is compiled, and what it calls."""
 
@@ -67,5 +183,11 @@ class NoCollection(event.Listener):
 def install() -> None:
     """For the whole process."""
     BaseFunction.get_call_type = get_call_type
+    NRTContext.get_meminfos = get_meminfos
+    ir.Inst._rec_list_vars = list_vars
+    event.start_event, event.end_event = map(unless_of_locks, (event.start_event, event.end_event))
+    CPUContext.load_additional_registries = load_registries
+    _FunctionCompiler._compile_core, _FunctionCompiler._customize_flags = core, customize_flags
+    Dispatcher.add_overload, Dispatcher.compile = add_overload, compile_signature
     TargetConfig.__hash__, TargetConfig.__eq__ = options_hash, options_equal
     event.register(COMPILE, NoCollection())
