@@ -92,6 +92,7 @@ class Loop:
         self._with_lost(e.load)
         self.gone, self.natoms, self._ago = {}, self.system.n, 0
         e.bonds.hold(True)
+        tl.get_ready(self, moves and self.end > self.step)
         e.forces(True)
         e.store()       # fixes see positions that fit the image flags
         self.fix_data = tuple((np.ascontiguousarray(f.parameters(self), float), self.arrays_of(f)) for f in self.fixes)
@@ -289,8 +290,7 @@ class Loop:
         live[relist.NS] = e.ns
 
         def work(tid):
-            status[tid] = run(tid, e.threads, e.state.x, e.state.virial, e.state.box, e.held, e.moved, e.farthest, e.buffers, e.bad,
-                              self._sync, self._scratch, c, x, e.acc, terms[tid], calls, starts, live, lists)
+            status[tid] = run(*tl.arguments_of(self, tid, terms[tid], calls, starts, lists))
         e.parallel(work)
         self.step, self._ago = int(c[tl.STEP]), int(c[tl.AGO])
         e.dangerous += int(c[tl.DANGEROUS])

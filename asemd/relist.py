@@ -54,6 +54,10 @@ class Relist:
                     row[:] = kernel_address(function, packed.text_of_arguments(values)), packed.handle(block.memory)
         return self._table
 
+    def kernels(self, engine) -> list[tuple[Callable, str]]:
+        """The functions of the table, each with the type of its arguments."""
+        return [(function, packed.text_of_arguments(values)) for function, values in calls(engine, self.live) or []]
+
     @property
     def known(self) -> bool:
         """Whether the loop could build the last list that was due."""

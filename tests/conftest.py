@@ -11,6 +11,9 @@ settings.register_profile("search", deadline=None)      # others: pytest --hypot
 settings.load_profile("asemd")
 
 
+os.environ.setdefault("ASEMD_COMPILERS", "1")      # the workers of a run of tests are several processes already
+
+
 def pytest_configure(config):
     """Started in the background, a process ignores Ctrl-C, and so do its children: tests of interrupted runs would never end."""
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

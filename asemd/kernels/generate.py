@@ -252,7 +252,11 @@ class Builder:
         return "\n".join(self.lines) + "\n"
 
     def build(self) -> types.ModuleType:
-        """The module of all that.
+        """The module of all that, which raises what `checked` does."""
+        return load(self.checked())
+
+    def checked(self) -> str:
+        """The source, if it is whole.
 
         Raises
         ------
@@ -263,7 +267,7 @@ class Builder:
         for name, needed in self._needs.items():
             if missing := needed - have:
                 raise NameError(f"{name} needs {', '.join(sorted(missing))}, which this module of kernels lacks: {self.lines[0]}")
-        return load(self.source())
+        return self.source()
 
 
 @functools.cache
@@ -272,20 +276,25 @@ def _source_of(module: str) -> str:
     return inspect.getsource(importlib.import_module(module))
 
 
-def load(text: str) -> types.ModuleType:
-    """The module with that text, written to the cache folder unless it is there."""
+def stem_of(text: str) -> str:
+    """The name of the module with that text."""
     import numba
 
     import asemd
-    import asemd.kernels.target  # noqa: F401   before the module decorates its functions
     imported = "".join(map(_source_of, sorted(set(re.findall(r"^from (asemd\.[\w.]+) import", text, re.M)))))
     key = f"{asemd.__version__}|{numba.__version__}|{np.__version__}|{sys.version_info[:2]}|{text}|{imported}"
-    stem = "k_" + hashlib.sha256(key.encode()).hexdigest()[:24]
+    return "k_" + hashlib.sha256(key.encode()).hexdigest()[:24]
+
+
+def load(text: str) -> types.ModuleType:
+    """The module with that text, written to the cache folder unless it is there."""
+    import asemd.kernels.target  # noqa: F401   before the module decorates its functions
+    stem = stem_of(text)
     name = f"{PACKAGE}.{stem}"
     if name in sys.modules:
         return sys.modules[name]
     try:
-        spec = importlib.util.spec_from_file_location(name, _written(stem, text))
+        spec = importlib.util.spec_from_file_location(name, written(stem, text))
         module = importlib.util.module_from_spec(spec)
         run = spec.loader.exec_module
     except OSError:      # no room on the disk: compiled for this process only
@@ -305,7 +314,7 @@ def load(text: str) -> types.ModuleType:
     return module
 
 
-def _written(stem: str, text: str) -> Path:
+def written(stem: str, text: str) -> Path:
     """The file of a generated module, written unless it is there."""
     folder = cache_dir()
     path = folder / f"{stem}.py"
@@ -339,17 +348,23 @@ def _keep_if_there_is_room(kept) -> None:
         kept.save_overload = attempt
 
 
+def tell() -> None:
+    """Say that something is compiled, the first time."""
+    global announce
+    say, announce = announce, None
+    if say is not None:
+        say()
+
+
 def _announce_misses(kept) -> None:
     """Say so before the first code is compiled that is not in the cache: that takes a while."""
     if "load_overload" not in vars(kept):
         look = kept.load_overload
 
         def found(signature, target):
-            global announce
             code = look(signature, target)
-            if code is None and announce is not None:
-                say, announce = announce, None
-                say()
+            if code is None:
+                tell()
             return code
 
         kept.load_overload = found

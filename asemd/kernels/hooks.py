@@ -5,14 +5,14 @@ import ast
 import inspect
 import re
 import sys
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache, lru_cache, partial
 from types import CodeType, ModuleType
 
 import numpy as np
 
-from asemd.kernels import packed, random
-from asemd.kernels.generate import FAST, Builder, plain_source
+from asemd.kernels import ahead, packed, random
+from asemd.kernels.generate import FAST, Builder, load, plain_source
 from asemd.kernels.state import Thread
 from asemd.style import text_of
 
@@ -65,24 +65,8 @@ def _fields(source: str, name: str) -> list[str] | None:
 
 
 @lru_cache(1024)
-def compiled(function: Callable, arrays: str, strict: bool = False):
-    """A hook with an address.
-
-    Parameters
-    ----------
-    function : callable
-        ``function(th, s, p, a)``; it may call what is in its attribute ``uses``, see `shared`.
-    arrays : str
-        The type of `a`, as `asemd.kernels.packed.text_of_type` writes it.
-    strict : bool
-        Sums and products keep their order to the last bit.
-
-    Returns
-    -------
-    int, or the function itself where nothing is compiled
-    """
-    if packed.WITHOUT_COMPILER:         # it finds what it calls as the compiled one does
-        return getattr(shared(function, tuple(getattr(function, "uses", ()))), function.__name__)
+def hook_source(function: Callable, arrays: str, strict: bool) -> str:
+    """The module of a hook with an address; arguments as of `compiled`."""
     b, source = Builder(f"{function.__module__}: {function.__name__}"), plain_source(function, "hook")
     _imports(b, function, source, getattr(function, "uses", ()))
     b.line("from importlib import import_module")
@@ -101,7 +85,29 @@ def hook(thread, arguments):
     {p} = read_numbers(arguments + AFTER_STATE)
     {a} = read_arrays(arguments + AFTER_NUMBERS)
 {body}""", jit=False)
-    return b.build().hook.address
+    return b.checked()
+
+
+@lru_cache(1024)
+def compiled(function: Callable, arrays: str, strict: bool = False):
+    """A hook with an address.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(th, s, p, a)``; it may call what is in its attribute ``uses``, see `shared`.
+    arrays : str
+        The type of `a`, as `asemd.kernels.packed.text_of_type` writes it.
+    strict : bool
+        Sums and products keep their order to the last bit.
+
+    Returns
+    -------
+    int, or the function itself where nothing is compiled
+    """
+    if packed.WITHOUT_COMPILER:         # it finds what it calls as the compiled one does
+        return getattr(shared(function, tuple(getattr(function, "uses", ()))), function.__name__)
+    return load(hook_source(function, arrays, strict)).hook.address
 
 
 def takes_thread(kernel: Callable) -> bool:
@@ -111,20 +117,9 @@ def takes_thread(kernel: Callable) -> bool:
 
 
 @lru_cache(1024)
-def kernel_address(kernel: Callable, arguments: str):
-    """A kernel of a generated module with an address, as hooks have one. It is compiled in this form only: its text is taken over, and what
-    it calls is imported.
-
-    Parameters
-    ----------
-    kernel : callable
-        Its first argument may be the `Thread`, see `takes_thread`. It returns nothing.
-    arguments : str
-        The type of its (other) arguments as one tuple, as `asemd.kernels.packed.text_of_type` writes it.
-    """
+def kernel_source(kernel: Callable, arguments: str) -> str:
+    """The module of a kernel with an address; arguments as of `kernel_address`."""
     thread = takes_thread(kernel)
-    if packed.WITHOUT_COMPILER:
-        return kernel if thread else lambda th, *values: kernel(*values)
     function = kernel.py_func
     module, names = sys.modules[function.__module__], function.__code__.co_varnames[:function.__code__.co_argcount]
     b = Builder(f"{function.__name__} by address")
@@ -140,7 +135,31 @@ def kernel_address(kernel: Callable, arguments: str):
     reads = "    th = read_thread(thread)\n" * thread + f"    {''.join(f'{n}, ' for n in names[thread:])}= read(arguments)\n"
     fast = kernel.targetoptions.get("fastmath")
     b.text(f"@entry({f'fastmath={FAST}' if fast else ''})\ndef call(thread, arguments):\n{reads}{body}", jit=False)
-    return b.build().call.address
+    return b.checked()
+
+
+@lru_cache(1024)
+def kernel_address(kernel: Callable, arguments: str):
+    """A kernel of a generated module with an address, as hooks have one. It is compiled in this form only: its text is taken over, and what
+    it calls is imported.
+
+    Parameters
+    ----------
+    kernel : callable
+        Its first argument may be the `Thread`, see `takes_thread`. It returns nothing.
+    arguments : str
+        The type of its (other) arguments as one tuple, as `asemd.kernels.packed.text_of_type` writes it.
+    """
+    if packed.WITHOUT_COMPILER:
+        return kernel if takes_thread(kernel) else lambda th, *values: kernel(*values)
+    return load(kernel_source(kernel, arguments)).call.address
+
+
+def compile_ahead(kernels: Iterable[tuple[Callable, str]], functions: Sequence[tuple[Callable, tuple]] = ()) -> None:
+    """Compile kernels that will be called by address, (kernel, type of its arguments) each, in several processes; functions too, see
+    `asemd.kernels.ahead`."""
+    if not packed.WITHOUT_COMPILER:
+        ahead.together([kernel_source(*pair) for pair in kernels if hasattr(pair[0], "py_func")], functions)
 
 
 def _names(code: CodeType) -> set[str]:
@@ -184,6 +203,7 @@ class BoundKernels:
     def calls(self, kernels: list[Callable], arguments: list[Sequence[tuple]]) -> list[list[Callable[[], None]]]:
         """For each thread, whose arguments are one entry of a list that does not change, the calls of all kernels."""
         if self._known[0] is not arguments or self._known[1] != kernels:
+            compile_ahead(zip(kernels, map(packed.text_of_arguments, arguments[0])))
             calls = [[bound(f, a, self.level) for f, a in zip(kernels, mine, strict=True)] for mine in arguments]
             self._known = arguments, kernels, calls
         return self._known[2]
@@ -229,6 +249,9 @@ class Calls:
         self._follow(state, data)
         if self._table is None:
             rows, starts = [], [0]
+            if not packed.WITHOUT_COMPILER:
+                ahead.together([hook_source(hooks[kind], packed.text_of_arguments(data[n][1]), kind in self.strict)
+                                for n, hooks in enumerate(self.hooks) for kind in kinds if kind in hooks])
             for kind in kinds:
                 rows += [(self.function(n, kind, data), packed.handle(self._arguments[n]), self.everys[n] if kind == "end_of_step" else 1)
                          for n, hooks in enumerate(self.hooks) if kind in hooks]

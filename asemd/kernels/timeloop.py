@@ -18,7 +18,7 @@ from asemd.kernels import packed
 from asemd.kernels.box import corner_moves
 from asemd.kernels.clock import now
 from asemd.kernels.generate import FAST, Builder, plain_source
-from asemd.kernels.hooks import INNER, Calls, kernel_address, shared
+from asemd.kernels.hooks import INNER, Calls, compile_ahead, kernel_address, shared
 from asemd.kernels.packed import act, call
 from asemd.kernels.relist import FINE, NS, WANTED
 from asemd.kernels.state import Thread
@@ -88,6 +88,24 @@ class Terms:
         """Other arguments of the same terms; False if they are of other types, and kernels are to be looked up again."""
         self.arguments = arguments
         return len(arguments) == len(self.blocks) and all(block.take(values) for block, values in zip(self.blocks, arguments))
+
+
+def arguments_of(loop, tid: int, terms: np.ndarray, calls: np.ndarray, starts: np.ndarray, lists: np.ndarray) -> tuple:
+    """What `run` takes."""
+    e = loop.engine
+    return (tid, e.threads, e.state.x, e.state.virial, e.state.box, e.held, e.moved, e.farthest, e.buffers, e.bad, loop._sync,
+            loop._scratch, loop._control, loop._numbers, e.acc, terms, calls, starts, loop._relist.live, lists)
+
+
+def get_ready(loop, steps: bool) -> None:
+    """Compile kernels of the terms, in several processes; if there are `steps` to come, those that only they need and the loop itself."""
+    e = loop.engine
+    arguments = [packed.text_of_arguments(a) for a in e.arguments()[0]]
+    kernels = [(t.kernel(energy, False), a) for energy in (True, False)[:1 + steps] for t, a in zip(e.terms, arguments, strict=True)]
+    if not steps or packed.WITHOUT_COMPILER:
+        return compile_ahead(kernels)
+    none = [np.empty(shape, packed.HANDLE) for shape in ((0, 5), (0, 3), 0, (0, 2))]
+    return compile_ahead([*kernels, *loop._relist.kernels(e)], [(module().run, arguments_of(loop, 0, *none))])
 
 
 @cache

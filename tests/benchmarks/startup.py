@@ -1,5 +1,6 @@
 """Seconds of fresh processes: importing asemd, from process start to the first forces of in.lj (32,000 atoms), cold and warm, and what
-kernels of one more bonded style take where one of its kind is there already."""
+kernels of one more bonded style take where one of its kind is there already; first runs of scripts with kernels compiled by one process and
+by several."""
 from __future__ import annotations
 
 import os
@@ -29,9 +30,9 @@ print(time.process_time() - began)
 """
 
 
-def seconds(code: str, folder: str, cache: str) -> float:
-    """Wall time of one process."""
-    env = {**compare.environment(), "ASEMD_CACHE_DIR": cache}
+def seconds(code: str, folder: str, cache: str, compilers: str = "") -> float:
+    """Wall time of one process; `compilers`: how many processes compile, empty for what asemd does by itself."""
+    env = {**compare.environment(), "ASEMD_CACHE_DIR": cache, "ASEMD_COMPILERS": compilers}
     began = time.perf_counter()
     subprocess.run([sys.executable, "-c", code], check=True, cwd=folder, env=env)
     return time.perf_counter() - began
@@ -44,6 +45,19 @@ def one_more(folder: str, samples: int) -> dict:
         env = {**compare.environment(), "ASEMD_CACHE_DIR": str(Path(folder) / f"more{k}")}
         for values in out.values():
             values.append(float(subprocess.check_output([sys.executable, "-c", ONE_MORE], env=env)))
+    return {name: compare.spread(values) for name, values in out.items()}
+
+
+def first_runs(folder: str, samples: int) -> dict:
+    """Twenty steps of Lennard-Jones atoms, and of water with charges on a mesh, with an empty cache."""
+    scripts = {"LJ": scenes.lj(), "water": scenes.water("1 1 1")}
+    out: dict[str, list[float]] = {f"first run, {name}, compiled by {how}": [] for name in scripts for how in ("one", "several")}
+    for name, text in scripts.items():
+        (Path(folder) / f"in.{name}").write_text(text + "run 20\n")
+        code = f"import sys; sys.argv[1:] = ['run', 'in.{name}', '--quiet']; from asemd.cli import entry; entry()"
+        for k in range(samples):
+            for how, compilers in (("one", "1"), ("several", "")):
+                out[f"first run, {name}, compiled by {how}"].append(seconds(code, folder, str(Path(folder) / f"{name}{how}{k}"), compilers))
     return {name: compare.spread(values) for name, values in out.items()}
 
 
@@ -66,7 +80,7 @@ def measure(samples: int = 5) -> dict:
             for name, code in times.items():
                 seen[name].append(seconds(code, folder, warm))
         after = compiled(warm)
-        more = one_more(folder, min(samples, 3))
+        more = one_more(folder, min(samples, 3)) | first_runs(folder, min(samples, 3))
     out = {name: compare.spread(values) for name, values in seen.items()} | more
     out["first force, cold"] = compare.spread(cold)
     extra = out["import asemd"]["median"] - out["empty python"]["median"]
