@@ -29,6 +29,7 @@ IDLE = 30.0         # seconds after which a helper without work ends
 SERVE = "from asemd.kernels.ahead import serve; serve()"
 
 helpers: list[subprocess.Popen] = []
+at_work = threading.Lock()
 seen: set[str] = set()      # sources that were asked for
 
 
@@ -76,14 +77,17 @@ def together(texts: Iterable[str], functions: Sequence[tuple[Callable, tuple]] =
                 return
             jobs[stem] = ""
     jobs |= {function.__module__.rpartition(".")[2]: " ".join((function.__name__, *map(_kind_of, arguments)))
-             for function, arguments in functions}
+             for function, arguments in functions if not function.overloads}
+    if not jobs:
+        return
     left = _not_compiled(generate.cache_dir())
     lines = {stem: left(stem) for stem in jobs}
     # what takes long first: functions with wrappers for Python, then long modules
     jobs = {stem: jobs[stem] for stem in sorted(jobs, key=lambda stem: (not jobs[stem], -lines[stem])) if lines[stem]}
     if sum(lines.values()) - max(lines.values(), default=0) >= WORTH:
         generate.tell()
-        _share(deque(f"{stem} {call}".strip() for stem, call in jobs.items()), min(most, len(jobs)) - 1)
+        with at_work:
+            _share(deque(f"{stem} {call}".strip() for stem, call in jobs.items()), min(most, len(jobs)) - 1)
 
 
 def _kind_of(value) -> str:
