@@ -6,10 +6,11 @@ from functools import cache
 import numpy as np
 
 from asemd.errors import InputError
-from asemd.kernels import pair_dipole, pair_ellipsoid, pair_sums
+from asemd.kernels import pair_dipole, pair_ellipsoid, pair_reach, pair_sums
 from asemd.kernels.generate import Builder
-from asemd.kernels.pair import paste_one
+from asemd.kernels.pair import list_kernel, paste_pairs
 from asemd.kernels.rigid import turn_axes
+from asemd.kernels.state import aligned
 from asemd.kernels.whole_power import whole_power
 from asemd.term import PairListTerm
 
@@ -19,15 +20,27 @@ def dipole_kernel(style, energy: bool, per_atom: bool):
     """The kernel of `asemd.kernels.pair_dipole` for a style."""
     b = Builder(f"pair {style.name}: charges with dipoles")
     *others, second = style.parts
-    last, scale = sum(2 + len(part.rows) for part in others), second.rows.index("scale") if "scale" in second.rows else -1
+    last, scale = plain_rows(style), second.rows.index("scale") if "scale" in second.rows else -1
     b.line("real = np.float64")
-    paste_one(b, style, others)
-    for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FIRST=last, SCALE=last + 2 + scale, SCALED=scale >= 0).items():
+    b.line("place = np.uint64")
+    room = pair_dipole.ROOM
+    for key, value in dict(ENERGY=energy, PER_ATOM=per_atom, FIRST=last, SCALE=last + 2 + scale, SCALED=scale >= 0, ROOM=room, ROW=room,
+                           AT_ONCE=pair_dipole.AT_ONCE).items():
         b.constant(key, value)
-    b.function(style.radial, "radial")
+    b.use(list_kernel(style, tuple(others), wanted=True)[1], "pair_energy_one")
+    paste_pairs(b, others)
+    b.function(style.radial, "radial", vector=True, inline=True)
+    cuts = [f"rows[{sum(2 + len(part.rows) for part in style.parts[:k])}, ti, tj]" for k in range(len(style.parts))]
+    b.text(f"def furthest(rows, ti, tj):\n    return max({', '.join(cuts)})")
     pair_sums.use(b, "eight", "add", "halve")
-    b.function(pair_dipole.dipole_forces)
+    for f in (pair_reach.in_reach, pair_dipole.dipoles_at_once, pair_dipole.dipole_forces):
+        b.function(f)
     return b.build().dipole_forces
+
+
+def plain_rows(style) -> int:
+    """How many rows of coefficients there are before those of the charges."""
+    return sum(2 + len(part.rows) for part in style.parts[:-1])
 
 
 class OrientedTerm(PairListTerm):
@@ -48,15 +61,23 @@ class OrientedTerm(PairListTerm):
 class DipolePairTerm(OrientedTerm):
     """Charges with point dipoles, which fixes may turn: kernels read them where they are, by row."""
 
+    room = ()
+
     def kernel(self, energy, per_atom):
         return dipole_kernel(self.style, energy, per_atom)
+
+    def rebuild(self, engine):
+        super().rebuild(engine)
+        if len(self.room) != engine.threads:
+            self.room = aligned((engine.threads, (pair_dipole.COLUMNS + plain_rows(self.style)) * pair_dipole.ROOM))
+            self.who = np.zeros((engine.threads, 3, pair_dipole.ROOM), np.int32)
 
     def arguments(self, engine, tid):
         s, m, nth = engine.state, len(self.i), engine.threads
         return (s.x, engine.buffers[tid], s.q, engine.system.extra["mu"], s.row, engine.buffers[tid, 3:], s.type, self.i, self.j, self.code,
                 self.shifts, self.lj, self.coul, m * tid // nth, m * (tid + 1) // nth, self.tables.rows, self.tables.constants,
                 self.tables.arrays, engine.qqr2e, engine.acc[tid, self.index], engine.atom_energy[tid], engine.atom_virial[tid],
-                engine.bad[tid, self.index])
+                engine.bad[tid, self.index], self.room[tid], self.who[tid])
 
 
 @cache

@@ -90,6 +90,16 @@ def _adapter(parts, names: Sequence[str], uniform: Sequence[bool], energy: bool,
     return "\n".join(lines)
 
 
+def paste_pairs(b: Builder, parts) -> None:
+    """``pair_energy`` of the parts for pairs in vector code, whose coefficients stand in columns of a work space, ROW numbers each, from
+    place `o` on; `p` are the constants."""
+    b.line("from asemd.kernels.fuse import madd, rough_roots")
+    vector_math.paste_roots(b)
+    vector_math.paste(b)
+    names = _paste_style(b, parts, False, True)
+    b.text(_adapter(parts, names, [False] * sum(2 + len(part.rows) for part in parts), True), "forceinline=True")
+
+
 def takes_roots(style: PairStyle) -> bool:
     """Whether formulas take the distance, not only its square."""
     return any(part.coordinate == "r" or "math.sqrt(r2" in text_of(part.function) for part in style.parts)
