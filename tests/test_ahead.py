@@ -111,6 +111,7 @@ def sources(prefix: str, lines: int, number: int) -> list[str]:
 @pytest.fixture
 def empty(tmp_path, monkeypatch):
     """An empty cache, and no helpers yet; what was started."""
+    before = str(generate.cache_dir())
     monkeypatch.setenv("ASEMD_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("ASEMD_COMPILERS", "2")
     monkeypatch.setattr(generate, "_dir", None)
@@ -120,8 +121,7 @@ def empty(tmp_path, monkeypatch):
     monkeypatch.setattr(ahead, "_start", lambda: begun.append(launch()) or begun[-1])
     yield shared, begun
     ahead.stop()
-    monkeypatch.setattr(generate, "_dir", None)
-    generate.cache_dir()
+    sys.modules[generate.PACKAGE].__path__[:] = [before]
     assert all(h.poll() is not None for h in begun)
 
 
@@ -152,6 +152,18 @@ def test_helpers_that_do_not_help(empty, monkeypatch, serve):
     assert all(generate.load(text).call.address for text in texts)
     ahead.together(sources(f"{serve} again", 200, 2))
     assert len(empty[0]) == 2
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_no_more_processes(empty, monkeypatch):
+    def refuse():
+        raise BlockingIOError("resource temporarily unavailable")
+
+    monkeypatch.setattr(ahead, "_start", refuse)
+    texts = sources("no more processes", 200, 3)
+    ahead.together(texts)
+    assert len(empty[0]) == 1 and not ahead.helpers
+    assert all(f"{generate.PACKAGE}.{generate.stem_of(text)}" in sys.modules for text in texts)      # compiled here
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")

@@ -113,14 +113,15 @@ def _not_compiled(folder: Path) -> Callable[[str], int]:
 def _share(jobs: deque[str], others: int) -> None:
     """Do all jobs, here and in that many helpers."""
     helpers[:] = [h for h in helpers if h.poll() is None]
-    while len(helpers) < others:
-        helpers.append(_start())
+    with contextlib.suppress(OSError):      # there may be no more processes
+        while len(helpers) < others:
+            helpers.append(_start())
     with ThreadPoolExecutor(others) as pool:
         try:
             for helper in helpers[:others]:
                 pool.submit(_feed, helper, jobs)
-            while jobs:
-                do(jobs.popleft())
+            while job := _next(jobs):
+                do(job)
         except BaseException:
             jobs.clear()
             stop()
@@ -132,16 +133,24 @@ def _start() -> subprocess.Popen:
     env = {**os.environ, "ASEMD_CACHE_DIR": str(generate.cache_dir().parent), "ASEMD_COMPILERS": "1",
            "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     return subprocess.Popen([sys.executable, "-c", SERVE], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                            env=env, text=True, start_new_session=True)
+                            env=env, text=True, start_new_session=True, creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0))
+
+
+def _next(jobs: deque[str]) -> str:
+    """Take a job that no other thread takes; empty if there is none."""
+    try:
+        return jobs.popleft()
+    except IndexError:
+        return ""
 
 
 def _feed(helper: subprocess.Popen, jobs: deque[str]) -> None:
     """Give one job after the other to a helper, as long as it answers."""
-    while jobs:
+    while job := _next(jobs):
         try:
-            helper.stdin.write(jobs.popleft() + "\n")
+            helper.stdin.write(job + "\n")
             helper.stdin.flush()
-        except (IndexError, OSError, ValueError):
+        except (OSError, ValueError):
             return
         if not helper.stdout.readline():
             return
