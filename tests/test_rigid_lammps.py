@@ -27,8 +27,8 @@ CASES = {
     "nvt": ([OUT, "fix 1 all rigid/nvt molecule temp 300 400 20"], ["f_1", "ecouple", *BODY, *PRESSURE]),
     "nvt small": ([OUT, "fix 1 all rigid/nvt/small molecule temp 300 400 20 tparam 3 2 5"], ["f_1", *PRESSURE]),
     "npt": ([OUT, "fix 1 all rigid/npt molecule temp 300 400 20 iso 100 50 50"], ["f_1", "lx", "vol", *BODY, *PRESSURE]),
-    "npt aniso": ([OUT, "fix 1 all rigid/npt/small molecule temp 300 400 20 x 10 10 90 z 10 10 90 couple xz pchain 3"],
-                  ["f_1", "lx", "ly", "lz"]),
+    # without f_1, to which LAMMPS adds the strain rate of y, which it never set: MALLOC_PERTURB_ shows it
+    "npt aniso": ([OUT, "fix 1 all rigid/npt/small molecule temp 300 400 20 x 10 10 90 z 10 10 90 couple xz pchain 3"], ["lx", "ly", "lz"]),
     **{f"{name} beside a barostat": ([OUT, "group bodies id 1:24\ngroup free subtract all bodies", f"fix 1 bodies rigid/{words}",
                                       f"fix 2 free npt temp 300 300 50 iso 0 0 100{more}"], ["f_1", "f_2", "lx", *PRESSURE])
        for name, words, more in (("nvt small", "nvt/small molecule temp 300 300 50", ""), ("nve", "nve molecule", " dilate free"))},
