@@ -110,7 +110,12 @@ def two_at_a_time(style: PairStyle) -> bool:
 
     Where there are few of these, short formulas lose more by numbers that do not fit into them (decision 14).
     """
-    return many_registers() or style.charged or takes_roots(style) or operations(*style.functions()) > SHORT
+    return many_registers() or not short(style)
+
+
+def short(style: PairStyle) -> bool:
+    """Whether the formulas are of one uncharged part that takes the square of the distance, and a few operations."""
+    return not (style.charged or takes_roots(style)) and operations(*style.functions()) <= SHORT
 
 
 def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single: bool, energy: bool, piece: str,
@@ -180,14 +185,15 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
         b.use(prune.module(), "renew")
     pair_sums.use(b, "eight", "plus", "add", fast=True)
     if varying:
-        b.function(pair_cluster.coefficients, fast=True)
+        b.function(pair_cluster.coefficients, fast=True, inline=True)
     inner = pair_cluster.inner_two if paired else pair_cluster.inner_one
-    b.function(inner, fast=True)
+    in_line = many_registers() and short(style)      # others take fewer registers by themselves
+    b.function(inner, fast=True, inline=in_line)
     if paired:
         b.function(pair_cluster.one_pair, fast=True)
     if outdated:
         b.constants["HIDE"] = True
-        b.function(inner, "two_hidden" if paired else "one_hidden", fast=True)
+        b.function(inner, "two_hidden" if paired else "one_hidden", fast=True, inline=in_line)
     b.function(pair_cluster.cluster_forces, fast=True)
     module = b.build()
     return module.cluster_forces, module

@@ -286,10 +286,10 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         xp += 1
                 if OUTDATED and late:
                     fxa, fya, fza, fxb, fyb, fzb, sums = two_hidden(
-                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
+                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c if VARYING else None, ca, cb)
                 else:
                     fxa, fya, fza, fxb, fyb, fzb, sums = inner_two(
-                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c, ca, cb)
+                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, None, f0, a0, c if VARYING else None, ca, cb)
                 if EXCLUDE:
                     for y in range(xp - 1, x0 - 1, -1):
                         b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
@@ -358,9 +358,9 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         b[k] = far
                         xp += 1
                 if OUTDATED and late:
-                    fxa, fya, fza, sums = one_hidden(b, base, count, xa, ya, za, qa, p, hide, f0, a, c, ca)
+                    fxa, fya, fza, sums = one_hidden(b, base, count, xa, ya, za, qa, p, hide, f0, a, c if VARYING else None, ca)
                 else:
-                    fxa, fya, fza, sums = inner_one(b, base, count, xa, ya, za, qa, p, hide, f0, a, c, ca)
+                    fxa, fya, fza, sums = inner_one(b, base, count, xa, ya, za, qa, p, None, f0, a, c if VARYING else None, ca)
                 if EXCLUDE:
                     for y in range(xp - 1, x0 - 1, -1):
                         b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]

