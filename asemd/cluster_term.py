@@ -6,7 +6,7 @@ import numpy as np
 from asemd.cheaper import cheaper
 from asemd.errors import SimulationError
 from asemd.kernels import pair as pair_kernels
-from asemd.kernels.pair_cluster import SETS
+from asemd.kernels.pair_cluster import ROWS, SETS
 from asemd.kernels.state import aligned
 from asemd.pruned import PrunedList
 from asemd.term import FactorTerm
@@ -58,7 +58,7 @@ class PairTerm(FactorTerm):
             engine.changed = True
             self.row = pair_kernels.row_length(int(1.15 * clusters.longest()))
             real = np.float32 if self.single else np.float64
-            self.buffer = aligned((engine.threads, 8 * self.row), real)
+            self.buffer = aligned((engine.threads, ROWS * self.row), real)
             sets = SETS * pair_kernels.buffer_rows(len(self.same) - sum(self.same))
             self.coefficients = aligned((engine.threads, sets * self.row + 16), real)
             self.held = aligned((engine.threads, 16), np.uint32)        # a line of the cache for each thread, of which SETS are used

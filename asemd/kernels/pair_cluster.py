@@ -1,9 +1,10 @@
 """Pair forces over the cluster list: the hot loop.
 
 For each cluster the neighbours are packed, relative to the cluster's first atom, into one flat buffer whose rows are `ROW` apart (a
-constant, so that the compiler sees no aliasing): x y z, force x y z, charge. Coefficients stand in a second buffer, in the same order:
-NROWS rows for each of up to SETS types of the atoms i of the cluster. Two atoms i at a time (PAIRED), or one, run over the buffers; forces
-on j gather in the buffer and are scattered once. Atoms done and excluded partners are moved far away instead of being masked.
+constant, so that the compiler sees no aliasing): x y z, force x y z, charge, and with ROOT of two atoms i squares of distances and their
+inverse roots. Coefficients stand in a second buffer, in the same order: NROWS rows for each of up to SETS types of the atoms i of the
+cluster. Two atoms i at a time (PAIRED), or one, run over the buffers; forces on j gather in the buffer and are scattered once. Atoms done
+and excluded partners are moved far away instead of being masked.
 
 A list that may be outdated (``neigh_modify check no``, or a delay) still has LAMMPS's meaning: pairs that were beyond its reach when it was
 built do not interact. Two atoms of a cluster meet such pairs only once they and others have moved by more than the skin together; from
@@ -28,7 +29,7 @@ from asemd.kernels.gather import fetch8, gather8, give8, scatter8, take8
 from asemd.kernels.pair_sums import add, eight, plus
 
 CLUSTER = 8
-ROW = 1048
+ROWS, ROW = 11, 1048
 WIDTH = 8
 NROWS, SETS = 0, 4
 ENERGY = VIRIAL = CHARGED = VARYING = SHARE = ROOT = ROUGH = False
@@ -56,6 +57,15 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
     zero = real(0)
     fxa, fya, fza, fxb, fyb, fzb = zero, zero, zero, zero, zero, zero
     ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
+    if ROOT:      # beforehand: roots are a long chain of operations, and loops that are longer still wait for each round of it
+        for k in range(o, o + n):
+            xk, yk, zk = b[place(k)], b[place(k + ROW)], b[place(k + 2 * ROW)]
+            dxa, dya, dza = xa - xk, ya - yk, za - zk
+            dxb, dyb, dzb = xb - xk, yb - yk, zb - zk
+            ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
+            rb = madd(dxb, dxb, madd(dyb, dyb, dzb * dzb))
+            b[place(k + 7 * ROW)], b[place(k + 8 * ROW)] = ra, rb
+            b[place(k + 9 * ROW)], b[place(k + 10 * ROW)] = vector_root(ra), vector_root(rb)
     for m in range(n):
         k = o + m
         xk = b[place(k)]
@@ -67,15 +77,17 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
         dxb = xb - xk
         dyb = yb - yk
         dzb = zb - zk
-        ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
-        rb = madd(dxb, dxb, madd(dyb, dyb, dzb * dzb))
+        if ROOT:
+            ra, rb = b[place(k + 7 * ROW)], b[place(k + 8 * ROW)]
+        else:
+            ra = madd(dxa, dxa, madd(dya, dya, dza * dza))
+            rb = madd(dxb, dxb, madd(dyb, dyb, dzb * dzb))
         if HIDE:
             hidden = hide[place(h + k)]
             meet_a = (hidden & bit_a) == 0
             meet_b = (hidden & bit_b) == 0
         if ROOT:
-            wa = vector_root(ra)
-            wb = vector_root(rb)
+            wa, wb = b[place(k + 9 * ROW)], b[place(k + 10 * ROW)]
             ia = wa * wa
             ib = wb * wb
         elif SHARE:
@@ -123,9 +135,8 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
 
 
 def inner_one(b, o, n, x, y, z, q, p, hide, h, a, c, ca):
-    """As `inner_two` for one atom, whose bit of `hide` is `a`: half as many numbers at hand, for processors with few vector registers."""
-    if ROUGH:
-        rough_roots()
+    """As `inner_two` for one atom, whose bit of `hide` is `a`: half as many numbers at hand, for formulas without roots and processors
+    with few vector registers."""
     if HIDE:
         bit = np.uint8(1 << a)
     meet = True
@@ -140,12 +151,8 @@ def inner_one(b, o, n, x, y, z, q, p, hide, h, a, c, ca):
         r2 = madd(dx, dx, madd(dy, dy, dz * dz))
         if HIDE:
             meet = (hide[place(h + k)] & bit) == 0
-        if ROOT:
-            w = vector_root(r2)
-            i2 = w * w
-        else:
-            i2 = real(1) / r2
-            w = math.sqrt(i2)
+        i2 = real(1) / r2
+        w = math.sqrt(i2)
         qq = q * b[place(k + 6 * ROW)] if CHARGED else zero
         if ENERGY:
             fp, one_v, one_c = pair_energy(r2, i2, w, qq, p, c, ca + k, meet)
