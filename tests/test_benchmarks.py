@@ -112,3 +112,12 @@ def test_watchdog_is_timed(compare):
     from tests.benchmarks import watchdog
     script, _ = watchdog.SCENES["LJ, 500 atoms"]
     assert 0.0 < watchdog.share(script, 200) < 50.0
+
+
+def test_trees_of_the_source_take_turns(compare, tmp_path):
+    from tests.benchmarks import scenes, trees
+    root = Path(__file__).resolve().parents[1]
+    script = tmp_path / "in.lj"
+    script.write_text(scenes.lj((3, 3, 3), "delay 0 every 1 check yes"))
+    (least, ratios), (other, others) = trees.measure([root, root], script, 4, "double", 2, 2)
+    assert ratios == [1.0, 1.0] and len(others) == 2 and all(0.0 < seconds < 60.0 for seconds in (least, other, *others))
