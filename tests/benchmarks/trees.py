@@ -2,7 +2,7 @@
 
 ``python -m tests.benchmarks.trees OLD NEW [--scenes lj water] [--precision mixed] [--processes 3] [--rounds 10]``: for each scene of the
 table of speeds, the milliseconds of a step by each tree and how they compare to those of the first one, turn by turn. Where memory lies is
-another chance in each process, so several of each are asked; each tree has a cache of its own.
+another chance in each process, so several of each are asked.
 """
 from __future__ import annotations
 
@@ -32,9 +32,8 @@ for _ in sys.stdin:
 
 
 def start(tree: Path, script: Path, steps: int, precision: str) -> subprocess.Popen:
-    env = {**os.environ, "PYTHONPATH": str(tree), "ASEMD_CACHE_DIR": str(script.parent / str(tree).replace(os.sep, "_"))}
-    process = subprocess.Popen([sys.executable, "-c", WORK, str(script), str(steps), "-precision", precision], cwd=script.parent, env=env,
-                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([sys.executable, "-c", WORK, str(script), str(steps), "-precision", precision], cwd=script.parent,
+                               env={**os.environ, "PYTHONPATH": str(tree)}, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     process.stdout.readline()      # the first run compiles
     return process
 
