@@ -187,7 +187,7 @@ def cluster_kernel(style: PairStyle, uniform: tuple[bool, ...], row: int, *, ene
     if varying:
         b.function(pair_cluster.coefficients, fast=True, inline=True)
     inner = pair_cluster.inner_two if paired else pair_cluster.inner_one
-    in_line = many_registers() and short(style)      # others take fewer registers by themselves
+    in_line = many_registers() and short(style)      # longer ones do not fit into the registers with what is around them
     b.function(inner, fast=True, inline=in_line)
     if paired:
         b.function(pair_cluster.one_pair, fast=True)

@@ -57,7 +57,7 @@ def inner_two(b, o, n, xa, ya, za, qa, xb, yb, zb, qb, p, hide, h, a0, c, ca, cb
     zero = real(0)
     fxa, fya, fza, fxb, fyb, fzb = zero, zero, zero, zero, zero, zero
     ev, ec, v0, v1, v2, v3, v4, v5 = zero, zero, zero, zero, zero, zero, zero, zero
-    if ROOT:      # beforehand: roots are a long chain of operations, and loops that are longer still wait for each round of it
+    if ROOT:      # in a loop of their own (decision 27): in a longer one all the rest of a round waits for this chain of operations
         for k in range(o, o + n):
             xk, yk, zk = b[place(k)], b[place(k + ROW)], b[place(k + 2 * ROW)]
             dxa, dya, dza = xa - xk, ya - yk, za - zk
@@ -229,6 +229,7 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
     far = real(far_)
     late = False
     ca = cb = np.int64(0)
+    given = c if VARYING else None      # an array without a use would be seven numbers for each call
     cap = x.shape[1]
     for k in range(c0 * CLUSTER, cap, 8):      # no neighbour stands before its cluster
         take8(near, k, x, q)
@@ -293,10 +294,10 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         xp += 1
                 if OUTDATED and late:
                     fxa, fya, fza, fxb, fyb, fzb, sums = two_hidden(
-                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, c if VARYING else None, ca, cb)
+                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, hide, f0, a0, given, ca, cb)
                 else:
                     fxa, fya, fza, fxb, fyb, fzb, sums = inner_two(
-                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, None, f0, a0, c if VARYING else None, ca, cb)
+                        b, base, count, xa, ya, za, qa, xb, yb, zb, qb, p, None, f0, a0, given, ca, cb)
                 if EXCLUDE:
                     for y in range(xp - 1, x0 - 1, -1):
                         b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]
@@ -365,9 +366,9 @@ def cluster_forces(x, f, q, type_of, first, entries, own, span, unshifted, shift
                         b[k] = far
                         xp += 1
                 if OUTDATED and late:
-                    fxa, fya, fza, sums = one_hidden(b, base, count, xa, ya, za, qa, p, hide, f0, a, c if VARYING else None, ca)
+                    fxa, fya, fza, sums = one_hidden(b, base, count, xa, ya, za, qa, p, hide, f0, a, given, ca)
                 else:
-                    fxa, fya, fza, sums = inner_one(b, base, count, xa, ya, za, qa, p, None, f0, a, c if VARYING else None, ca)
+                    fxa, fya, fza, sums = inner_one(b, base, count, xa, ya, za, qa, p, None, f0, a, given, ca)
                 if EXCLUDE:
                     for y in range(xp - 1, x0 - 1, -1):
                         b[np.uint32(excluded[y] & np.int32(0xFFFF))] = saved[y - x0]

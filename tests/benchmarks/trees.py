@@ -34,7 +34,8 @@ for _ in sys.stdin:
 def start(tree: Path, script: Path, steps: int, precision: str) -> subprocess.Popen:
     process = subprocess.Popen([sys.executable, "-c", WORK, str(script), str(steps), "-precision", precision], cwd=script.parent,
                                env={**os.environ, "PYTHONPATH": str(tree)}, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    process.stdout.readline()      # the first run compiles
+    if process.stdout.readline() != "ready\n":      # after the first run, which compiles
+        raise SystemExit(f"{tree}: {script.name} does not run there")
     return process
 
 
