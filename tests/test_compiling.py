@@ -90,6 +90,47 @@ else:
     assert module.half(3) == 1.5 and len(module.half.signatures) == 2
     assert module.quarter(3.0) == 0.75
 """
+LONG = """
+import re
+import sys
+from pathlib import Path
+
+from asemd.kernels import generate, target
+
+def unlike(k):      # names of functions are numbered as they are compiled
+    b = generate.Builder(f"number {k}")
+    b.text(f"def other(x):\\n    return x + {k}")
+    assert b.build().other(1) == 1 + k
+
+long, short = generate.Builder("a long function"), generate.Builder("a short one")
+long.text("def long(x):\\n" + "".join(f"    x = math.sin(x * {k}.5) + x / (x - 0.{k})\\n" for k in range(1, 90)) + "    return x")
+short.text("def short(x):\\n    return x * x + 1.0")
+long, short = long.build(), short.build()
+
+def caller(k):
+    b = generate.Builder(f"caller {k}")
+    b.use(long, "long")
+    b.use(short, "short")
+    b.text(f"def caller(x):\\n    return long(short(x)) * {2.0 ** k}")
+    return b.build().caller
+
+for k in range(int(sys.argv[1])):
+    unlike(k)
+missing = int(sys.argv[2])
+callers = [caller(int(k)) for k in sys.argv[3:]]
+print(*[repr(f(0.3) / 2 ** int(k)) for f, k in zip(callers, sys.argv[3:])])
+assert [sum(f.stats.cache_misses.values()) for f in callers] == [missing] * len(callers)
+if missing:
+    for f in callers:
+        (code,) = f.inspect_asm().values()
+        assert "6caller" in code and re.findall(r"^_ZN13asemd_kernels\\w*?\\d([a-z]+)B\\w+:", code, re.M) == ["caller"]
+        (library,) = [one.library for one in f.overloads.values()]
+        assert ["long" in name for name in library.calls] == [True]
+else:
+    assert not long.long.overloads      # it is there, but numba does not know it
+for path in generate.cache_dir().glob(f"__pycache__/{long.__name__.split('.')[1]}*.nb?"):
+    path.unlink()      # the next process that compiles a caller compiles this once more
+"""
 
 
 def test_the_code_is_the_same_and_made_with_fewer_searches():
@@ -104,6 +145,14 @@ def test_functions_for_other_functions_can_be_called_later(tmp_path):
     env = {**os.environ, "NUMBA_DISABLE_JIT": "0", "ASEMD_CACHE_DIR": str(tmp_path)}
     for how in (["caller"], ["function", "1"], ["function", "0"]):
         subprocess.run([sys.executable, "-c", WRAPPERS, *how], check=True, env=env)
+
+
+def test_long_functions_are_called_where_they_are(tmp_path):
+    """Each caller has what it calls in the cache, whichever process compiled it, and under whichever name."""
+    env = {**os.environ, "NUMBA_DISABLE_JIT": "0", "ASEMD_CACHE_DIR": str(tmp_path)}
+    values = [subprocess.run([sys.executable, "-c", LONG, *words], check=True, env=env, capture_output=True, text=True).stdout.split()
+              for words in (["0", "1", "1"], ["5", "1", "2"], ["0", "0", "1", "2"], ["0", "0", "2", "1"], ["0", "1", "3", "4"])]
+    assert len({value for row in values for value in row}) == 1, values
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")

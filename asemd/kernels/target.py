@@ -1,12 +1,18 @@
-"""How kernels are compiled: for which processor, which numba settles when the first function is decorated, and that the code of each calls
-nobody else's copies. So `njit` is taken from here."""
+"""How kernels are compiled: for which processor, which numba settles when the first function is decorated, and each function once.
+So `njit` is taken from here."""
 from __future__ import annotations
+
+from functools import cached_property
+from typing import ClassVar
 
 import numba
 from numba import njit as njit
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
 from asemd.kernels import compiling
+
+OURS = "_ZN13asemd_kernels"      # with which names of functions in generated modules begin
+LONG = 250      # instructions, twice as many as there are in functions that LLVM puts in the place of a call
 
 
 def prefer_wide_vectors() -> None:
@@ -22,22 +28,60 @@ prefer_wide_vectors()
 
 
 class OwnCopies(JITCodeLibrary):
-    """Machine code that calls its own copies of functions that other code has, too.
+    """Machine code of one function, in which others are not there a second time.
 
-    numba gives all copies one name, and calls go to the copy that was loaded first. Copies are not rounded alike, for each was optimised
-    with what is around it, so that the last bit of a result depended on what else was loaded, and on whether it came from the cache.
+    numba puts copies of all that a function calls into its code, and of what that calls, optimises them once more and compiles them again.
+    Of functions in generated modules only those become part of others that LLVM puts in the place of calls; the rest is called where it is.
+    Copies of numba's own functions are local: they all have one name, under which the one is called that was loaded first, and as copies
+    are not rounded alike, the last bit of a result depended on what else was loaded.
     """
+
+    known: ClassVar[dict[str, OwnCopies]] = {}      # by the name of their function
+    kept: tuple | None = None
+
+    def finalize(self):
+        for library in self._linking_libraries:
+            self._reload_init |= library._reload_init
+        self._linking_libraries = [library for library in self._linking_libraries if not library.stays_apart]
+        super().finalize()
+
+    @cached_property
+    def stays_apart(self) -> bool:
+        """Whether the function is too long to be put in the place of a call."""
+        module = self._get_module_for_linking()
+        return any(function.linkage.name == "available_externally" and not any(b"alwaysinline" in a for a in function.attributes)
+                   and LONG < sum(1 for block in function.blocks for _ in block.instructions) for function in module.functions)
 
     def _optimize_final_module(self):
         super()._optimize_final_module()
-        shared = self._final_module.clone()      # for code that will have copies of this
+        self.calls = {f.name: self.known[f.name] for f in self._final_module.functions if f.is_declaration and f.name in self.known}
+        shared = self._final_module.clone()      # for code that may have this in its place
         for function in shared.functions:
             if not function.is_declaration and function.linkage.name == "external":
-                function.linkage = "linkonce_odr"
+                function.linkage = "available_externally" if function.name.startswith(OURS) else "linkonce_odr"
         self._shared_module = shared
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage.name == "linkonce_odr":
                 function.linkage = "internal"
+
+    def _finalize_final_module(self):
+        super()._finalize_final_module()
+        self.known.update((f.name, self) for f in self._shared_module.functions if f.linkage.name == "available_externally")
+
+    def serialize_using_object_code(self):
+        """What the cache keeps of this, with all that it calls."""
+        if self.kept is None:
+            called = {name: library.serialize_using_object_code() for name, library in self.calls.items()}
+            self.kept = *super().serialize_using_object_code(), called
+        return self.kept
+
+    @classmethod
+    def _unserialize(cls, codegen, state):
+        *own, called = state
+        calls = {name: cls.known.get(name) or cls._unserialize(codegen, kept) for name, kept in called.items()}
+        self = super()._unserialize(codegen, own)
+        self.calls, self.kept = calls, state
+        return self
 
 
 JITCPUCodegen._library_class = OwnCopies
