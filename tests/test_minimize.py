@@ -291,7 +291,7 @@ def test_rows_of_steps_that_were_taken_back():
     told = "".join(asemd("""
         dimension 2
         lattice sq2 0.8
-        region b block 0 6 0 6 -0.5 0.5
+        region b block 0 4 0 4 -0.5 0.5
         create_box 1 b
         create_atoms 1 box
         displace_atoms all random 0.1 0.1 0 77
