@@ -132,6 +132,20 @@ for path in generate.cache_dir().glob(f"__pycache__/{long.__name__.split('.')[1]
     path.unlink()      # the next process that compiles a caller compiles this once more
 """
 
+BEFORE = """
+import sys
+from asemd.kernels import generate, target
+
+keep = target.OwnCopies.serialize_using_object_code
+if sys.argv[1] == "before":
+    target.OwnCopies.serialize_using_object_code = lambda self: keep(self)[:3]
+b = generate.Builder("what a former version compiled")
+b.text("def half(x):\\n    return 0.5 * x")
+module = b.build()
+assert module.half(3.0) == 1.5
+assert sum(module.half.stats.cache_hits.values()) == (sys.argv[1] == "now")
+"""
+
 
 def test_the_code_is_the_same_and_made_with_fewer_searches():
     env = {**os.environ, "NUMBA_DISABLE_JIT": "0"}
@@ -153,6 +167,12 @@ def test_long_functions_are_called_where_they_are(tmp_path):
     values = [subprocess.run([sys.executable, "-c", LONG, *words], check=True, env=env, capture_output=True, text=True).stdout.split()
               for words in (["0", "1", "1"], ["5", "1", "2"], ["0", "0", "1", "2"], ["0", "0", "2", "1"], ["0", "1", "3", "4"])]
     assert len({value for row in values for value in row}) == 1, values
+
+
+def test_code_that_a_former_version_kept(tmp_path):
+    env = {**os.environ, "NUMBA_DISABLE_JIT": "0", "ASEMD_CACHE_DIR": str(tmp_path)}
+    for when in ("before", "now"):
+        subprocess.run([sys.executable, "-c", BEFORE, when], check=True, env=env)
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")

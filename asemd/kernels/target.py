@@ -77,9 +77,9 @@ class OwnCopies(JITCodeLibrary):
 
     @classmethod
     def _unserialize(cls, codegen, state):
-        *own, called = state
+        called = state[3] if len(state) > 3 else {}      # versions before kept copies
         calls = {name: cls.known.get(name) or cls._unserialize(codegen, kept) for name, kept in called.items()}
-        self = super()._unserialize(codegen, own)
+        self = super()._unserialize(codegen, state[:3])
         self.calls, self.kept = calls, state
         return self
 
