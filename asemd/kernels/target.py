@@ -12,7 +12,7 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from asemd.kernels import compiling
 
 OURS = "_ZN13asemd_kernels"      # with which names of functions in generated modules begin
-LONG = 250      # instructions, twice as many as there are in functions that LLVM puts in the place of a call
+LONG = 250      # instructions, more than functions have that LLVM puts in the place of calls
 
 
 def prefer_wide_vectors() -> None:
@@ -32,7 +32,7 @@ class OwnCopies(JITCodeLibrary):
 
     numba puts copies of all that a function calls into its code, and of what that calls, optimises them once more and compiles them again.
     Of functions in generated modules only those become part of others that LLVM puts in the place of calls; the rest is called where it is.
-    Copies of numba's own functions are local: they all have one name, under which the one is called that was loaded first, and as copies
+    Copies of others, numba's own, are local: they all have one name, under which the one is called that was loaded first, and as copies
     are not rounded alike, the last bit of a result depended on what else was loaded.
     """
 
