@@ -36,7 +36,6 @@ RUN = """
 import sys
 from numba.core import event
 from asemd.kernels import ahead, target
-from asemd.kernels.compiling import COMPILE
 from asemd.lammps import Lammps
 
 class Count(event.Listener):
@@ -46,7 +45,7 @@ class Count(event.Listener):
         pass
 
 names = []
-event.register(COMPILE, Count())
+event.register("numba:compile", Count())
 ahead.SERVE = sys.argv[1] or ahead.SERVE
 lmp = Lammps(cmdargs=["-log", "none", "-screen", "none"])
 lmp.commands_string(open("in.script").read())

@@ -27,7 +27,7 @@ from numba.core.types.functions import BaseFunction
 
 # whose types alone say what a call is
 PLAIN = (types.Number, types.Boolean, types.IntegerLiteral, types.Array, types.BaseTuple, types.NoneType, types.SliceType)
-COMPILE, LLVM_LOCK = "numba:compile", "numba:llvm_lock"      # both within numba's lock for the compiler
+LLVM_LOCK = "numba:llvm_lock"      # within numba's lock for the compiler
 KINDS: dict[type, int] = {}      # what values of a class are to `collect`
 
 look_up, same_values, load_all = BaseFunction.get_call_type, TargetConfig.__eq__, CPUContext.load_additional_registries
@@ -119,13 +119,17 @@ def unless_of_locks(announce):
 
 
 def core(self, args, return_type):
-    """Compile a function, and within that those that it calls."""
+    """Compile a function, and within that those that it calls; garbage waits meanwhile."""
     global depth
+    collects = gc.isenabled()
+    gc.disable()
     depth += 1
     try:
         return compile_core(self, args, return_type)
     finally:
         depth -= 1
+        if collects:
+            gc.enable()
 
 
 def customize_flags(self, flags):
@@ -163,23 +167,6 @@ def compile_signature(self, sig):
         return entry
 
 
-class NoCollection(event.Listener):
-    """Garbage waits while a function is compiled, and what it calls."""
-
-    depth, was = 0, False
-
-    def on_start(self, event):
-        if not self.depth:
-            self.was = gc.isenabled()
-            gc.disable()
-        self.depth += 1
-
-    def on_end(self, event):
-        self.depth -= 1
-        if not self.depth and self.was:
-            gc.enable()
-
-
 def install() -> None:
     """For the whole process."""
     BaseFunction.get_call_type = get_call_type
@@ -190,4 +177,3 @@ def install() -> None:
     _FunctionCompiler._compile_core, _FunctionCompiler._customize_flags = core, customize_flags
     Dispatcher.add_overload, Dispatcher.compile = add_overload, compile_signature
     TargetConfig.__hash__, TargetConfig.__eq__ = options_hash, options_equal
-    event.register(COMPILE, NoCollection())
