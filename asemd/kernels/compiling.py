@@ -17,20 +17,23 @@ from functools import cache
 from weakref import WeakSet
 
 from numba import types
-from numba.core import event, ir, sigutils
+from numba.core import event, sigutils, utils
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.cpu import CPUContext
+from numba.core.datamodel.manager import DataModelManager
 from numba.core.dispatcher import Dispatcher, _FunctionCompiler
 from numba.core.runtime.context import NRTContext
 from numba.core.targetconfig import ConfigStack, TargetConfig
 from numba.core.types.functions import BaseFunction
 
+from asemd.kernels import intermediate
+
 # whose types alone say what a call is
 PLAIN = (types.Number, types.Boolean, types.IntegerLiteral, types.Array, types.BaseTuple, types.NoneType, types.SliceType)
 LLVM_LOCK = "numba:llvm_lock"      # within numba's lock for the compiler
-KINDS: dict[type, int] = {}      # what values of a class are to `collect`
 
 look_up, same_values, load_all = BaseFunction.get_call_type, TargetConfig.__eq__, CPUContext.load_additional_registries
+look_model_up, signature_of = DataModelManager.lookup, utils.pysignature
 compile_core, compile_once, keep = _FunctionCompiler._compile_core, Dispatcher.compile, Dispatcher.add_overload
 found: dict[tuple, tuple] = {}
 loaded: WeakSet = WeakSet()
@@ -42,11 +45,12 @@ def get_call_type(self, context, args, kws):
     if kws or not hasattr(self, "_impl_keys") or not all(isinstance(a, PLAIN) for a in args):
         return look_up(self, context, args, kws)
     options = ConfigStack.top_or_none()
-    known = found.get((context, self, tuple(args), options))
+    key = context, self._code, tuple([a._code for a in args]), options
+    known = found.get(key)
     if known is None:
         signature = look_up(self, context, args, kws)
         # a copy, for numba changes options in place
-        found[context, self, tuple(args), options and options.copy()] = signature, self._impl_keys[signature.args]
+        found[(*key[:3], options and options.copy())] = signature, self._impl_keys[signature.args]
         return signature
     signature, self._impl_keys[signature.args] = known
     return signature
@@ -79,25 +83,13 @@ def get_meminfos(self, builder, kind, value):
                   for one in self.get_meminfos(builder, inner, part(value))]
 
 
-def list_vars(self, value) -> list:
-    """The variables of numba's intermediate code in a value, which are those of its parts."""
-    out: list = []
-    collect(value, out)
-    return out
-
-
-def collect(value, out: list) -> None:
-    kind = value.__class__
-    what = KINDS.get(kind)
-    if what is None:
-        what = KINDS[kind] = next((n for n, base in enumerate((ir.Var, (list, tuple), dict, ir.Inst)) if issubclass(kind, base)), 4)
-    if what == 0:
-        out.append(value)
-    elif what == 3:
-        out += value.list_vars()
-    elif what < 4:
-        for part in value if what == 1 else value.values():
-            collect(part, out)
+def model_of(self, kind):
+    """How values of a type are kept; types are told apart by their number, for which their parts need not be looked at."""
+    models = self.__dict__.setdefault("by_number", {})
+    model = models.get(kind._code)
+    if model is None:
+        model = models[kind._code] = look_model_up(self, kind)
+    return model
 
 
 def load_registries(self) -> None:
@@ -171,9 +163,11 @@ def install() -> None:
     """For the whole process."""
     BaseFunction.get_call_type = get_call_type
     NRTContext.get_meminfos = get_meminfos
-    ir.Inst._rec_list_vars = list_vars
+    DataModelManager.lookup = DataModelManager.__getitem__ = model_of
+    utils.pysignature = cache(signature_of)
     event.start_event, event.end_event = map(unless_of_locks, (event.start_event, event.end_event))
     CPUContext.load_additional_registries = load_registries
     _FunctionCompiler._compile_core, _FunctionCompiler._customize_flags = core, customize_flags
     Dispatcher.add_overload, Dispatcher.compile = add_overload, compile_signature
     TargetConfig.__hash__, TargetConfig.__eq__ = options_hash, options_equal
+    intermediate.install()

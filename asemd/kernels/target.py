@@ -53,7 +53,12 @@ class OwnCopies(JITCodeLibrary):
                    and LONG < sum(1 for block in function.blocks for _ in block.instructions) for function in module.functions)
 
     def _optimize_final_module(self):
-        super()._optimize_final_module()
+        passes = self._codegen._module_pass_manager()
+        # numba runs all passes twice, so that references are looked for in what was put in the place of calls; kernels count none
+        if isinstance(passes, tuple) and numba.config.LLVM_REFPRUNE_PASS:
+            passes[0].run(self._final_module, passes[1])
+        else:      # versions before pass managers of that kind
+            super()._optimize_final_module()
         self.calls = {f.name: self.known[f.name] for f in self._final_module.functions if f.is_declaration and f.name in self.known}
         shared = self._final_module.clone()      # for code that may have this in its place
         for function in shared.functions:
