@@ -16,7 +16,8 @@ from numba.core.compiler import Flags
 from numba.core.cpu_options import FastMathOptions
 
 import asemd.kernels.target  # noqa: F401   which installs it
-from asemd.kernels import compiling, intermediate
+from asemd import style as registry
+from asemd.kernels import compiling, generate, intermediate, pair
 
 PROGRAM = """
 import json
@@ -107,7 +108,7 @@ def code(f):      # what the function has, without wrappers; names are numbered,
     names = {}
     return re.sub(r"_ZN\\w+", lambda m: names.setdefault(m[0], f"name{len(names)}"), own)
 
-print(json.dumps([searches, [code(f) for f in (loose, strict, kernel, assigned_again, reads)]]))
+print(json.dumps([searches, [code(f) for f in (loose, strict, kernel, assigned_again)]]))
 """
 WRAPPERS = """
 import sys
@@ -190,7 +191,7 @@ def test_the_code_is_the_same_and_made_with_fewer_searches():
     env = {**os.environ, "NUMBA_DISABLE_JIT": "0"}
     (plain, theirs), (faster, ours) = (json.loads(subprocess.run([sys.executable, "-c", PROGRAM, how], capture_output=True, text=True,
                                                                  check=True, env=env).stdout) for how in ("plain", "faster"))
-    assert len(theirs) == 5 and theirs == ours
+    assert len(theirs) == 4 and theirs == ours
     assert 0 < faster < 0.7 * plain
 
 
@@ -330,3 +331,34 @@ def test_blocks_without_a_variable_are_passed(monkeypatch):
     assert numba.njit(names["steps"])(4) == names["steps"](4) == 6.0
     # some 80 blocks and 21 variables that are assigned again, each with two passes
     assert 0 < len(passed) < 700
+
+
+def test_kernels_have_functions_in_common():
+    """With and without special pairs, pruned or not, for two styles: what is alike is compiled once."""
+    def made(name, rows, **how):
+        style = registry.find("pair", name)
+        return pair.cluster_kernel(style, (False,) * rows, 608, **{**dict(energy=True, exclude=False, single=False), **how})[1]
+
+    plain, special, pruned, morse = made("lj/cut", 4), made("lj/cut", 4, exclude=True), made("lj/cut", 4, pruned=True), made("morse", 5)
+    for name in ("pair_energy", "coefficients", "inner_two" if hasattr(plain, "inner_two") else "inner_one"):
+        assert getattr(plain, name) is getattr(special, name) is getattr(pruned, name), name
+    assert plain.cluster_forces is not special.cluster_forces and plain.pair_energy is not morse.pair_energy
+    assert plain.vector_root is morse.vector_root
+    assert plain.pair_energy is not made("lj/cut", 4, single=True).pair_energy
+
+
+def test_a_function_apart_has_what_it_needs():
+    b = generate.Builder("two functions")
+    b.constant("TWO", 2.0)
+    b.text("def twice(x):\n    return TWO * x", apart=True)
+    b.text("def four(x):\n    return twice(twice(x))", apart=True)
+    b.text("def near(x):\n    return x + 1.0")
+    b.text("def last(x):\n    return near(four(x))", apart=True)      # needs what is not apart, and stays
+    module = b.build()
+    assert module.last(1.5) == 7.0
+    names = [f.__module__ for f in (module.twice, module.four, module.near, module.last)]
+    assert len(set(names)) == 3 and names[2] == names[3] == module.__name__
+    short = generate.Builder("one that lacks something")
+    short.text("def five(x):\n    return nowhere(x)", apart=True)
+    with pytest.raises(NameError, match="five needs nowhere"):
+        short.build()

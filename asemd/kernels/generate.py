@@ -196,8 +196,11 @@ class Builder:
         self.constants[name] = value
         self.line(f"{name} = {value!r}" if isinstance(value, (bool, int, float, str)) else f"{name} = {value}")
 
-    def text(self, source: str, options: str = "", cache: bool = True, jit: bool = True) -> None:
-        """A function given as text, compiled with strict IEEE arithmetic unless `options` says otherwise."""
+    def text(self, source: str, options: str = "", cache: bool = True, jit: bool = True, apart: bool = False) -> None:
+        """A function given as text, compiled with strict IEEE arithmetic unless `options` says otherwise; with `apart` in a module of its
+        own where all that it needs is written in single lines: whichever kernels have it in common, it is compiled once."""
+        if apart and self._apart(ast.parse(source).body[0], source, options):
+            return
         if jit:
             if "fastmath" not in options:      # else numba takes that of the function that calls it first
                 options = ", ".join(filter(None, [options, "fastmath=False"]))
@@ -229,8 +232,7 @@ class Builder:
         return name
 
     def _apart(self, tree: ast.FunctionDef, source: str, options: str) -> bool:
-        """Where all that a function needs is written in single lines, it gets a module of its own with these alone: whichever kernels have
-        it in common, it is compiled once."""
+        """A module for the function and the lines that it needs; False, and nothing is done, if it needs more than lines."""
         nodes = [n for n in ast.walk(tree) if isinstance(n, (ast.Name, ast.arg))]
         own = {n.arg if isinstance(n, ast.arg) else n.id for n in nodes if isinstance(n, ast.arg) or isinstance(n.ctx, ast.Store)}
         needed = {n.id for n in nodes if isinstance(n, ast.Name)} - own - _EVERYWHERE - {tree.name}

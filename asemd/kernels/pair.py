@@ -97,7 +97,7 @@ def paste_pairs(b: Builder, parts) -> None:
     vector_math.paste_roots(b)
     vector_math.paste(b)
     names = _paste_style(b, parts, False, True)
-    b.text(_adapter(parts, names, [False] * sum(2 + len(part.rows) for part in parts), True), "forceinline=True")
+    b.text(_adapter(parts, names, [False] * sum(2 + len(part.rows) for part in parts), True), "forceinline=True", apart=True)
 
 
 def takes_roots(style: PairStyle) -> bool:
@@ -134,7 +134,8 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
     if any(re.search(r"\b(math|np)\.(exp|log|erfc|pow|sin|cos)\b", s) for s in map(text_of, style.functions())):
         vector_math.paste(b, single)
     names = _paste_style(b, style.parts, single, True)
-    b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}")
+    b.text(_adapter(style.parts, names, uniform, energy, piece), "forceinline=True, fastmath={'contract', 'reassoc', 'nsz', 'arcp'}",
+           apart=True)
     varying = len(uniform) - sum(uniform)
     if varying:
         if coefficient_rows.WIDE:
@@ -148,7 +149,7 @@ def _over_clusters(title: str, style: PairStyle, uniform: Sequence[bool], single
             lines += ["    else:" if coefficient_rows.WIDE else "    if True:", "        for k in range(0, full, 8):",
                       "            gather8(b, at + k, ROW, table, types, k, 0.0, 0.0, 0.0, table, SLOT_BITS, False, "
                       f"{3 if varying >= 4 * block + 4 else 0})"]
-        b.text("\n".join(lines))
+        b.text("\n".join(lines), apart=True)
     return b
 
 
@@ -310,7 +311,7 @@ def paste_one(b: Builder, style, parts, piece: str = "", apart: bool = False) ->
     if piece:
         lines += [*_share(piece, "constants", constant), "    fp *= share"]
     lines.append("    return fp, fc, ev, ec" if apart else "    return fp, ev, ec")
-    b.text("\n".join(lines))
+    b.text("\n".join(lines), apart=True)
 
 
 @cache
@@ -364,11 +365,11 @@ def rows_kernel(style, uniform: tuple[bool, ...], *, energy: bool, piece: str = 
         array += len(part.arrays)
     if piece:
         lines += [*_share(piece, "p", constant), "    fp *= share"]
-    b.text("\n".join([*lines, "    return fp, ev, ec"]))
+    b.text("\n".join([*lines, "    return fp, ev, ec"]), apart=True)
     cut = cuts[0] if len(cuts) == 1 else f"max({', '.join(cuts)})"
     if piece:
         cut = f"min({cut}, p[{constant + 5}])"
-    b.text(f"def furthest(p, rows, ti, tj):\n    return {cut}")
+    b.text(f"def furthest(p, rows, ti, tj):\n    return {cut}", apart=True)
     if shares:
         b.function(pair_shares.row_shares, fast=True)
         module = b.build()

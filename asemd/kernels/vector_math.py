@@ -316,13 +316,13 @@ def paste(b: Builder, single: bool = False) -> None:
     b.line(f"from asemd.kernels.bits import {names}  # {mark}")
     pairs = ((single_exp, "exp"), (single_log, "log"), (single_erfc, "erfc")) if single else (
         (vector_exp, "exp"), (vector_log, "log"), (vector_erfc, "erfc"))
-    b.text(plain_source(single_sine_and_cosine if single else sine_and_cosine, "sine_and_cosine", real=single), OPTIONS)
+    b.text(plain_source(single_sine_and_cosine if single else sine_and_cosine, "sine_and_cosine", real=single), OPTIONS, apart=True)
     for function, name in pairs + ((vector_pow, "pow"), (vector_sin, "sin"), (vector_cos, "cos")):
-        b.text(plain_source(function, f"vector_{name}", real=single), OPTIONS)
+        b.text(plain_source(function, f"vector_{name}", real=single), OPTIONS, apart=True)
 
 
 def paste_roots(b: Builder, single: bool = False) -> None:
     """Put ``vector_root`` and, for doubles, ``vector_inverse`` into a module; it must define ``madd``."""
     for function in (single_root,) if single else (vector_root, vector_inverse):
         b.text(plain_source(function, "vector_root" if single else None),
-               "fastmath={'contract', 'arcp', 'afn', 'ninf'}, forceinline=True")    # estimates will do
+               "fastmath={'contract', 'arcp', 'afn', 'ninf'}, forceinline=True", apart=True)    # estimates will do
