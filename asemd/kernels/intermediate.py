@@ -1,8 +1,8 @@
 """What makes numba's work on its intermediate code faster; what comes out is the same.
 
 - Variables: all that is in a statement is looked through for them, ever again, with a generator for each value.
-- Lifetimes: after most passes numba works out which variables live where, and forgets it in the next; needed is that of the last pass, and
-  only generators need all of it.
+- Lifetimes: after most passes numba works out which variables live where, and forgets it in the next; needed it is where they
+  are let go, and all of it for generators and code with Python's objects only.
 - Single assignments: for each variable that is assigned twice all statements are looked at, two times; here those of blocks that have it.
 - References: variables that hold none are loaded to be let go, and cleared, which LLVM has to remove again.
 """
